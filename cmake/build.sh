@@ -1,0 +1,16 @@
+#!/bin/sh
+# build.sh PRESET: installs what is missing, configures and builds build/PRESET.
+set -eu
+cd "$(dirname "$0")/.."
+
+sh cmake/setup.sh
+
+# A compiler at work may take 1.5 GB; on machines with many cores and little memory, memory is the limit.
+jobs=$(nproc)
+memory_kb=$(awk '/^MemAvailable/ { print $2 }' /proc/meminfo)
+fitting=$((memory_kb / 1500000))
+[ "$fitting" -ge 1 ] || fitting=1
+[ "$jobs" -le "$fitting" ] || jobs=$fitting
+
+cmake --preset "$1"
+cmake --build --preset "$1" -j "$jobs"

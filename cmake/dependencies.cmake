@@ -1,0 +1,30 @@
+# The parallel HDF5 goes first: a serial one may be installed beside it.
+set(HDF5_PREFER_PARALLEL ON)
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+
+find_package(MPI REQUIRED COMPONENTS C)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(METIS REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(LibXml2 REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(ZLIB REQUIRED)
+if(NOT HDF5_IS_PARALLEL)
+  message(FATAL_ERROR "HDF5 in ${HDF5_INCLUDE_DIRS} is a serial build; install libhdf5-openmpi-dev or set HDF5_ROOT")
+endif()
+
+find_package(PkgConfig QUIET)
+if(PkgConfig_FOUND)
+  pkg_check_modules(PETSC QUIET IMPORTED_TARGET PETSc)
+endif()
+
+if(MPM_TESTS)
+  find_package(Catch2 2.13 REQUIRED)
+endif()
+# The Debian one by its path: another Python first on PATH may lack numpy, h5py and matplotlib.
+find_program(MPM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(MPM_PYTHON python3 REQUIRED)
+mark_as_advanced(MPM_PYTHON)

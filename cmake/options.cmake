@@ -1,0 +1,80 @@
+# What a user may choose, and the compiler flags that follow from it.
+
+set(MPM_ARCH native CACHE STRING "Value of -march; empty: the compiler's baseline")
+set(MPM_SIMD_LANES auto CACHE STRING "Doubles per SIMD vector: 1, 2, 4, 8, or auto for the widest that MPM_ARCH has")
+set_property(CACHE MPM_SIMD_LANES PROPERTY STRINGS auto 1 2 4 8)
+option(MPM_ASSERTIONS "Check invariants at run time" OFF)
+option(MPM_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
+option(MPM_WERROR "Treat warnings as errors" OFF)
+option(MPM_FUZZ "Build the libFuzzer harnesses under tests/fuzz (clang)" OFF)
+option(MPM_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(MPM_BENCHMARKS "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+
+find_program(CCACHE_PROGRAM ccache)
+mark_as_advanced(CCACHE_PROGRAM)
+if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+set(mpm_arch_flags "")
+if(MPM_ARCH)
+  set(mpm_arch_flags -march=${MPM_ARCH})
+endif()
+
+execute_process(
+  COMMAND ${CMAKE_CXX_COMPILER} ${mpm_arch_flags} -dM -E -x c++ /dev/null
+  OUTPUT_VARIABLE arch_macros ERROR_VARIABLE arch_error RESULT_VARIABLE arch_result)
+if(NOT arch_result EQUAL 0)
+  message(FATAL_ERROR "The compiler rejects MPM_ARCH=${MPM_ARCH}:\n${arch_error}")
+endif()
+if(MPM_SIMD_LANES STREQUAL "auto")
+  if(arch_macros MATCHES "__AVX512F__")
+    set(mpm_simd_lanes 8)
+  elseif(arch_macros MATCHES "__AVX__")
+    set(mpm_simd_lanes 4)
+  else()
+    set(mpm_simd_lanes 2)
+  endif()
+elseif(MPM_SIMD_LANES MATCHES "^[1248]$")
+  set(mpm_simd_lanes ${MPM_SIMD_LANES})
+else()
+  message(FATAL_ERROR "MPM_SIMD_LANES=${MPM_SIMD_LANES}: expected 1, 2, 4, 8 or auto")
+endif()
+
+# Everything that changes the layout of vectors or the value of a result is PUBLIC on mpm_core: a consumer's
+# copies of our inline functions must agree with the library's. Contraction is spelled out because compilers differ
+# in its default; reassociation (-ffast-math) would end the same bits on any number of ranks.
+set(mpm_public_options ${mpm_arch_flags} -ffp-contract=fast -fno-math-errno -fno-trapping-math)
+set(mpm_public_definitions MPM_SIMD_LANES=${mpm_simd_lanes})
+set(mpm_private_options -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wno-psabi)
+if(MPM_WERROR)
+  list(APPEND mpm_private_options -Werror)
+endif()
+if(MPM_ASSERTIONS)
+  list(APPEND mpm_public_definitions MPM_ASSERTIONS=1 _GLIBCXX_ASSERTIONS)
+  list(APPEND mpm_private_options -UNDEBUG)
+endif()
+if(MPM_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # Instrumented code hides initialisations from g++.
+    list(APPEND mpm_private_options -Wno-maybe-uninitialized)
+  endif()
+endif()
+if(MPM_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
+message(STATUS "mpm: ${CMAKE_BUILD_TYPE}, arch '${MPM_ARCH}', ${mpm_simd_lanes} SIMD lanes, "
+  "assertions ${MPM_ASSERTIONS}, sanitizers ${MPM_SANITIZE}")

@@ -1,0 +1,74 @@
+# mpm_library(core LINK dep...): library mpm_core, alias mpm::core, from every source below the current folder and
+# SOURCES; without any, a library of headers.
+function(mpm_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  list(APPEND sources ${arg_SOURCES})
+  set(target mpm_${name})
+  if(sources)
+    set(scope PUBLIC)
+    add_library(${target} STATIC ${sources})
+    mpm_compile(${target})
+  else()
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+  endif()
+  add_library(mpm::${name} ALIAS ${target})
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/mpm>)
+  target_link_libraries(${target} ${scope} ${arg_LINK})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  install(TARGETS ${target} EXPORT mpm)
+endfunction()
+
+# mpm_programs(out_targets LINK dep...): one program per source directly in the current folder.
+function(mpm_programs out)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LINK")
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  set(targets "")
+  foreach(source IN LISTS sources)
+    cmake_path(GET source STEM name)
+    add_executable(${name} ${source})
+    target_link_libraries(${name} PRIVATE ${arg_LINK})
+    mpm_compile(${name})
+    list(APPEND targets ${name})
+  endforeach()
+  set(${out} ${targets} PARENT_SCOPE)
+endfunction()
+
+# mpm_helpers(target [SOURCES file...] LINK dep...): a static library that is not installed; without sources, an
+# empty one.
+function(mpm_helpers target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
+  if(arg_SOURCES)
+    add_library(${target} STATIC ${arg_SOURCES})
+    target_link_libraries(${target} PUBLIC ${arg_LINK})
+    mpm_compile(${target})
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE ${arg_LINK})
+  endif()
+endfunction()
+
+# Warnings and the like, for our own sources only.
+function(mpm_compile target)
+  target_compile_options(${target} PRIVATE ${mpm_private_options})
+  get_target_property(type ${target} TYPE)
+  if(MPM_SANITIZE AND type STREQUAL EXECUTABLE)
+    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/keep_plugins.cpp)
+  endif()
+endfunction()
+
+# mpm_embed(out_source XML_FILE): a source that holds the file as mpm::io::embedded::<stem>, a std::string_view
+# declared by "io/embedded/<stem>.hpp"; stem in lower case.
+function(mpm_embed out file)
+  cmake_path(GET file STEM LAST_ONLY stem)
+  string(TOLOWER ${stem} stem)
+  set(base ${PROJECT_BINARY_DIR}/generated/io/embedded/${stem})
+  set(script ${PROJECT_SOURCE_DIR}/cmake/embed.cmake)
+  add_custom_command(OUTPUT ${base}.cpp ${base}.hpp
+    COMMAND ${CMAKE_COMMAND} -DFILE=${file} -DNAME=${stem} -DBASE=${base} -P ${script}
+    DEPENDS ${file} ${script} COMMENT "Embedding ${stem}" VERBATIM)
+  set(${out} ${base}.cpp ${base}.hpp PARENT_SCOPE)
+endfunction()

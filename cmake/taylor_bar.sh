@@ -1,0 +1,19 @@
+#!/bin/sh
+# taylor_bar.sh [RANKS]: installs what is missing, builds, runs the copper Taylor bar (on 2 ranks) in out/taylor_bar
+# and reports it against the experiment.
+set -eu
+cd "$(dirname "$0")/.."
+ranks=${1:-2}
+
+sh cmake/build.sh release
+
+# Root in a container and more ranks than cores are normal here. Single-copy messages need ptrace rights, which
+# containers withhold.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none
+export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}"
+
+rm -rf out/taylor_bar
+mpirun --oversubscribe --bind-to none -n "$ranks" build/release/bin/mpm_run --output-dir out/taylor_bar \
+  benchmarks/taylor_bar/taylor_bar.xmp
+/usr/bin/python3 benchmarks/taylor_bar/report.py out/taylor_bar

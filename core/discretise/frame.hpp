@@ -1,0 +1,30 @@
+#pragma once
+// Between a body's work plane and the global frame. Axes along the global ones bring no round-off but that of the
+// one addition of the origin.
+
+#include "core/scene/scene.hpp"
+
+#include <array>
+
+namespace mpm::core {
+
+using Position = std::array<double, 3>;
+using Box = std::array<Position, 2>;  ///< smallest and largest coordinates
+
+class Frame {
+public:
+  Frame() = default;
+  explicit Frame(const WorkPlane& plane);
+  Frame(const Scene& scene, const BodyInput& body);
+
+  Position to_global(const Position& local) const;
+  Position to_local(const Position& global) const;
+  /// The global box around a local one.
+  Box to_global(const Box& local) const;
+
+private:
+  Position origin_{};
+  std::array<Position, 3> axes_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+};
+
+}  // namespace mpm::core

@@ -1,0 +1,64 @@
+#include "core/grid/brick_grid.hpp"
+
+#include <algorithm>
+#include <new>
+
+namespace mpm::core {
+
+void AlignedDoubles::resize(std::size_t n) {
+  if (n > capacity_) {
+    constexpr std::size_t alignment = 4096;
+    const std::size_t bytes = (n * sizeof(double) + alignment - 1) / alignment * alignment;
+    data_.reset();
+    data_.reset(static_cast<double*>(std::aligned_alloc(alignment, bytes)));
+    if (!data_) throw std::bad_alloc();
+    capacity_ = bytes / sizeof(double);
+  }
+  size_ = n;
+}
+
+void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts) {
+  const auto by_key = [](BrickCoord a, BrickCoord b) { return key_of(a) < key_of(b); };
+  std::sort(owned.begin(), owned.end(), by_key);
+  std::sort(ghosts.begin(), ghosts.end(), by_key);
+
+  std::unordered_map<BrickKey, Slot> ghost_slot;
+  for (std::size_t g = 0; g < ghosts.size(); ++g) {
+    ghost_slot.emplace(key_of(ghosts[g]), static_cast<Slot>(owned.size() + g));
+  }
+  const auto touches_ghost = [&](BrickCoord b) {
+    if (ghost_slot.empty()) return false;
+    for (int n = 0; n < neighbourhood; ++n) {
+      if (ghost_slot.contains(key_of(b + neighbour_offset(n)))) return true;
+    }
+    return false;
+  };
+  // Those whose contributions must travel come first, so that the others are worked on meanwhile.
+  const auto interior = std::stable_partition(owned.begin(), owned.end(), touches_ghost);
+  boundary_ = static_cast<int>(interior - owned.begin());
+
+  std::vector<Brick> bricks(owned.size());
+  std::unordered_map<BrickKey, Slot> slot = std::move(ghost_slot);
+  slot.reserve(owned.size() + ghosts.size());
+  for (std::size_t s = 0; s < owned.size(); ++s) {
+    bricks[s].coord = owned[s];
+    if (const Slot old = find(owned[s]); old != no_slot && old < this->owned()) {
+      bricks[s].cohorts = std::move(brick(old).cohorts);
+    }
+    slot.emplace(key_of(owned[s]), static_cast<Slot>(s));
+  }
+  for (Brick& b : bricks) {
+    for (int n = 0; n < neighbourhood; ++n) {
+      const auto it = slot.find(key_of(b.coord + neighbour_offset(n)));
+      b.neighbour[static_cast<std::size_t>(n)] = it == slot.end() ? no_slot : it->second;
+    }
+  }
+  bricks_ = std::move(bricks);
+  ghosts_ = std::move(ghosts);
+  slot_ = std::move(slot);
+  contributions_.resize(stride() * (bricks_.size() + ghosts_.size()));
+  nodes_.resize(stride() * bricks_.size());
+  ++revision_;
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,102 @@
+// The bricks of one rank: which exist, who their neighbours are, and the nodes of each.
+//
+// Slots 0 .. owned()-1 are this rank's bricks, those that touch another rank's first; slots from owned() on are
+// ghosts: other ranks' bricks next to ours, of which only the contributions to shared nodes are kept.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/grid/brick.hpp"
+#include "core/particles/block_pool.hpp"
+
+namespace mpm::core {
+
+using Slot = std::int32_t;
+inline constexpr Slot no_slot = -1;
+
+/// 64-byte aligned doubles that may grow; contents are undefined after a resize.
+class AlignedDoubles {
+ public:
+  void resize(std::size_t n);
+  double* data() { return data_.get(); }
+  const double* data() const { return data_.get(); }
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return capacity_ * sizeof(double); }
+
+ private:
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
+  std::unique_ptr<double[], Free> data_;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+struct Brick {
+  BrickCoord coord;
+  std::array<Slot, neighbourhood> neighbour{};  ///< owned or ghost slots; no_slot where no brick exists
+  std::vector<Cohort> cohorts;                  ///< ascending by body; none is empty after migration
+  std::size_t particles() const {
+    std::size_t n = 0;
+    for (const Cohort& c : cohorts) n += c.count;
+    return n;
+  }
+};
+
+class BrickGrid {
+ public:
+  explicit BrickGrid(const GridGeometry& geometry, int halo = 0) : geometry_(geometry), shape_{halo} {}
+
+  const GridGeometry& geometry() const { return geometry_; }
+  const NodeBlockShape& shape() const { return shape_; }
+
+  int owned() const { return static_cast<int>(bricks_.size()); }
+  int boundary() const { return boundary_; }  ///< owned bricks next to a ghost: slots 0 .. boundary()-1
+  int ghosts() const { return static_cast<int>(ghosts_.size()); }
+  Brick& brick(Slot s) { return bricks_[static_cast<std::size_t>(s)]; }
+  const Brick& brick(Slot s) const { return bricks_[static_cast<std::size_t>(s)]; }
+  BrickCoord ghost(int i) const { return ghosts_[static_cast<std::size_t>(i)]; }
+  std::span<Brick> bricks() { return bricks_; }
+  std::span<const Brick> bricks() const { return bricks_; }
+
+  /// Slot of an owned or ghost brick, or no_slot.
+  Slot find(BrickCoord b) const {
+    const auto it = slot_.find(key_of(b));
+    return it == slot_.end() ? no_slot : it->second;
+  }
+
+  /// Make the set of bricks this: `owned` keep their particles if they were there and start empty if not;
+  /// a brick that is dropped must be empty. Slots, neighbours and node arrays are new afterwards.
+  void reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts);
+
+  /// Contributions of the slot's own particles to its nodes: shape().nodes() x node_doubles.
+  double* contributions(Slot s) { return contributions_.data() + stride() * static_cast<std::size_t>(s); }
+  const double* contributions(Slot s) const { return contributions_.data() + stride() * static_cast<std::size_t>(s); }
+  /// Node values that the slot's particles read: sums over all bricks, updated. Owned slots only.
+  double* nodes(Slot s) { return nodes_.data() + stride() * static_cast<std::size_t>(s); }
+  const double* nodes(Slot s) const { return nodes_.data() + stride() * static_cast<std::size_t>(s); }
+
+  std::size_t node_bytes() const { return contributions_.bytes() + nodes_.bytes(); }
+  /// Counts up whenever the set of bricks changes; communication plans are made anew then.
+  std::uint64_t revision() const { return revision_; }
+
+ private:
+  std::size_t stride() const { return static_cast<std::size_t>(shape_.nodes()) * node_doubles; }
+
+  GridGeometry geometry_;
+  NodeBlockShape shape_;
+  std::vector<Brick> bricks_;
+  std::vector<BrickCoord> ghosts_;
+  std::unordered_map<BrickKey, Slot> slot_;
+  AlignedDoubles contributions_;
+  AlignedDoubles nodes_;
+  int boundary_ = 0;
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace mpm::core

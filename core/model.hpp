@@ -1,0 +1,87 @@
+// What one rank holds of a run: the grid's bricks with their particles, the bodies, the clock and the books.
+//
+// Particles are found as grid -> brick -> cohort (one per body) -> blocks of eight. Everything that a restart
+// file must carry is reachable from here, and nothing else is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/exact_sum.hpp"
+#include "core/grid/brick_grid.hpp"
+#include "core/material/constitutive_model.hpp"
+#include "core/scene/scene.hpp"
+
+namespace mpm::core {
+
+/// A body that takes part in the run. Bodies are numbered in the order of the input.
+struct Body {
+  std::string name;
+  int component = 0;                                   ///< index into the scene's components
+  int material = 0;                                    ///< index into the scene's materials
+  const ConstitutiveModel* model = nullptr;
+  std::optional<Vec3<double>> prescribed_velocity;
+  bool no_output = false;
+  std::unique_ptr<BlockPool> pool;                     ///< this rank's particles of the body
+};
+
+struct Clock {
+  std::int64_t step = 0;    ///< steps done
+  double time = 0;          ///< of the state that the particles hold
+  double dt = 0;            ///< of the last step
+  /// Largest stable step for the state reached, factor not included; 0 before the first estimate.
+  double critical_dt = 0;
+  double first_critical_dt = 0;  ///< for TimeStep const="1"
+};
+
+/// What has come in and gone out since time zero. Exact sums: the same on any ranks.
+struct Books {
+  ExactSum external_work;                  ///< by gravity, prescribed velocities and damping; energy
+  ExactSum removed_mass;                   ///< of particles that left the grid or were eroded
+  ExactSum removed_kinetic;
+  ExactSum removed_internal;
+  std::int64_t left_grid = 0;              ///< particles; on this rank
+  std::int64_t eroded = 0;
+  std::int64_t failed = 0;
+  std::int64_t velocity_limited = 0;
+  MaterialEvents events;                   ///< since time zero, on this rank
+  std::vector<std::int64_t> body_eroded, body_left;  ///< per body, on this rank
+};
+
+struct Model {
+  std::shared_ptr<const Scene> scene;
+  std::vector<std::unique_ptr<ConstitutiveModel>> materials;
+  UpdateOptions options;
+  std::vector<Body> bodies;
+  std::unique_ptr<BrickGrid> grid;
+  Clock clock;
+  Books books;
+  double initial_energy = 0;               ///< kinetic + internal at time zero
+  std::uint64_t next_identity = 0;
+
+  std::size_t local_particles() const {
+    std::size_t n = 0;
+    for (const Brick& b : grid->bricks()) n += b.particles();
+    return n;
+  }
+};
+
+/// Walk over this rank's particles: f(body index, layout, block, lanes in use), blocks in storage order.
+template <class F>
+void for_each_block(const Model& model, F f) {
+  for (const Brick& brick : model.grid->bricks()) {
+    for (const Cohort& cohort : brick.cohorts) {
+      const BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+      for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+        const int used = static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+        f(cohort.body, pool.layout(), pool.block(cohort.blocks[b]), used);
+      }
+    }
+  }
+}
+
+}  // namespace mpm::core

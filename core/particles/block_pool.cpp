@@ -1,0 +1,82 @@
+#include "core/particles/block_pool.hpp"
+
+#include <sys/mman.h>
+
+#include <cstring>
+#include <new>
+
+namespace mpm::core {
+
+namespace {
+constexpr std::size_t max_slabs = std::size_t{1} << 22;  // 2^32 blocks
+}
+
+BlockPool::BlockPool(const ColumnLayout& layout) : layout_(layout) {
+  // Pointers only: 4 Mi slabs of 1024 blocks cover every 32-bit number; pages come when they are touched.
+  slabs_.reserve(max_slabs);
+}
+
+BlockIndex BlockPool::allocate() {
+  const std::lock_guard lock(mutex_);
+  BlockIndex i = 0;
+  if (!free_.empty()) {
+    i = free_.back();
+    free_.pop_back();
+  } else {
+    if (next_ % slab_blocks == 0) {
+      const std::size_t bytes = sizeof(double) * slab_blocks * static_cast<std::size_t>(layout_.block_doubles());
+      constexpr std::size_t alignment = 4096;
+      void* p = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+      if (p == nullptr) throw std::bad_alloc();
+      madvise(p, bytes, MADV_HUGEPAGE);  // a hint: fewer address translations in the passes over particles
+      slabs_.emplace_back(static_cast<double*>(p));
+    }
+    i = next_++;
+  }
+  std::memset(block(i), 0, sizeof(double) * static_cast<std::size_t>(layout_.block_doubles()));
+  return i;
+}
+
+void BlockPool::release(BlockIndex i) {
+  const std::lock_guard lock(mutex_);
+  free_.push_back(i);
+}
+
+std::size_t BlockPool::bytes_reserved() const {
+  return slabs_.size() * slab_blocks * sizeof(double) * static_cast<std::size_t>(layout_.block_doubles());
+}
+
+std::uint32_t append(BlockPool& pool, Cohort& cohort, const double* columns) {
+  const std::uint32_t lane = cohort.count % block_lanes;
+  if (lane == 0) cohort.blocks.push_back(pool.allocate());
+  double* block = pool.block(cohort.blocks.back());
+  // The first particle of a block fills its unused lanes too: they go through the same arithmetic as the
+  // others, and a copy of a sound particle raises no alarm. What becomes of them is never read.
+  const int lanes = lane == 0 ? block_lanes : 1;
+  for (int c = 0; c < pool.layout().columns(); ++c) {
+    for (int i = 0; i < lanes; ++i) block[block_lanes * c + static_cast<int>(lane) + i] = columns[c];
+  }
+  return cohort.count++;
+}
+
+void extract(const BlockPool& pool, const Cohort& cohort, std::uint32_t index, double* columns) {
+  const double* block = pool.block(cohort.blocks[index / block_lanes]);
+  const int lane = static_cast<int>(index % block_lanes);
+  for (int c = 0; c < pool.layout().columns(); ++c) columns[c] = block[block_lanes * c + lane];
+}
+
+void remove_swapping(BlockPool& pool, Cohort& cohort, std::uint32_t index) {
+  const std::uint32_t last = cohort.count - 1;
+  double* to = pool.block(cohort.blocks[index / block_lanes]) + index % block_lanes;
+  double* from = pool.block(cohort.blocks[last / block_lanes]) + last % block_lanes;
+  for (int c = 0; c < pool.layout().columns(); ++c) {
+    to[block_lanes * c] = from[block_lanes * c];
+  }
+  cohort.count = last;
+  if (last % block_lanes == 0) {
+    pool.release(cohort.blocks.back());
+    cohort.blocks.pop_back();
+  }
+}
+
+}  // namespace mpm::core

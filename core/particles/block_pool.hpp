@@ -1,0 +1,64 @@
+// Memory for the particles of one body: blocks of eight particles, each block its body's columns one after
+// the other. Blocks are numbered with 32 bits, keep their address for life, and are reused when given back.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/particles/columns.hpp"
+
+namespace mpm::core {
+
+using BlockIndex = std::uint32_t;
+
+class BlockPool {
+ public:
+  explicit BlockPool(const ColumnLayout& layout);
+
+  const ColumnLayout& layout() const { return layout_; }
+
+  double* block(BlockIndex i) { return slabs_[i / slab_blocks].get() + slab_offset(i); }
+  const double* block(BlockIndex i) const { return slabs_[i / slab_blocks].get() + slab_offset(i); }
+
+  /// Safe to call from several threads; contents are zero.
+  BlockIndex allocate();
+  void release(BlockIndex i);
+
+  std::size_t bytes_reserved() const;
+  std::size_t blocks_in_use() const { return next_ - free_.size(); }
+
+ private:
+  static constexpr BlockIndex slab_blocks = 1024;
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
+  std::size_t slab_offset(BlockIndex i) const {
+    return static_cast<std::size_t>(i % slab_blocks) * static_cast<std::size_t>(layout_.block_doubles());
+  }
+
+  ColumnLayout layout_;
+  // Reserved up front, so that block() may run while another thread allocates.
+  std::vector<std::unique_ptr<double[], Free>> slabs_;
+  std::vector<BlockIndex> free_;
+  BlockIndex next_ = 0;
+  std::mutex mutex_;
+};
+
+/// The particles of one body in one brick: all blocks full but the last.
+struct Cohort {
+  int body = 0;
+  std::uint32_t count = 0;
+  std::vector<BlockIndex> blocks;
+};
+
+/// Append one particle, whose columns are given one after the other. Returns its index in the cohort.
+std::uint32_t append(BlockPool& pool, Cohort& cohort, const double* columns);
+/// Copy the columns of particle `index` to `columns`.
+void extract(const BlockPool& pool, const Cohort& cohort, std::uint32_t index, double* columns);
+/// Overwrite particle `index` with the last one and drop the last; a function of the cohort's order alone.
+void remove_swapping(BlockPool& pool, Cohort& cohort, std::uint32_t index);
+
+}  // namespace mpm::core

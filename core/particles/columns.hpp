@@ -1,0 +1,119 @@
+// The columns that a particle may carry. A scene's body carries those that somebody asks for, and no others.
+//
+// To add one: a name here and a row in `column_table`. Nothing else in the code counts columns.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <initializer_list>
+#include <string_view>
+
+#include "core/simd/lanes.hpp"
+
+namespace mpm::core {
+
+enum class Column : int {
+  position_x, position_y, position_z,
+  velocity_x, velocity_y, velocity_z,
+  mass, volume,
+  // Cauchy stress = s - (p + q) I, in the global frame.
+  s_xx, s_yy, s_zz, s_xy, s_yz, s_xz,
+  pressure, viscous_pressure,
+  internal_energy,
+  identity,
+  // What follows exists only where a law, a scheme or an output asks for it.
+  effective_plastic_strain, yield_stress, damage, temperature, failed, threshold_factor,
+  porosity, max_compression, burn_fraction, lighting_time, plastic_volumetric_strain,
+  strain_xx, strain_yy, strain_zz, strain_xy, strain_yz, strain_xz,
+  f_xx, f_xy, f_xz, f_yx, f_yy, f_yz, f_zx, f_zy, f_zz,
+  sound_speed,
+  history_0, history_1, history_2, history_3, history_4, history_5, history_6, history_7,
+  count
+};
+
+inline constexpr int column_count = static_cast<int>(Column::count);
+
+struct ColumnInfo {
+  std::string_view name;
+  std::string_view dimension;  ///< in the words of ParameterInfo: "length", "stress", "1", ...
+};
+
+/// Indexed by Column.
+inline constexpr std::array<ColumnInfo, column_count> column_table{{
+    {"position_x", "length"}, {"position_y", "length"}, {"position_z", "length"},
+    {"velocity_x", "velocity"}, {"velocity_y", "velocity"}, {"velocity_z", "velocity"},
+    {"mass", "mass"}, {"volume", "volume"},
+    {"s_xx", "stress"}, {"s_yy", "stress"}, {"s_zz", "stress"},
+    {"s_xy", "stress"}, {"s_yz", "stress"}, {"s_xz", "stress"},
+    {"pressure", "stress"}, {"viscous_pressure", "stress"},
+    {"internal_energy", "stress"},  // E of the manual: per unit initial volume
+    {"identity", "1"},
+    {"effective_plastic_strain", "1"}, {"yield_stress", "stress"}, {"damage", "1"},
+    {"temperature", "temperature"}, {"failed", "1"}, {"threshold_factor", "1"},
+    {"porosity", "1"}, {"max_compression", "1"}, {"burn_fraction", "1"}, {"lighting_time", "time"},
+    {"plastic_volumetric_strain", "1"},
+    {"strain_xx", "1"}, {"strain_yy", "1"}, {"strain_zz", "1"},
+    {"strain_xy", "1"}, {"strain_yz", "1"}, {"strain_xz", "1"},
+    {"f_xx", "1"}, {"f_xy", "1"}, {"f_xz", "1"}, {"f_yx", "1"}, {"f_yy", "1"}, {"f_yz", "1"},
+    {"f_zx", "1"}, {"f_zy", "1"}, {"f_zz", "1"},
+    {"sound_speed", "velocity"},
+    {"history_0", "1"}, {"history_1", "1"}, {"history_2", "1"}, {"history_3", "1"},
+    {"history_4", "1"}, {"history_5", "1"}, {"history_6", "1"}, {"history_7", "1"},
+}};
+
+constexpr std::string_view name_of(Column c) { return column_table[static_cast<std::size_t>(c)].name; }
+constexpr Column next(Column c, int n) { return static_cast<Column>(static_cast<int>(c) + n); }
+
+class ColumnSet {
+ public:
+  ColumnSet() = default;
+  ColumnSet(std::initializer_list<Column> columns) {
+    for (Column c : columns) add(c);
+  }
+  void add(Column c) { bits_.set(static_cast<std::size_t>(c)); }
+  void add(const ColumnSet& other) { bits_ |= other.bits_; }
+  /// `n` columns from `first` on, for the components of a vector or tensor.
+  void add_range(Column first, int n) {
+    for (int i = 0; i < n; ++i) add(next(first, i));
+  }
+  bool has(Column c) const { return bits_.test(static_cast<std::size_t>(c)); }
+  int size() const { return static_cast<int>(bits_.count()); }
+  bool operator==(const ColumnSet&) const = default;
+
+  /// Position to identity: what every particle carries.
+  static ColumnSet mechanics() {
+    ColumnSet set;
+    set.add_range(Column::position_x, static_cast<int>(Column::identity) + 1);
+    return set;
+  }
+
+ private:
+  std::bitset<column_count> bits_;
+};
+
+/// Where each column of a set lies within a block: offset in doubles, or absent.
+class ColumnLayout {
+ public:
+  ColumnLayout() : ColumnLayout(ColumnSet::mechanics()) {}
+  explicit ColumnLayout(const ColumnSet& set) : set_(set) {
+    int n = 0;
+    for (int c = 0; c < column_count; ++c) {
+      offset_[static_cast<std::size_t>(c)] = set.has(static_cast<Column>(c)) ? block_lanes * n++ : -1;
+    }
+    columns_ = n;
+  }
+  /// Doubles from the start of a block to the column's eight values; -1 if absent.
+  int offset(Column c) const { return offset_[static_cast<std::size_t>(c)]; }
+  bool has(Column c) const { return offset(c) >= 0; }
+  int columns() const { return columns_; }
+  int block_doubles() const { return block_lanes * columns_; }
+  int bytes_per_particle() const { return static_cast<int>(sizeof(double)) * columns_; }
+  const ColumnSet& set() const { return set_; }
+
+ private:
+  ColumnSet set_;
+  std::array<int, column_count> offset_{};
+  int columns_ = 0;
+};
+
+}  // namespace mpm::core

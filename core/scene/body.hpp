@@ -1,0 +1,95 @@
+#pragma once
+// Bodies, the components that group them, and what is prescribed for them.
+
+#include "core/scene/errors.hpp"
+#include "core/scene/geometry.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mpm::core {
+
+/// Local axes: a point r of a body lies at origin + r_x x_axis + r_y y_axis + r_z z_axis in the global frame.
+/// The axes are orthonormal and right-handed whatever lengths the input gave.
+struct WorkPlane {
+  std::string name;
+  std::array<double, 3> origin{};
+  std::array<double, 3> x_axis{1, 0, 0};
+  std::array<double, 3> y_axis{0, 1, 0};
+  std::array<double, 3> z_axis{0, 0, 1};
+  SourceLocation source;
+};
+
+/// Body force per mass over time: amplitude times factor, linear between the points, zero after the last.
+struct PrescribedAcceleration {
+  struct Point {
+    double time = 0;
+    std::array<double, 3> linear_factor{};
+    std::array<double, 3> angular_factor{};
+  };
+  std::array<double, 3> linear_amplitude{};   ///< length/time^2
+  std::array<double, 3> angular_amplitude{};  ///< 1/time^2, rigid bodies only
+  std::vector<Point> points;                  ///< times strictly increasing
+};
+
+/// Body force per mass A sin(omega t + theta) per axis, until the axis' end time.
+struct HarmonicExcitation {
+  std::array<double, 3> amplitude{};          ///< length/time^2
+  std::array<double, 3> angular_frequency{};  ///< 1/time
+  std::array<double, 3> phase{};              ///< radian
+  std::array<double, 3> end_time{};
+};
+
+/// Fixes the finite element nodes between two planes.
+struct FixedLayer {
+  int direction = 0;  ///< 0, 1, 2: the axis that is fixed; 3: all
+  int normal = 0;     ///< axis normal to the planes
+  double min = 0;
+  double max = 0;
+};
+
+struct BodyInput {
+  std::string name;
+  std::size_t material = 0;  ///< index into Scene::materials
+  std::string type;          ///< the input's word; `geometry` holds the same in its alternative
+  Geometry geometry;
+  double density = 0;                     ///< initial density; the material's reference density unless given
+  std::optional<std::size_t> work_plane;  ///< index into Scene::work_planes; the global frame without
+  bool deactivated = false;               ///< takes no part in the run and is not written
+  bool for_bool = false;                  ///< operand of a Bool body; removed once that is made
+  bool no_output = false;                 ///< takes part, but is not written
+  std::array<double, 3> initial_velocity{};
+  std::optional<std::array<double, 3>> prescribed_velocity;
+  std::optional<PrescribedAcceleration> prescribed_acceleration;
+  std::optional<HarmonicExcitation> harmonic_excitation;
+  bool constrain_rigid_position = false;
+  std::optional<double> adaptive_split;    ///< splits when longer than this fraction of a cell
+  std::optional<double> fragment_spacing;  ///< particle spacing for the count of fragments
+  std::vector<FixedLayer> fixed_layers;
+  SourceLocation source;
+};
+
+struct ComponentInput {
+  std::string name;
+  double normal_weight = 0;  ///< weight of this component's normal in contact
+  std::vector<BodyInput> bodies;
+  SourceLocation source;
+};
+
+/// A point or a rectangle from which explosives are lit.
+struct DetonationItem {
+  enum class Kind { point, plane };
+  Kind kind = Kind::point;
+  double time = 0;
+  std::array<double, 3> position{};  ///< Kind::point
+  int normal = 0;                    ///< Kind::plane: axis normal to the rectangle
+  double location = 0;               ///< coordinate along the normal
+  std::array<double, 2> lower{};     ///< left, bottom: the other two axes in ascending order
+  std::array<double, 2> upper{};     ///< right, top
+  SourceLocation source;
+};
+
+}  // namespace mpm::core

@@ -1,0 +1,45 @@
+#pragma once
+// Errors of the user's input: each names file, line, element, attribute and value, says what was expected,
+// and all of a file are thrown together. The program that catches InputErrors prints what() and leaves with
+// exit code 2.
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace mpm::core {
+
+/// Where in the user's files a thing was declared; line counts from 1, 0 when the whole file is meant.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+};
+
+/// One complaint about the input. Element, attribute and value may be empty when the complaint is about more.
+struct Diagnostic {
+  std::string file;
+  int line = 0;
+  std::string element;
+  std::string attribute;
+  std::string value;
+  std::string message;  ///< what was expected, and the remedy
+};
+
+/// `file:line: <Element attribute="value">: message`
+std::string to_text(const Diagnostic& diagnostic);
+
+/// Every complaint about an input, sorted by file and line. what() is the full text, one complaint per line.
+class InputErrors : public std::runtime_error {
+public:
+  explicit InputErrors(std::vector<Diagnostic> diagnostics);
+  /// A single complaint about something declared at `where` (for checks made after the file was read).
+  InputErrors(const SourceLocation& where, std::string element, std::string message);
+
+  const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
+
+private:
+  std::vector<Diagnostic> diagnostics_;
+};
+
+}  // namespace mpm::core

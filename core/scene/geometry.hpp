@@ -1,0 +1,152 @@
+#pragma once
+// The shapes that a body is made of, each in its own work plane's axes. Lengths in the user's unit, angles in
+// degrees.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace mpm::core {
+
+/// How particles are laid out in a round shape.
+enum class Layout { orthogonal = 0, polar = 1 };  // polar: spherical shells, or rings
+
+struct PointMass {
+  double mass = 0;  ///< > 0
+  std::array<double, 3> position{};
+};
+
+/// Particles given one by one: inline, or in a text file (lines: mass x y z; may be gzipped).
+struct PointGeometry {
+  std::vector<PointMass> points;
+  std::string file;  ///< resolved against the input's folder; empty when the points are inline
+};
+
+struct BlockGeometry {
+  double spacing = 0;              ///< distance of neighbouring particles, > 0
+  std::array<double, 3> origin{};  ///< corner with the smallest coordinates
+  std::array<double, 3> size{};    ///< > 0
+};
+
+struct SphereGeometry {
+  double spacing = 0;
+  std::array<double, 3> centre{};
+  double outer_radius = 0;
+  double inner_radius = 0;
+  double angle = 360;       ///< sweep about local Z from the xz half plane, (0, 360]
+  bool upper_half = false;  ///< keep only z >= centre (angle 90: the first octant)
+  Layout layout = Layout::orthogonal;
+};
+
+/// Cylinder, cone or frustum along local Z; the spacing grades geometrically from bottom to top.
+struct CylinderGeometry {
+  std::array<double, 3> base_centre{};
+  double bottom_spacing = 0;
+  double top_spacing = 0;
+  double bottom_inner_radius = 0;
+  double bottom_outer_radius = 0;
+  double top_inner_radius = 0;
+  double top_outer_radius = 0;
+  double height = 0;
+  double angle = 360;
+  Layout layout = Layout::orthogonal;
+};
+
+/// Ogive nose along local Z.
+struct OgiveGeometry {
+  std::array<double, 3> base_centre{};
+  double bottom_spacing = 0;
+  double top_spacing = 0;
+  double ogive_radius = 0;
+  double end_radius = 0;
+  double angle = 360;
+  Layout layout = Layout::orthogonal;
+};
+
+/// A minus B. Body numbers count through all components in the order of the input.
+struct BoolGeometry {
+  std::size_t minuend_body = 0;
+  std::size_t subtrahend_body = 0;
+};
+
+/// A mesh given node by node, inline or in a file; N nodes per element: 2 bar, 3 membrane triangle, 8
+/// hexahedron.
+template <std::size_t N>
+struct MeshGeometry {
+  struct Node {
+    std::int64_t id = 0;  ///< from 1
+    std::array<double, 3> position{};
+  };
+  struct Element {
+    std::int64_t id = 0;  ///< from 1
+    std::array<std::int64_t, N> nodes{};
+    double sectional_area = 0;  ///< bars only
+  };
+  std::vector<Node> nodes;
+  std::vector<Element> elements;
+  std::int64_t file_nodes = 0;
+  std::int64_t file_elements = 0;
+  std::string file;
+  double thickness = 0;  ///< membranes only
+};
+using BarMeshGeometry = MeshGeometry<2>;
+using MembraneMeshGeometry = MeshGeometry<3>;
+using HexahedronMeshGeometry = MeshGeometry<8>;
+
+/// Parallel straight bars.
+struct BarLinesGeometry {
+  double sectional_area = 0;
+  double element_size = 0;
+  std::int64_t lines = 0;
+  int extend_direction = 0;  ///< axis along which each bar runs
+  int expand_direction = 0;  ///< axis along which the bars are repeated
+  double length = 0;
+  std::array<double, 3> origin{};
+  double interval = 0;  ///< distance of neighbouring bars
+};
+
+/// A lattice of bars, copied in two directions.
+struct BarNetGeometry {
+  double sectional_area = 0;
+  std::array<double, 3> origin{};
+  std::array<double, 3> element_size{};  ///< z: 0 leaves the layers unconnected
+  std::array<std::int64_t, 3> lines{};   ///< lines along x, lines along y, layers in z
+  std::array<double, 3> interval{};
+  int line_direction = 0;
+  int column_direction = 1;
+  std::int64_t column_copies = 0;
+  double column_interval = 0;
+  std::int64_t line_copies = 0;
+  double line_interval = 0;
+};
+
+/// A flat membrane in the local xy plane.
+struct MembraneRectangleGeometry {
+  double thickness = 0;
+  double element_size = 0;
+  std::array<double, 3> origin{};
+  std::array<double, 2> size{};
+};
+
+/// A cylinder wall along local Z.
+struct MembraneCylinderGeometry {
+  double thickness = 0;
+  double element_size = 0;
+  std::array<double, 3> base_centre{};
+  double radius = 0;
+  double height = 0;
+  double angle = 360;
+};
+
+/// A block of hexahedral finite elements; its spacing is the element size.
+struct HexahedronBlockGeometry : BlockGeometry {};
+
+using Geometry = std::variant<PointGeometry, BlockGeometry, SphereGeometry, CylinderGeometry, OgiveGeometry,
+                              BoolGeometry, BarMeshGeometry, BarLinesGeometry, BarNetGeometry,
+                              MembraneMeshGeometry, MembraneRectangleGeometry, MembraneCylinderGeometry,
+                              HexahedronMeshGeometry, HexahedronBlockGeometry>;
+
+}  // namespace mpm::core

@@ -1,0 +1,77 @@
+#pragma once
+// The background grid as the input states it.
+
+#include "core/scene/errors.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace mpm::core {
+
+/// What a face of the grid does to the nodes on it. Values are the input's.
+enum class Boundary {
+  free = 0,
+  fixed = 1,
+  symmetry = 2,  ///< no velocity along the normal
+  nonreflecting = 3,
+  rigid_wall = 4,  ///< no penetration, free to leave
+};
+
+enum class ShapeFunction {
+  linear,
+  uniform_gimp,
+  contiguous_particle_gimp,
+  cpdi,
+  cpdi2,
+  quadratic_bspline,
+  cubic_bspline,
+  ddmp,
+};
+
+/// A stretch of cells along one axis of a nonuniform grid, from the previous one's end.
+struct GridSegment {
+  double end = 0;         ///< coordinate
+  std::size_t cells = 0;  ///< > 0
+  double ratio = 1;       ///< last cell's length over the first one's
+};
+
+/// One axis of the grid; [min, max] are the physical walls, whatever the shape function needs beyond them.
+struct GridAxis {
+  double min = 0;
+  double max = 0;
+  Boundary lower = Boundary::free;
+  Boundary upper = Boundary::free;
+  double cell_size = 0;
+  /// Cells along the axis. Where (max - min)/cell_size is not whole, the last cell reaches beyond max.
+  std::size_t cells = 0;
+  std::vector<GridSegment> segments;  ///< nonuniform grids only; empty: uniform
+};
+
+/// The grid follows the particles with a constant number of cells.
+struct MovingGridInput {
+  bool enable = false;
+  bool consider_failed_particles = false;
+  double time_step_factor = 0.8;
+  std::array<double, 3> min{};  ///< -infinity where not bounded
+  std::array<double, 3> max{};  ///< +infinity where not bounded
+};
+
+/// Storage only of cells with particles. Always so here; the settings are kept for the record.
+struct DynamicCellInput {
+  bool enable = false;
+  int clear_steps = 10;
+};
+
+struct GridInput {
+  /// Nodes lighter than mass_cutoff * mean reference density * cell volume are left out.
+  double mass_cutoff = 2.220446049250313e-16;
+  ShapeFunction shape = ShapeFunction::linear;
+  bool nonuniform = false;
+  std::array<GridAxis, 3> axes{};
+  MovingGridInput moving;
+  DynamicCellInput dynamic_cell;
+  SourceLocation source;
+};
+
+}  // namespace mpm::core

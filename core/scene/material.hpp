@@ -1,0 +1,69 @@
+#pragma once
+// Materials as the input states them: the names and values of each law's parameters, checked, defaults filled
+// in. Units are the user's own and consistent throughout.
+
+#include "core/scene/errors.hpp"
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mpm::core {
+
+/// Values by the attribute's spelling in the input. Holds every attribute that was given or has a default.
+using ParameterValues = std::map<std::string, double, std::less<>>;
+
+/// A strength model, equation of state or failure model: its type and its parameters.
+struct LawInput {
+  std::string type;  ///< the word of the input: "JohnsonCook", "Gruneisen", "PlaStrain" ...
+  ParameterValues values;
+  SourceLocation source;
+
+  bool has(std::string_view name) const { return values.find(name) != values.end(); }
+  /// The value, which must be there: reading the input made sure of required ones and of defaults.
+  double at(std::string_view name) const;
+  double value_or(std::string_view name, double otherwise) const;
+};
+
+struct FailureInput : LawInput {
+  bool erosion = false;  ///< failed particles are deleted
+};
+
+/// Scatter of the failure thresholds over particles or cells.
+struct RandomFailureInput {
+  enum class Spread { particle = 1, cell = 2 };
+  enum class Distribution { constant = 0, gauss = 1, weibull = 2 };
+
+  bool enable = false;
+  Spread spread = Spread::particle;
+  Distribution distribution = Distribution::constant;
+  double gauss_mean = 1;
+  double gauss_deviation = 0.2;
+  double weibull_median = 1.2549;
+  double weibull_modulus = 20.270;
+  double weibull_reference_volume = 1;
+  double weibull_particle_volume = 1000;
+  bool random_damage = false;  ///< the damage threshold scatters too
+};
+
+struct MaterialInput {
+  std::string name;
+  double reference_density = 0;  ///< mass/length^3, > 0
+  LawInput strength;
+  std::optional<LawInput> eos;
+  std::vector<FailureInput> failures;  ///< at most ten; `none` leaves no entry
+  RandomFailureInput random_failure;
+  SourceLocation source;
+};
+
+/// Coulomb friction between two materials; indices into Scene::materials.
+struct FrictionPair {
+  std::size_t first_material = 0;
+  std::size_t second_material = 0;
+  double coefficient = 0;  ///< >= 0
+};
+
+}  // namespace mpm::core

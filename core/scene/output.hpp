@@ -1,0 +1,64 @@
+#pragma once
+// What the run writes, as the input states it.
+
+#include "core/scene/errors.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mpm::core {
+
+struct ConsoleInput {
+  double print_time = 0;  ///< interval; end time / 100 unless given
+  bool print_momentum = false;
+};
+
+struct PostProcessingInput {
+  enum class Vtk { none = 0, one_file = 1, file_per_body = 2 };
+  enum class GridData { none = 0, positions = 1, mapped = 2 };
+
+  double time_interval = 0;  ///< > 0
+  bool h5part = false;
+  Vtk vtk = Vtk::none;
+  bool tecplot = false;
+  bool cell_result = false;
+  GridData grid_data = GridData::none;
+  bool fragments = false;
+  std::optional<double> fragments_time_interval;  ///< time_interval unless given
+  std::vector<std::string> variables;  ///< the words of keywords.md, each once, in the input's order
+};
+
+/// Histories of variables at the particle nearest to a point, or at a point in space.
+struct TimeHistoryInput {
+  std::vector<std::string> variables;
+  std::vector<std::array<double, 3>> particles;
+  std::vector<std::array<double, 3>> points;
+  SourceLocation source;
+};
+
+/// A line along one axis; (first, second) are the coordinates on the other two axes in ascending order.
+struct LineInput {
+  int normal = 0;
+  double first = 0;
+  double second = 0;
+};
+
+struct StatisticsInput {
+  bool memory = false;
+  bool cell_occupancy = false;
+};
+
+struct OutputInput {
+  ConsoleInput console;
+  std::optional<PostProcessingInput> post_processing;
+  std::vector<TimeHistoryInput> histories;
+  std::optional<LineInput> grid_line;
+  std::optional<LineInput> fem_profile;
+  std::optional<double> restart_interval;  ///< time, > 0
+  StatisticsInput statistics;
+  bool summary = true;
+};
+
+}  // namespace mpm::core

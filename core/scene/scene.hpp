@@ -1,0 +1,66 @@
+#pragma once
+// The scene: everything that an input file states, checked and with every default filled in, as plain
+// structs. It holds no particles and no file format; `io` makes it, `core` discretises it. Units are the
+// user's own and consistent; vectors are in the global frame unless a work plane says otherwise.
+
+#include "core/scene/body.hpp"
+#include "core/scene/errors.hpp"
+#include "core/scene/geometry.hpp"
+#include "core/scene/grid.hpp"
+#include "core/scene/material.hpp"
+#include "core/scene/output.hpp"
+#include "core/scene/solution.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mpm::core {
+
+/// What the user wrote about the case; carried into every output.
+struct HeaderInput {
+  std::string name;
+  std::string heading;
+  std::string description;
+  std::string time_unit;
+  std::string length_unit;
+  std::string mass_unit;
+};
+
+/// Which bytes the scene was made from.
+struct Provenance {
+  std::string path;      ///< as given by the user
+  std::string job_name;  ///< the file's name without folder and `.xmp`
+  std::string hash;      ///< 16 hexadecimal digits: FNV-1a, 64 bit, of the file's bytes
+};
+
+enum class PartitionMethod { automatic, uniform, metis };
+
+struct DecompositionInput {
+  std::optional<std::array<int, 3>> dimensions;  ///< their product must equal the number of ranks
+  /// `uniform` when dimensions are given and no method is; `automatic` when neither is.
+  PartitionMethod method = PartitionMethod::automatic;
+  std::optional<int> rebalance_interval;  ///< steps; automatic without
+  double imbalance_tolerance = 1.05;      ///< > 1
+  SourceLocation source;
+};
+
+struct Scene {
+  HeaderInput header;
+  std::vector<MaterialInput> materials;
+  std::vector<FrictionPair> frictions;
+  std::vector<WorkPlane> work_planes;
+  std::vector<ComponentInput> components;
+  std::vector<DetonationItem> detonations;
+  GridInput grid;
+  ContactInput contact;
+  SolutionInput solution;
+  OutputInput output;
+  DecompositionInput decomposition;
+  Provenance provenance;
+};
+
+}  // namespace mpm::core

@@ -1,0 +1,124 @@
+#pragma once
+// How the equations are integrated, as the input states it.
+
+#include "core/scene/body.hpp"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace mpm::core {
+
+/// When the stress is updated: first, last, or last with the nodal velocity mapped anew from the particles.
+enum class Scheme { usf, usl, musl };
+
+enum class Integration { explicit_dynamics, implicit };
+
+enum class Transfer { flip, pic, apic, tpic, xpic };
+
+struct TimeStepInput {
+  double factor = 0.9;            ///< of the critical step, (0, 1]
+  bool constant = false;          ///< keep the first critical step
+  double specified = 0;           ///< time; 0: not specified
+  bool ignore_viscosity = false;  ///< the artificial viscosity does not shorten the critical step
+};
+
+/// Manual, 3.10.5.
+enum class VolumeUpdate {
+  rate = 0,                  ///< V (1 + d eps)
+  cell = 1,                  ///< as the particle's cell
+  exponential = 2,           ///< V exp(d eps)
+  deformation_gradient = 3,  ///< V det(dF)
+  accumulated_strain = 4,    ///< V0 (1 + e11)(1 + e22)(1 + e33)
+};
+
+struct VolumeInput {
+  VolumeUpdate update = VolumeUpdate::rate;
+  std::optional<double> erode;  ///< particles with less volume are deleted; volume
+  std::optional<double> min;    ///< lower bound of volume over initial volume
+  std::optional<double> max;    ///< upper bound of volume over initial volume
+};
+
+/// What is watched, and what happens then.
+struct WarnInput {
+  enum class Level {
+    per_step = 0,      ///< one warning per step
+    per_particle = 1,  ///< one warning when a particle first does it
+    stop = 2,
+  };
+  bool negative_internal_energy = false;
+  bool negative_volume = false;
+  bool outside_grid = false;
+  Level level = Level::per_step;
+};
+
+/// Read when the integration is implicit.
+struct ImplicitInput {
+  bool quasistatic = false;
+  double newmark_beta = 0.25;
+  double newmark_gamma = 0.5;
+  std::optional<double> time_step;
+  std::optional<double> min_step;
+  std::optional<double> max_step;
+  double relative_tolerance = 1e-6;
+  std::optional<double> absolute_tolerance;
+  int max_newton = 20;
+  bool matrix_free = false;
+};
+
+struct FemInput {
+  struct RigidWall {
+    int axis = 0;
+    bool positive_normal = true;
+    double coordinate = 0;
+  };
+  struct Hourglass {
+    int method = 1;  ///< 1 standard, 2 Flanagan-Belytschko
+    double coefficient = 0;
+  };
+  bool couple_with_particles = false;
+  bool contact = false;
+  std::vector<RigidWall> rigid_walls;
+  std::optional<Hourglass> hourglass;
+  std::vector<FixedLayer> fixed_layers;
+};
+
+struct SolutionInput {
+  Scheme scheme = Scheme::musl;
+  Transfer transfer = Transfer::flip;
+  double flip_fraction = 1;  ///< 1 FLIP ... 0 PIC
+  int xpic_order = 2;
+  Integration integration = Integration::explicit_dynamics;
+  bool near_boundary_stop =
+      false;            ///< write a restart file and leave when a particle nears the grid's bounds
+  double end_time = 0;  ///< > 0
+  TimeStepInput time_step;
+  std::optional<double> limit_velocity;  ///< particles move no faster than this
+  VolumeInput volume;
+  WarnInput warn;
+  std::optional<double> energy_fraction;  ///< stop when the relative error of the total energy exceeds this
+  double damping = 0;                     ///< dynamic relaxation: force per mass and velocity, 1/time
+  std::array<double, 3> gravity{};
+  std::optional<ImplicitInput> implicit;
+  std::optional<FemInput> fem;
+  std::optional<int> threads;  ///< OpenMP threads per rank
+  SourceLocation source;
+};
+
+/// Contact between components.
+struct ContactInput {
+  enum class Distance { shared_node = 0, nearest_particles = 1, surfaces = 2 };
+  enum class Method { pan = 0, bardenhagen = 1, improved_bardenhagen = 2 };
+
+  bool enable = false;
+  bool failed_to_component = false;  ///< failed particles form a component of their own
+  bool automatic_weights = false;    ///< weight of normals from the stiffness
+  bool ignore_failed_normals = false;
+  Distance distance = Distance::shared_node;
+  double min_distance = 0;  ///< in cells
+  bool limits_time_step = false;
+  Method method = Method::pan;
+  bool record_force = false;
+};
+
+}  // namespace mpm::core

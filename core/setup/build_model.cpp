@@ -1,0 +1,331 @@
+#include "core/setup/build_model.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+
+#include "core/discretise/seeds.hpp"
+#include "core/step/migration.hpp"
+#include "core/step/passes.hpp"
+#include "core/step/stepper.hpp"
+
+namespace mpm::core {
+
+namespace {
+
+constexpr std::int64_t most_cells = std::int64_t{brick_cells} << 20;  // brick coordinates have 21 bits, one of them spare
+constexpr std::uint64_t units_in_run = 64;                            // of a body, that one rank makes in one go
+constexpr std::size_t seeds_in_piece = 1 << 16;                       // seeds that a rank makes between two sends
+constexpr double exact_integers = 9007199254740992.0;                  // identities are kept in doubles, 2^53
+
+/// The bodies of the scene that take part, in the order of the input.
+template <class F>
+void for_each_body(const Scene& scene, F f) {
+  for (std::size_t c = 0; c < scene.components.size(); ++c) {
+    for (const BodyInput& body : scene.components[c].bodies) {
+      if (!body.deactivated && !body.for_bool) f(static_cast<int>(c), body);
+    }
+  }
+}
+
+std::vector<const BodyInput*> inputs_of(const Scene& scene) {
+  std::vector<const BodyInput*> inputs;
+  for_each_body(scene, [&](int, const BodyInput& b) { inputs.push_back(&b); });
+  return inputs;
+}
+
+/// This rank's share of a body's units, in pieces: f(seeds). Every ranks-th run of units is ours.
+template <class F>
+void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
+  const std::uint64_t units = source.units();
+  const auto stride = units_in_run * static_cast<std::uint64_t>(ranks);
+  std::vector<Seed> seeds;
+  for (std::uint64_t first = units_in_run * static_cast<std::uint64_t>(rank); first < units; first += stride) {
+    source.generate(first, std::min(first + units_in_run, units), seeds);
+    if (seeds.size() >= seeds_in_piece || first + stride >= units) {
+      f(seeds);
+      seeds.clear();
+    }
+  }
+}
+
+void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
+                  double identity, std::vector<double>& columns) {
+  columns.assign(static_cast<std::size_t>(layout.columns()), 0.0);
+  const auto set = [&](Column c, double v) { columns[static_cast<std::size_t>(layout.offset(c) / block_lanes)] = v; };
+  for (int a = 0; a < 3; ++a) {
+    set(next(Column::position_x, a), seed.position[static_cast<std::size_t>(a)]);
+    const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a] : input.initial_velocity[static_cast<std::size_t>(a)];
+    set(next(Column::velocity_x, a), v);
+  }
+  set(Column::mass, seed.mass);
+  set(Column::volume, seed.volume);
+  set(Column::identity, identity);
+}
+
+/// Counts per brick, and the first seed outside the grid in words.
+struct Census {
+  std::map<BrickKey, std::int64_t> bricks;
+  std::int64_t outside = 0;
+  std::string first_outside;
+};
+
+Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSource>>& sources,
+                   const std::vector<const BodyInput*>& inputs, const Exchange& exchange) {
+  Census census;
+  const GridGeometry& geometry = model.grid->geometry();
+  for (std::size_t b = 0; b < sources.size(); ++b) {
+    for_each_piece(*sources[b], exchange.rank(), exchange.size(), [&](const std::vector<Seed>& seeds) {
+      for (const Seed& s : seeds) {
+        const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
+        if (geometry.contains(x)) {
+          ++census.bricks[key_of(geometry.brick_at(x))];
+          continue;
+        }
+        ++census.outside;
+        if (census.first_outside.empty()) {
+          census.first_outside = fmt::format("{}:{}: <Body name=\"{}\">: a particle at ({:.6g}, {:.6g}, {:.6g})",
+                                             inputs[b]->source.file, inputs[b]->source.line, inputs[b]->name, x.x, x.y, x.z);
+        }
+      }
+    });
+  }
+  return census;
+}
+
+void refuse_outside(const Model& model, const Census& census, Exchange& exchange) {
+  std::int64_t outside[1] = {census.outside};
+  exchange.sum(std::span<std::int64_t>(outside));
+  if (outside[0] == 0) return;
+  const GridGeometry& g = model.grid->geometry();
+  std::string first;
+  for (const std::string& line : exchange.gather(census.first_outside)) {
+    if (first.empty()) first = line;
+  }
+  throw InputErrors(model.scene->grid.source, "Grid",
+                    fmt::format("{} particles lie outside the grid [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]; "
+                                "enlarge the grid or move the body. The first: {}",
+                                outside[0], g.origin.x, g.origin.x + double(g.cells[0]) * g.cell.x, g.origin.y,
+                                g.origin.y + double(g.cells[1]) * g.cell.y, g.origin.z,
+                                g.origin.z + double(g.cells[2]) * g.cell.z, first));
+}
+
+void refuse_too_large(const Model& model, const ModelPlan& plan, double identities, Exchange& exchange) {
+  if (identities >= exact_integers) {
+    throw InputErrors(model.scene->components.front().source, "Component",
+                      fmt::format("the bodies ask for about {:.3g} particles, more than can be told apart (2^53); "
+                                  "use a larger dp", plan.particles));
+  }
+  // State, and half as much again for nodes and what is on its way.
+  const double needed = 1.5 * plan.state_bytes / exchange.size();
+  double shortest[1] = {available_memory() / std::max(1.0, exchange.spread(1).mean * exchange.size())};
+  exchange.minimum(shortest);
+  if (needed > shortest[0]) {
+    throw InputErrors(model.scene->components.front().source, "Component",
+                      fmt::format("about {:.3g} particles need {:.3g} GiB per rank, but only {:.3g} GiB are free; "
+                                  "use a larger dp or more machines",
+                                  plan.particles, needed / 1073741824.0, shortest[0] / 1073741824.0));
+  }
+}
+
+void deal_out(Model& model, const std::vector<std::unique_ptr<SeedSource>>& sources,
+              const std::vector<const BodyInput*>& inputs, Exchange& exchange) {
+  std::vector<int> columns_of;
+  for (const Body& b : model.bodies) columns_of.push_back(b.pool->layout().columns());
+  double base = 0;
+  for (std::size_t b = 0; b < sources.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const ColumnLayout& layout = body.pool->layout();
+    Travellers travellers;
+    std::vector<double> columns;
+    const auto send = [&] {
+      exchange.scatter(*model.grid, travellers, columns_of);
+      insert_travellers(model, travellers);
+      travellers.clear();
+    };
+    for_each_piece(*sources[b], exchange.rank(), exchange.size(), [&](const std::vector<Seed>& seeds) {
+      for (const Seed& s : seeds) {
+        fill_columns(layout, body, *inputs[b], s, base + static_cast<double>(s.identity), columns);
+        const BrickCoord to = model.grid->geometry().brick_at({s.position[0], s.position[1], s.position[2]});
+        travellers.add(to, static_cast<int>(b), columns.data(), layout.columns());
+      }
+      exchange.any(true);
+      send();
+    });
+    // The others may have more pieces than we: keep receiving until all are through.
+    while (exchange.any(false)) send();
+    base += static_cast<double>(sources[b]->identities());
+  }
+  model.next_identity = static_cast<std::uint64_t>(base);
+}
+
+/// Cohorts in the order of cells and, within a cell, of identities, however they arrived.
+void settle(Model& model) {
+  BrickGrid& grid = *model.grid;
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int s = 0; s < grid.owned(); ++s) {
+    Brick& brick = grid.brick(static_cast<Slot>(s));
+    for (Cohort& cohort : brick.cohorts) {
+      BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+      sort_by_identity(pool, cohort);
+      sort_by_cell(grid, brick.coord, pool, cohort);
+    }
+  }
+}
+
+/// f(batch) for every batch of this rank's particles, with positions, masses and volumes in place.
+template <class F>
+void for_each_batch(Model& model, F f) {
+  BrickGrid& grid = *model.grid;
+  for (int s = 0; s < grid.owned(); ++s) {
+    for (const Cohort& cohort : grid.brick(static_cast<Slot>(s)).cohorts) {
+      Body& body = model.bodies[static_cast<std::size_t>(cohort.body)];
+      for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
+        Batch batch{};
+        batch.layout = &body.pool->layout();
+        batch.cell_size = grid.geometry().smallest_cell();
+        batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
+        batch.particles = static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+        for (int b = 0; b < batch.blocks; ++b) batch.block[b] = body.pool->block(cohort.blocks[first + static_cast<std::size_t>(b)]);
+        f(body, batch);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+GridGeometry geometry_of(const Scene& scene) {
+  GridGeometry g;
+  double density = 0;
+  for (const MaterialInput& m : scene.materials) density += m.reference_density / static_cast<double>(scene.materials.size());
+  for (int a = 0; a < 3; ++a) {
+    const GridAxis& axis = scene.grid.axes[static_cast<std::size_t>(a)];
+    g.origin[a] = axis.min;
+    g.cell[a] = axis.cell_size;
+    g.inverse_cell[a] = 1 / axis.cell_size;
+    g.cells[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(axis.cells);
+    g.boundary[static_cast<std::size_t>(2 * a)] = axis.lower;
+    g.boundary[static_cast<std::size_t>(2 * a + 1)] = axis.upper;
+    if (static_cast<std::int64_t>(axis.cells) > most_cells) {
+      throw InputErrors(scene.grid.source, "Grid",
+                        fmt::format("{} cells along {} are more than the {} that a grid may have; use larger cells",
+                                    axis.cells, "xyz"[a], most_cells));
+    }
+  }
+  g.mass_cutoff = scene.grid.mass_cutoff * density * g.cell_volume();
+  return g;
+}
+
+double available_memory() {
+  std::ifstream info("/proc/meminfo");
+  for (std::string word; info >> word;) {
+    if (word != "MemAvailable:") continue;
+    double kib = 0;
+    info >> kib;
+    return 1024 * kib;
+  }
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+Model prepare_model(std::shared_ptr<const Scene> scene, std::vector<std::unique_ptr<ConstitutiveModel>> materials,
+                    const ColumnSet& output_columns) {
+  Model model;
+  model.scene = scene;
+  model.materials = std::move(materials);
+  const SolutionInput& solution = scene->solution;
+  model.options.volume_update = static_cast<int>(solution.volume.update);
+  model.options.volume_min = solution.volume.min.value_or(0);
+  model.options.volume_max = solution.volume.max.value_or(0);
+  model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
+  model.options.keep_strain = solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
+  model.grid = std::make_unique<BrickGrid>(geometry_of(*scene));
+  for_each_body(*scene, [&](int component, const BodyInput& input) {
+    Body body;
+    body.name = input.name;
+    body.component = component;
+    body.material = static_cast<int>(input.material);
+    body.model = model.materials[input.material].get();
+    body.no_output = input.no_output;
+    if (input.prescribed_velocity) {
+      const auto& v = *input.prescribed_velocity;
+      body.prescribed_velocity = Vec3<double>{v[0], v[1], v[2]};
+    }
+    ColumnSet columns = ColumnSet::mechanics();
+    columns.add(body.model->columns(model.options));
+    columns.add(output_columns);
+    body.pool = std::make_unique<BlockPool>(ColumnLayout(columns));
+    model.bodies.push_back(std::move(body));
+  });
+  model.books.body_eroded.resize(model.bodies.size());
+  model.books.body_left.resize(model.bodies.size());
+  return model;
+}
+
+ModelPlan plan_of(const Model& model) {
+  ModelPlan plan;
+  std::size_t b = 0;
+  const int common = ColumnSet::mechanics().size();
+  for_each_body(*model.scene, [&](int, const BodyInput& input) {
+    const ColumnLayout& layout = model.bodies[b++].pool->layout();
+    BodyPlan body;
+    body.name = input.name;
+    body.expected_particles = make_seed_source(*model.scene, input)->expected_particles();
+    body.bytes_per_particle = layout.bytes_per_particle();
+    for (int c = common; c < column_count; ++c) {
+      if (layout.has(static_cast<Column>(c))) body.columns.push_back(name_of(static_cast<Column>(c)));
+    }
+    plan.particles += body.expected_particles;
+    plan.state_bytes += body.expected_particles * body.bytes_per_particle;
+    plan.bodies.push_back(std::move(body));
+  });
+  return plan;
+}
+
+void discretise(Model& model, Exchange& exchange) {
+  const std::vector<const BodyInput*> inputs = inputs_of(*model.scene);
+  std::vector<std::unique_ptr<SeedSource>> sources;
+  double identities = 0;
+  for (const BodyInput* input : inputs) {
+    sources.push_back(make_seed_source(*model.scene, *input));
+    identities += static_cast<double>(sources.back()->identities());
+  }
+  refuse_too_large(model, plan_of(model), identities, exchange);
+  const Census census = take_census(model, sources, inputs, exchange);
+  refuse_outside(model, census, exchange);
+  std::vector<BrickCount> counts;
+  for (const auto& [key, n] : census.bricks) counts.push_back({brick_of_key(key), n});
+  exchange.partition(*model.grid, counts, model.scene->decomposition);
+  deal_out(model, sources, inputs, exchange);
+  settle(model);
+}
+
+void start_clock(Model& model, Exchange& exchange) {
+  double fastest = 0;
+  ExactSum energy;
+  for_each_batch(model, [&](Body& body, Batch& batch) {
+    body.model->initialise(batch, model.options);
+    const ColumnLayout& layout = *batch.layout;
+    for (int i = 0; i < batch.particles; ++i) {
+      const double* lane = batch.block[i / block_lanes] + i % block_lanes;
+      const double* v = lane + layout.offset(Column::velocity_x);
+      const double vv = v[0] * v[0] + v[block_lanes] * v[block_lanes] + v[2 * block_lanes] * v[2 * block_lanes];
+      const double m = lane[layout.offset(Column::mass)];
+      fastest = std::max(fastest, batch.critical_speed[i] + std::sqrt(vv));
+      energy.add(0.5 * m * vv);
+      energy.add(lane[layout.offset(Column::internal_energy)] * m / body.model->reference_density());
+    }
+  });
+  double critical[1] = {critical_step(*model.grid, fastest)};
+  exchange.minimum(critical);
+  exchange.sum(std::span<ExactSum>(&energy, 1));
+  model.initial_energy = energy.value();
+  model.clock.critical_dt = model.clock.first_critical_dt = critical[0];
+}
+
+}  // namespace mpm::core

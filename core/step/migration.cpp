@@ -1,0 +1,216 @@
+#include "core/step/migration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+namespace mpm::core {
+
+namespace {
+
+/// Index of a column among a particle's columns laid out one after the other.
+std::size_t place(const ColumnLayout& layout, Column c) {
+  return static_cast<std::size_t>(layout.offset(c) / block_lanes);
+}
+
+Vec3<double> position_of(const ColumnLayout& layout, const double* columns) {
+  const double* x = columns + place(layout, Column::position_x);
+  return {x[0], x[1], x[2]};
+}
+
+bool adjacent(BrickCoord a, BrickCoord b) {
+  return std::abs(a.x - b.x) <= 1 && std::abs(a.y - b.y) <= 1 && std::abs(a.z - b.z) <= 1;
+}
+
+Cohort& cohort_of(Brick& brick, int body) {
+  const auto at = std::lower_bound(brick.cohorts.begin(), brick.cohorts.end(), body,
+                                   [](const Cohort& c, int b) { return c.body < b; });
+  if (at != brick.cohorts.end() && at->body == body) return *at;
+  return *brick.cohorts.insert(at, Cohort{body, 0, {}});
+}
+
+/// Particle order[p] becomes particle p.
+void reorder(BlockPool& pool, Cohort& cohort, const std::vector<std::uint32_t>& order) {
+  thread_local std::vector<double> sorted;
+  const ColumnLayout& layout = pool.layout();
+  const auto block_doubles = static_cast<std::size_t>(layout.block_doubles());
+  sorted.resize(cohort.blocks.size() * block_doubles);
+  for (std::size_t p = 0; p < order.size(); ++p) {
+    const double* from = pool.block(cohort.blocks[order[p] / block_lanes]) + order[p] % block_lanes;
+    double* to = sorted.data() + p / block_lanes * block_doubles + p % block_lanes;
+    for (int c = 0; c < layout.columns(); ++c) to[block_lanes * c] = from[block_lanes * c];
+  }
+  std::sort(cohort.blocks.begin(), cohort.blocks.end());  // what is read next lies next in memory
+  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+    double* block = pool.block(cohort.blocks[b]);
+    const double* source = sorted.data() + b * block_doubles;
+    const auto used = static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+    for (int c = 0; c < layout.columns(); ++c) {
+      for (int l = 0; l < block_lanes; ++l) block[block_lanes * c + l] = source[block_lanes * c + (l < used ? l : 0)];
+    }
+  }
+}
+
+}  // namespace
+
+std::string describe_particle(const Body& body, const double* columns) {
+  const ColumnLayout& layout = body.pool->layout();
+  const Vec3<double> x = position_of(layout, columns);
+  return fmt::format("particle {:.0f} of body \"{}\" at ({:.6g}, {:.6g}, {:.6g})",
+                     columns[place(layout, Column::identity)], body.name, x.x, x.y, x.z);
+}
+
+Migration::Migration(Model& model, Exchange& exchange) : model_(model), exchange_(exchange) {
+  for (const Body& b : model.bodies) columns_of_.push_back(b.pool->layout().columns());
+}
+
+void Migration::dispose(const Body& body, std::size_t body_index, const double* columns, bool eroded) {
+  const ColumnLayout& layout = body.pool->layout();
+  Books& books = model_.books;
+  const double m = columns[place(layout, Column::mass)];
+  const double* v = columns + place(layout, Column::velocity_x);
+  books.removed_mass.add(m);
+  books.removed_kinetic.add(0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  books.removed_internal.add(columns[place(layout, Column::internal_energy)] * m / body.model->reference_density());
+  ++(eroded ? books.eroded : books.left_grid);
+  ++(eroded ? books.body_eroded : books.body_left)[body_index];
+  if (eroded) return;
+  ++left_now_;
+  if (first_left_.empty()) first_left_ = describe_particle(body, columns);
+}
+
+void Migration::collect(std::vector<std::vector<Leaver>>& leavers) {
+  travellers_.clear();
+  wanted_.clear();
+  left_now_ = 0;
+  first_left_.clear();
+  BrickGrid& grid = *model_.grid;
+  std::vector<double> columns(column_count);
+  for (std::size_t s = 0; s < leavers.size(); ++s) {
+    if (leavers[s].empty()) continue;
+    Brick& brick = grid.brick(static_cast<Slot>(s));
+    // From the last to the first: the particle that fills a gap is then never one that has yet to leave.
+    std::sort(leavers[s].begin(), leavers[s].end(), [](const Leaver& a, const Leaver& b) {
+      return a.cohort != b.cohort ? a.cohort > b.cohort : a.index > b.index;
+    });
+    for (const Leaver& l : leavers[s]) {
+      Cohort& cohort = brick.cohorts[static_cast<std::size_t>(l.cohort)];
+      const auto body_index = static_cast<std::size_t>(cohort.body);
+      const Body& body = model_.bodies[body_index];
+      extract(*body.pool, cohort, l.index, columns.data());
+      const Vec3<double> x = position_of(body.pool->layout(), columns.data());
+      const bool inside = grid.geometry().contains(x);
+      if (!l.eroded && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
+        if (complaint_.empty()) complaint_ = describe_particle(body, columns.data()) + " is nowhere (not a number)";
+        continue;
+      }
+      if (l.eroded || !inside) {
+        dispose(body, body_index, columns.data(), l.eroded);
+      } else {
+        const BrickCoord to = grid.geometry().brick_at(x);
+        if (to == brick.coord) continue;  // exactly on the grid's upper face
+        if (!adjacent(to, brick.coord)) {
+          if (complaint_.empty()) {
+            complaint_ = describe_particle(body, columns.data()) + " moved over more than a brick in one step";
+          }
+          continue;
+        }
+        if (grid.find(to) == no_slot) wanted_.push_back(to);
+        travellers_.add(to, cohort.body, columns.data(), body.pool->layout().columns());
+      }
+      remove_swapping(*body.pool, cohort, l.index);
+    }
+    std::erase_if(brick.cohorts, [](const Cohort& c) { return c.count == 0; });
+    leavers[s].clear();
+  }
+}
+
+void Migration::deliver(bool claim) {
+  if (claim) {
+    std::sort(wanted_.begin(), wanted_.end());
+    wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
+    exchange_.claim(*model_.grid, wanted_);
+  }
+  exchange_.migrate(*model_.grid, travellers_, columns_of_);
+  insert_travellers(model_, travellers_);
+}
+
+void insert_travellers(Model& model, const Travellers& travellers) {
+  struct Arrival {
+    Slot slot;
+    std::int32_t body;
+    double identity;
+    std::size_t index;
+  };
+  std::vector<Arrival> arrivals(travellers.size());
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    const Travellers::Head& head = travellers.heads[i];
+    const ColumnLayout& layout = model.bodies[static_cast<std::size_t>(head.body)].pool->layout();
+    arrivals[i] = {model.grid->find(head.to), head.body,
+                   travellers.columns[travellers.offsets[i] + place(layout, Column::identity)], i};
+  }
+  std::sort(arrivals.begin(), arrivals.end(), [](const Arrival& a, const Arrival& b) {
+    if (a.slot != b.slot) return a.slot < b.slot;
+    return a.body != b.body ? a.body < b.body : a.identity < b.identity;
+  });
+  for (const Arrival& a : arrivals) {
+    Cohort& cohort = cohort_of(model.grid->brick(a.slot), a.body);
+    append(*model.bodies[static_cast<std::size_t>(a.body)].pool, cohort, &travellers.columns[travellers.offsets[a.index]]);
+  }
+}
+
+void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort) {
+  constexpr int cells = brick_cells * brick_cells * brick_cells;
+  const ColumnLayout& layout = pool.layout();
+  const BrickFrame frame(grid.geometry(), NodeBlockShape{}, brick);
+  thread_local std::vector<std::uint8_t> cell;
+  cell.resize(cohort.count);
+  std::array<std::uint32_t, cells + 1> start{};
+  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+    const double* block = pool.block(cohort.blocks[b]);
+    for (int l = 0; l < block_lanes && block_lanes * b + static_cast<std::size_t>(l) < cohort.count; ++l) {
+      const auto at = [&](Column c) { return block + layout.offset(c) + l; };
+      const int node = locate<double>(frame, at(Column::position_x), at(Column::position_y), at(Column::position_z)).node[0];
+      const int i = node % frame.side, j = node / frame.side % frame.side, k = node / (frame.side * frame.side);
+      const auto c = static_cast<std::uint8_t>(i + brick_cells * (j + brick_cells * k));
+      cell[block_lanes * b + static_cast<std::size_t>(l)] = c;
+      ++start[c + 1u];
+    }
+  }
+  if (std::is_sorted(cell.begin(), cell.end())) return;
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  thread_local std::vector<std::uint32_t> order;
+  order.resize(cohort.count);
+  for (std::uint32_t p = 0; p < cohort.count; ++p) order[start[cell[p]]++] = p;
+  reorder(pool, cohort, order);
+}
+
+void sort_by_identity(BlockPool& pool, Cohort& cohort) {
+  const int offset = pool.layout().offset(Column::identity);
+  const auto identity = [&](std::uint32_t p) { return pool.block(cohort.blocks[p / block_lanes])[offset + static_cast<int>(p % block_lanes)]; };
+  std::vector<std::uint32_t> order(cohort.count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return identity(a) < identity(b); });
+  reorder(pool, cohort, order);
+}
+
+void Migration::tidy() {
+  BrickGrid& grid = *model_.grid;
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int s = 0; s < grid.owned(); ++s) {
+    Brick& brick = grid.brick(static_cast<Slot>(s));
+    for (Cohort& cohort : brick.cohorts) {
+      sort_by_cell(grid, brick.coord, *model_.bodies[static_cast<std::size_t>(cohort.body)].pool, cohort);
+    }
+  }
+  std::vector<BrickCoord> empty;
+  for (const Brick& b : grid.bricks()) {
+    if (b.cohorts.empty()) empty.push_back(b.coord);
+  }
+  if (exchange_.any(!empty.empty())) exchange_.retire(grid, empty);
+}
+
+}  // namespace mpm::core

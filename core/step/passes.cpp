@@ -1,0 +1,369 @@
+#include "core/step/passes.hpp"
+
+#include <omp.h>
+
+#include <limits>
+
+namespace mpm::core {
+
+namespace {
+
+Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+/// Blocks come from memory in an order that the hardware guesses only while nobody has moved.
+void prefetch(const BlockPool& pool, const Cohort& cohort, std::size_t b, Column first, int columns) {
+  if (b >= cohort.blocks.size()) return;
+  const double* at = pool.block(cohort.blocks[b]) + pool.layout().offset(first);
+  for (int c = 0; c < columns; ++c) __builtin_prefetch(at + block_lanes * c);
+}
+
+int used_lanes(const Cohort& cohort, std::size_t b) {
+  return static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+}
+
+/// Share of a full cell's mass below which a node's increment is scaled down in USL's strain rate. The nodal
+/// acceleration f/m grows without bound as a particle enters a cell (thesis 2-49); what reaches the particle's
+/// own velocity stays bounded, what reaches its strain does not.
+constexpr double usl_mass_floor = 0.05;
+
+}  // namespace
+
+Passes::Passes(Model& model, Exchange& exchange) : model_(model), exchange_(exchange) {
+  const SolutionInput& solution = model.scene->solution;
+  forces_.gravity = to_vec(solution.gravity);
+  forces_.damping = solution.damping;
+  if (solution.scheme == Scheme::usl) {
+    double density = 0;
+    for (const auto& m : model.materials) density += m->reference_density();
+    density /= static_cast<double>(model.materials.size());
+    forces_.strain_mass_floor = usl_mass_floor * density * model.grid->geometry().cell_volume();
+  }
+  velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
+  erosion_volume_ = solution.volume.erode.value_or(0);
+  workplaces_.resize(static_cast<std::size_t>(omp_get_max_threads()));
+}
+
+template <class F>
+void Passes::for_bricks(int first, int last, F f) {
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int s = first; s < last; ++s) f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]);
+}
+
+// --- particles to grid ------------------------------------------------------------------------------------
+
+template <Mapped what>
+void Passes::map_brick(Slot s) {
+  BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
+  const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
+  const CellCorners corners(grid.shape().side());
+  double* contributions = grid.contributions(s);
+  std::fill_n(contributions, node_doubles * grid.shape().nodes(), 0.0);
+  CellSums<what> sums;
+  sums.clear();
+  for (const Cohort& cohort : brick.cohorts) {
+    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      prefetch(pool, cohort, b + 2, Column::position_x, maps_force(what) ? 16 : 7);
+      add_block<what>(frame, corners, pool.layout(), pool.block(cohort.blocks[b]), used_lanes(cohort, b), sums,
+                      contributions);
+    }
+  }
+  sums.flush(contributions, corners);
+}
+
+namespace {
+struct Components {
+  int first, count;
+};
+constexpr Components components(Mapped what) {
+  return what == Mapped::momentum_mass_force ? Components{0, 7}
+         : what == Mapped::momentum_mass     ? Components{0, 4}
+         : what == Mapped::momentum          ? Components{0, 3}
+                                             : Components{4, 3};
+}
+}  // namespace
+
+template <Mapped what>
+void Passes::map_to_grid() {
+  BrickGrid& grid = *model_.grid;
+  for_bricks(0, grid.boundary(), [&](Slot s, Workplace&) { map_brick<what>(s); });
+  exchange_.begin_halo(grid, components(what).first, components(what).count);
+  for_bricks(grid.boundary(), grid.owned(), [&](Slot s, Workplace&) { map_brick<what>(s); });
+}
+template void Passes::map_to_grid<Mapped::momentum_mass_force>();
+template void Passes::map_to_grid<Mapped::momentum_mass>();
+template void Passes::map_to_grid<Mapped::momentum>();
+template void Passes::map_to_grid<Mapped::force>();
+
+// --- nodes ------------------------------------------------------------------------------------------------
+
+void Passes::update_nodes() {
+  BrickGrid& grid = *model_.grid;
+  for_all_bricks([&](Slot s, Workplace&) {
+    sum_contributions(grid, s, grid.nodes(s));
+    core::update_nodes(forces_, dt, grid.geometry().mass_cutoff,
+                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), grid.shape().nodes(),
+                       grid.nodes(s));
+  });
+}
+
+void Passes::start_velocities() {
+  BrickGrid& grid = *model_.grid;
+  for_all_bricks([&](Slot s, Workplace&) {
+    sum_contributions(grid, s, grid.nodes(s));
+    velocities_from_momenta(grid.geometry().mass_cutoff,
+                            BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
+                            grid.shape().nodes(), grid.nodes(s));
+  });
+}
+
+void Passes::update_nodes_with_new_stress() {
+  BrickGrid& grid = *model_.grid;
+  const int nodes = grid.shape().nodes();
+  for_all_bricks([&](Slot s, Workplace& at) {
+    at.sums.resize(static_cast<std::size_t>(node_doubles * nodes));
+    sum_contributions(grid, s, at.sums.data());
+    double* record = grid.nodes(s);
+    for (int n = 0; n < nodes; ++n) {
+      for (int a = 4; a < 8; ++a) record[node_doubles * n + a] = at.sums[static_cast<std::size_t>(node_doubles * n + a)];
+    }
+    core::update_nodes(forces_, dt, grid.geometry().mass_cutoff,
+                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), nodes, record);
+  });
+}
+
+void Passes::remapped_velocities() {
+  BrickGrid& grid = *model_.grid;
+  for_all_bricks([&](Slot s, Workplace& at) {
+    at.sums.resize(static_cast<std::size_t>(node_doubles * grid.shape().nodes()));
+    sum_contributions(grid, s, at.sums.data());
+    velocities_from_remapped(at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
+                             grid.shape().nodes(), grid.nodes(s));
+  });
+}
+
+// --- particles --------------------------------------------------------------------------------------------
+
+void Passes::hold_velocities(const Body& body, const BrickFrame&, Cohort& cohort, Workplace& at) {
+  BlockPool& pool = *body.pool;
+  const ColumnLayout& layout = pool.layout();
+  double work = 0;
+  for (std::uint32_t i = 0; i < cohort.count; ++i) {
+    double* lane = pool.block(cohort.blocks[i / block_lanes]) + i % block_lanes;
+    double* v[3];
+    for (int a = 0; a < 3; ++a) v[a] = lane + layout.offset(next(Column::velocity_x, a));
+    if (body.prescribed_velocity) {
+      // What holds the velocity gives momentum m (v_p - v) at velocity v_p.
+      const Vec3<double>& p = *body.prescribed_velocity;
+      const double m = lane[layout.offset(Column::mass)];
+      work += m * ((p.x - *v[0]) * p.x + (p.y - *v[1]) * p.y + (p.z - *v[2]) * p.z);
+      for (int a = 0; a < 3; ++a) *v[a] = p[a];
+    } else {
+      const double speed = std::sqrt(*v[0] * *v[0] + *v[1] * *v[1] + *v[2] * *v[2]);
+      if (speed > velocity_limit_) {
+        for (int a = 0; a < 3; ++a) *v[a] *= velocity_limit_ / speed;
+        ++at.found.limited;
+      }
+    }
+  }
+  if (work != 0) at.found.work.add(work);
+}
+
+void Passes::velocities_of_brick(Slot s, Workplace& at) {
+  BrickGrid& grid = *model_.grid;
+  Brick& brick = grid.brick(s);
+  const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
+  const CellCorners corners(grid.shape().side());
+  for (Cohort& cohort : brick.cohorts) {
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      prefetch(*body.pool, cohort, b + 2, Column::position_x, 7);
+      add_velocity_increment(frame, corners, body.pool->layout(), grid.nodes(s), body.pool->block(cohort.blocks[b]));
+    }
+    if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
+      hold_velocities(body, frame, cohort, at);
+    }
+  }
+}
+
+void Passes::note_speeds(const Batch& batch, StepFindings& found) const {
+  const ColumnLayout& layout = *batch.layout;
+  Real fastest(0.0);
+  for (int b = 0; b < batch.blocks; ++b) {
+    const double* block = batch.block[b];
+    const int used = std::min(block_lanes, batch.particles - block_lanes * b);
+    for (int l = 0; l < block_lanes; l += real_width) {
+      const Real x = load<Real>(block + layout.offset(Column::velocity_x) + l);
+      const Real y = load<Real>(block + layout.offset(Column::velocity_y) + l);
+      const Real z = load<Real>(block + layout.offset(Column::velocity_z) + l);
+      const Real speed = load<Real>(batch.critical_speed + block_lanes * b + l) + sqrt(x * x + y * y + z * z);
+      if (l + real_width <= used) {
+        fastest = max(speed, fastest);
+      } else {
+        double each[real_width];
+        store(each, speed);
+        for (int i = 0; l + i < used; ++i) fastest = max(Real(each[i]), fastest);
+      }
+    }
+  }
+  found.fastest = std::max(found.fastest, reduce_max(fastest));
+}
+
+void Passes::stress_of_brick(Slot s, StrainVelocity which, Workplace& at) {
+  BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
+  const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
+  const CellCorners corners(grid.shape().side());
+  Batch& batch = at.batch;
+  batch.time = model_.clock.time + dt;
+  batch.dt = dt;
+  batch.cell_size = grid.geometry().smallest_cell();
+  for (const Cohort& cohort : brick.cohorts) {
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    BlockPool& pool = *body.pool;
+    batch.layout = &pool.layout();
+    for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
+      batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
+      batch.particles = static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+      for (int b = 0; b < batch.blocks; ++b) {
+        const std::size_t at_block = first + static_cast<std::size_t>(b);
+        prefetch(pool, cohort, at_block + 2, Column::position_x, pool.layout().columns());
+        batch.block[b] = pool.block(cohort.blocks[at_block]);
+        if (which == StrainVelocity::second) {
+          velocity_gradient<StrainVelocity::second>(frame, corners, pool.layout(), grid.nodes(s), batch.block[b],
+                                                    batch.gradient, block_lanes * b);
+        } else {
+          velocity_gradient<StrainVelocity::regularised>(frame, corners, pool.layout(), grid.nodes(s), batch.block[b],
+                                                         batch.gradient, block_lanes * b);
+        }
+      }
+      batch.events = {};
+      body.model->update(batch, model_.options);
+      at.found.events += batch.events;
+      note_speeds(batch, at.found);
+    }
+  }
+}
+
+void Passes::move_brick(Slot s, Workplace& at) {
+  BrickGrid& grid = *model_.grid;
+  Brick& brick = grid.brick(s);
+  const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
+  const CellCorners corners(grid.shape().side());
+  const Vec3<double> g = forces_.gravity;
+  const bool works = g.x != 0 || g.y != 0 || g.z != 0 || forces_.damping != 0;
+  std::vector<Leaver>& leavers = leavers_[static_cast<std::size_t>(s)];
+  double work = 0;
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    BlockPool& pool = *body.pool;
+    const ColumnLayout& layout = pool.layout();
+    const bool erodes = layout.has(Column::failed) || erosion_volume_ > 0;
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      double* block = pool.block(cohort.blocks[b]);
+      double* x = block + layout.offset(Column::position_x);
+      const double* v = block + layout.offset(Column::velocity_x);
+      const int used = used_lanes(cohort, b);
+      double before[3 * block_lanes];
+      if (works) std::copy_n(x, 3 * block_lanes, before);
+      if (body.prescribed_velocity) {
+        for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
+      } else {
+        move_with_grid(frame, corners, layout, grid.nodes(s), dt, block);
+      }
+      if (works && !body.prescribed_velocity) {
+        const double* m = block + layout.offset(Column::mass);
+        for (int i = 0; i < used; ++i) {
+          for (int a = 0; a < 3; ++a) {
+            const int at_a = block_lanes * a + i;
+            work += m[i] * (g[a] - forces_.damping * v[at_a]) * (x[at_a] - before[at_a]);
+          }
+        }
+      }
+      unsigned gone = 0;
+      if (erodes) {
+        const double* volume = block + layout.offset(Column::volume);
+        for (int i = 0; i < used; ++i) {
+          const bool eroded = volume[i] < erosion_volume_ ||
+                              (layout.has(Column::failed) && block[layout.offset(Column::failed) + i] >= 2);
+          if (!eroded) continue;
+          gone |= 1u << i;
+          leavers.push_back({static_cast<int>(c), static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(i), true});
+        }
+      }
+      unsigned outside = lanes_outside(frame, layout, block, used) & ~gone;
+      for (; outside != 0; outside &= outside - 1) {
+        leavers.push_back({static_cast<int>(c), static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(__builtin_ctz(outside)), false});
+      }
+    }
+  }
+  if (work != 0) at.found.work.add(work);
+}
+
+void Passes::update_velocities() {
+  for_all_bricks([&](Slot s, Workplace& at) { velocities_of_brick(s, at); });
+}
+
+void Passes::update_velocities_and_map_back() {
+  BrickGrid& grid = *model_.grid;
+  const auto both = [&](Slot s, Workplace& at) {
+    velocities_of_brick(s, at);
+    map_brick<Mapped::momentum>(s);
+  };
+  for_bricks(0, grid.boundary(), both);
+  exchange_.begin_halo(grid, components(Mapped::momentum).first, components(Mapped::momentum).count);
+  for_bricks(grid.boundary(), grid.owned(), both);
+}
+
+void Passes::update_stress() {
+  for_all_bricks([&](Slot s, Workplace& at) { stress_of_brick(s, StrainVelocity::second, at); });
+}
+
+void Passes::update_stress_and_map_forces() {
+  BrickGrid& grid = *model_.grid;
+  const auto both = [&](Slot s, Workplace& at) {
+    stress_of_brick(s, StrainVelocity::second, at);
+    map_brick<Mapped::force>(s);
+  };
+  for_bricks(0, grid.boundary(), both);
+  exchange_.begin_halo(grid, components(Mapped::force).first, components(Mapped::force).count);
+  for_bricks(grid.boundary(), grid.owned(), both);
+}
+
+void Passes::move() {
+  leavers_.resize(static_cast<std::size_t>(model_.grid->owned()));
+  for_all_bricks([&](Slot s, Workplace& at) { move_brick(s, at); });
+}
+
+void Passes::update_stress_and_move() {
+  leavers_.resize(static_cast<std::size_t>(model_.grid->owned()));
+  for_all_bricks([&](Slot s, Workplace& at) {
+    stress_of_brick(s, StrainVelocity::second, at);
+    move_brick(s, at);
+  });
+}
+
+void Passes::update_all() {
+  leavers_.resize(static_cast<std::size_t>(model_.grid->owned()));
+  for_all_bricks([&](Slot s, Workplace& at) {
+    stress_of_brick(s, StrainVelocity::regularised, at);
+    velocities_of_brick(s, at);
+    move_brick(s, at);
+  });
+}
+
+StepFindings Passes::take_findings() {
+  StepFindings total;
+  for (Workplace& w : workplaces_) {
+    total.fastest = std::max(total.fastest, w.found.fastest);
+    total.limited += w.found.limited;
+    total.events += w.found.events;
+    total.work += w.found.work;
+    w.found = {};
+  }
+  return total;
+}
+
+}  // namespace mpm::core

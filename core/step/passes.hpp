@@ -1,0 +1,98 @@
+// The passes over bricks that a time step is made of. Each is one loop over this rank's bricks, shared by its
+// threads; a scheme is a list of them (schemes.cpp). A brick is worked on by one thread from its first particle
+// to its last, so sums inside it have one order.
+#pragma once
+
+#include <vector>
+
+#include "core/model.hpp"
+#include "core/step/exchange.hpp"
+#include "core/step/grid_to_particles.hpp"
+#include "core/step/node_update.hpp"
+#include "core/step/particles_to_grid.hpp"
+
+namespace mpm::core {
+
+/// A particle that does not stay where it is.
+struct Leaver {
+  int cohort = 0;
+  std::uint32_t index = 0;
+  bool eroded = false;  ///< to be deleted; otherwise it has left its brick
+};
+
+/// What a rank learns in the course of a step, to be agreed with the others at its end.
+struct StepFindings {
+  double fastest = 0;           ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
+  std::int64_t limited = 0;     ///< velocities held by LimitVelocity
+  MaterialEvents events;
+  ExactSum work;                ///< external work
+};
+
+class Passes {
+ public:
+  Passes(Model& model, Exchange& exchange);
+
+  double dt = 0;  ///< of the step under way
+
+  /// Particles to grid; those of other ranks' interest first, whose sums are on their way when this returns.
+  template <Mapped what>
+  void map_to_grid();
+  void finish_exchange() { exchange_.end_halo(*model_.grid); }
+
+  /// Sum and move the nodes: the equation of motion.
+  void update_nodes();
+  /// USF: sum, and the velocity before the motion.
+  void start_velocities();
+  /// USF: sum the forces of the new stress and move the nodes.
+  void update_nodes_with_new_stress();
+  /// MUSL: sum the re-mapped momenta, and their velocity.
+  void remapped_velocities();
+
+  /// v += dv.
+  void update_velocities();
+  /// MUSL: v += dv, and the new momentum back to the nodes while the block is at hand.
+  void update_velocities_and_map_back();
+  /// Strain and stress at the unmoved particles.
+  void update_stress();
+  /// USF: strain and stress, then the forces of the new stress.
+  void update_stress_and_map_forces();
+  /// x += dt v of the grid; whoever leaves its brick or is to be deleted is noted.
+  void move();
+  /// MUSL: strain and stress, then move.
+  void update_stress_and_move();
+  /// USL: strain and stress, velocity, then move.
+  void update_all();
+
+  std::vector<std::vector<Leaver>>& leavers() { return leavers_; }
+  /// What was found since the last call, over all threads.
+  StepFindings take_findings();
+
+ private:
+  struct alignas(128) Workplace {  // of one thread
+    Batch batch;
+    StepFindings found;
+    std::vector<double> sums;
+  };
+  template <class F>
+  void for_bricks(int first, int last, F f);
+  template <class F>
+  void for_all_bricks(F f) { for_bricks(0, model_.grid->owned(), f); }
+
+  template <Mapped what>
+  void map_brick(Slot s);
+  void stress_of_brick(Slot s, StrainVelocity which, Workplace& at);
+  void velocities_of_brick(Slot s, Workplace& at);
+  void move_brick(Slot s, Workplace& at);
+  void hold_velocities(const Body& body, const BrickFrame& frame, Cohort& cohort, Workplace& at);
+  void note_speeds(const Batch& batch, StepFindings& found) const;
+
+  Model& model_;
+  Exchange& exchange_;
+  NodeForces forces_;
+  double velocity_limit_;  ///< infinite without LimitVelocity
+  double erosion_volume_;
+  std::vector<Workplace> workplaces_;
+  std::vector<std::vector<Leaver>> leavers_;  ///< by slot
+};
+
+}  // namespace mpm::core

@@ -1,0 +1,51 @@
+// The explicit step on one page: each scheme is the list of its phases, in the order in which they run
+// (thesis 2.2.2). The names stand in the log's timing table, in the summary and in the benchmarks.
+#include "core/step/stepper.hpp"
+
+namespace mpm::core {
+
+std::vector<Phase> phases_of(Stepper& s, Scheme scheme) {
+  Passes& pass = s.passes_;
+  using enum Mapped;
+
+  std::vector<Phase> step{{"choose time step", [&] { s.choose_time_step(); }}};
+  const auto then = [&](const char* name, std::function<void()> run) { step.push_back({name, std::move(run)}); };
+
+  switch (scheme) {
+    case Scheme::musl:
+      then("particles to grid", [&] { pass.map_to_grid<momentum_mass_force>(); });
+      then("exchange", [&] { pass.finish_exchange(); });
+      then("update nodes", [&] { pass.update_nodes(); });
+      then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
+      then("exchange again", [&] { pass.finish_exchange(); });
+      then("node velocities", [&] { pass.remapped_velocities(); });
+      then("stress and motion", [&] { pass.update_stress_and_move(); });
+      break;
+    case Scheme::usf:
+      then("particles to grid", [&] { pass.map_to_grid<momentum_mass>(); });
+      then("exchange", [&] { pass.finish_exchange(); });
+      then("node velocities", [&] { pass.start_velocities(); });
+      then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
+      then("exchange again", [&] { pass.finish_exchange(); });
+      then("update nodes", [&] { pass.update_nodes_with_new_stress(); });
+      then("velocities", [&] { pass.update_velocities(); });
+      then("motion", [&] { pass.move(); });
+      break;
+    case Scheme::usl:
+      then("particles to grid", [&] { pass.map_to_grid<momentum_mass_force>(); });
+      then("exchange", [&] { pass.finish_exchange(); });
+      then("update nodes", [&] { pass.update_nodes(); });
+      then("velocities, stress and motion", [&] { pass.update_all(); });
+      break;
+  }
+
+  then("collect leavers", [&] { s.migration_.collect(pass.leavers()); });
+  then("agree", [&] { s.agree(); });
+  then("migrate", [&] { s.migration_.deliver(s.claim_); });
+  then("tidy", [&s] {
+    if (s.model_.clock.step % Stepper::tidy_interval == 0) s.migration_.tidy();
+  });
+  return step;
+}
+
+}  // namespace mpm::core

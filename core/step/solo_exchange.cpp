@@ -1,0 +1,52 @@
+#include <algorithm>
+
+#include "core/step/exchange.hpp"
+
+namespace mpm::core {
+
+namespace {
+std::vector<BrickCoord> owned_bricks(const BrickGrid& grid) {
+  std::vector<BrickCoord> owned;
+  for (const Brick& b : grid.bricks()) owned.push_back(b.coord);
+  return owned;
+}
+}  // namespace
+
+void check_decomposition(const DecompositionInput& how, int ranks) {
+  if (!how.dimensions) return;
+  const auto [x, y, z] = *how.dimensions;
+  if (std::int64_t{x} * y * z == ranks) return;
+  throw InputErrors(how.source, "DomainDecomposition",
+                    "dimension0 * dimension1 * dimension2 = " + std::to_string(std::int64_t{x} * y * z) +
+                        " must equal the number of ranks, which is " + std::to_string(ranks) +
+                        "; start that many ranks, change the dimensions, or remove the element");
+}
+
+void SoloExchange::partition(BrickGrid& grid, std::span<const BrickCount> counts, const DecompositionInput& how) {
+  check_decomposition(how, 1);
+  std::vector<BrickCoord> owned;
+  for (const BrickCount& c : counts) owned.push_back(c.brick);
+  std::sort(owned.begin(), owned.end());
+  owned.erase(std::unique(owned.begin(), owned.end()), owned.end());
+  grid.reset(std::move(owned), {});
+}
+
+void SoloExchange::claim(BrickGrid& grid, std::span<const BrickCoord> wanted) {
+  std::vector<BrickCoord> owned = owned_bricks(grid);
+  const std::size_t before = owned.size();
+  for (BrickCoord b : wanted) {
+    if (grid.find(b) == no_slot) owned.push_back(b);
+  }
+  std::sort(owned.begin(), owned.end());
+  owned.erase(std::unique(owned.begin(), owned.end()), owned.end());
+  if (owned.size() != before) grid.reset(std::move(owned), {});
+}
+
+void SoloExchange::retire(BrickGrid& grid, std::span<const BrickCoord> empty) {
+  if (empty.empty()) return;
+  std::vector<BrickCoord> owned = owned_bricks(grid);
+  std::erase_if(owned, [&](BrickCoord b) { return std::find(empty.begin(), empty.end(), b) != empty.end(); });
+  grid.reset(std::move(owned), {});
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,114 @@
+#include "core/step/stepper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace mpm::core {
+
+namespace {
+
+/// A step this much shorter than the first one leads nowhere: the run would not end.
+constexpr double smallest_step_ratio = 1e-7;
+
+/// The rank's particle with the smallest identity whose state is not all numbers, in words; empty if none.
+std::string first_not_finite(const Model& model) {
+  double best = std::numeric_limits<double>::infinity();
+  std::string words;
+  std::vector<double> columns;
+  for_each_block(model, [&](int body_index, const ColumnLayout& layout, const double* block, int used) {
+    for (int lane = 0; lane < used; ++lane) {
+      columns.clear();
+      bool finite = true;
+      for (int c = 0; c < layout.columns(); ++c) {
+        columns.push_back(block[block_lanes * c + lane]);
+        finite = finite && std::isfinite(columns.back());
+      }
+      const double identity = block[layout.offset(Column::identity) + lane];
+      if (finite || identity >= best) continue;
+      best = identity;
+      const Body& body = model.bodies[static_cast<std::size_t>(body_index)];
+      words = describe_particle(body, columns.data()) + ":";
+      for (int c = 0; c < column_count; ++c) {
+        const auto column = static_cast<Column>(c);
+        if (layout.has(column)) words += fmt::format(" {}={:.6g}", name_of(column), block[layout.offset(column) + lane]);
+      }
+    }
+  });
+  return words;
+}
+
+}  // namespace
+
+double critical_step(const BrickGrid& grid, double fastest) {
+  return fastest > 0 ? grid.geometry().smallest_cell() / fastest : std::numeric_limits<double>::infinity();
+}
+
+Stepper::Stepper(Model& model, Exchange& exchange)
+    : model_(model),
+      exchange_(exchange),
+      passes_(model, exchange),
+      migration_(model, exchange),
+      phases_(phases_of(*this, model.scene->solution.scheme)) {}
+
+void Stepper::step() {
+  using clock = std::chrono::steady_clock;
+  auto before = clock::now();
+  for (Phase& phase : phases_) {
+    phase.run();
+    const auto now = clock::now();
+    phase.seconds += std::chrono::duration<double>(now - before).count();
+    before = now;
+  }
+}
+
+void Stepper::choose_time_step() {
+  const TimeStepInput& how = model_.scene->solution.time_step;
+  Clock& clock = model_.clock;
+  double dt = how.specified > 0 ? how.specified
+                                : how.factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
+  // The last step ends on time.
+  dt = std::min(dt, model_.scene->solution.end_time - clock.time);
+  passes_.dt = dt;
+  clock.dt = dt;
+}
+
+void Stepper::agree() {
+  Clock& clock = model_.clock;
+  Books& books = model_.books;
+  const StepFindings found = passes_.take_findings();
+  books.external_work += found.work;
+  books.velocity_limited += found.limited;
+  books.events += found.events;
+  books.failed += found.events.failed;
+  incidents_ = {found.events, migration_.left_now(), migration_.first_left()};
+
+  // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble.
+  const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty() || std::isnan(found.fastest);
+  double news[3] = {critical_step(*model_.grid, found.fastest), migration_.wants_new_bricks() ? -1.0 : 0.0,
+                    trouble ? -1.0 : 0.0};
+  exchange_.minimum(news);
+  ++clock.step;
+  clock.time += clock.dt;
+  clock.critical_dt = news[0];
+  claim_ = news[1] < 0;
+
+  std::string what;
+  if (news[2] < 0) {
+    std::string mine;
+    if (!migration_.complaint().empty()) mine = migration_.complaint();
+    else if (trouble) mine = first_not_finite(model_);
+    for (const std::string& line : exchange_.gather(mine)) {
+      if (!line.empty() && what.empty()) what = line;
+    }
+  } else if (clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
+    what = fmt::format("the critical time step has fallen to {:.3g}, {:.1g} of the first one", clock.critical_dt,
+                       clock.critical_dt / clock.first_critical_dt);
+  }
+  if (!what.empty()) throw NumericalFailure(fmt::format("step {}, time {:.9g}: {}", clock.step, clock.time, what));
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,66 @@
+// One explicit time step, as the list of named phases that the scene's scheme makes of it.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/step/migration.hpp"
+#include "core/step/passes.hpp"
+
+namespace mpm::core {
+
+struct Phase {
+  std::string name;
+  std::function<void()> run;
+  double seconds = 0;  ///< wall clock of this rank since the run began
+};
+
+/// The run cannot go on: what happened, to which particle, where and when. The same on every rank.
+class NumericalFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Stepper {
+ public:
+  Stepper(Model& model, Exchange& exchange);
+  Stepper(const Stepper&) = delete;
+  Stepper& operator=(const Stepper&) = delete;
+
+  /// Advance the model by one step. Throws NumericalFailure on every rank together. Collective.
+  void step();
+
+  const std::vector<Phase>& phases() const { return phases_; }
+
+  /// Of the last step, on this rank: for the scene's warnings.
+  struct Incidents {
+    MaterialEvents events;
+    std::int64_t left_grid = 0;
+    std::string first_left;
+  };
+  const Incidents& incidents() const { return incidents_; }
+
+  /// Particles are brought into the order of their cells, and empty bricks forgotten, every so many steps.
+  static constexpr std::int64_t tidy_interval = 20;
+
+ private:
+  friend std::vector<Phase> phases_of(Stepper&, Scheme);
+  void choose_time_step();
+  void agree();
+
+  Model& model_;
+  Exchange& exchange_;
+  Passes passes_;
+  Migration migration_;
+  std::vector<Phase> phases_;
+  Incidents incidents_;
+  bool claim_ = false;
+};
+
+/// Largest stable step of the model's present state, without the scene's factor (thesis 2-51, 2-74): the smallest
+/// cell edge over the largest of (Q + sqrt(Q^2 + c^2)) + |v|.
+double critical_step(const BrickGrid& grid, double fastest);
+
+}  // namespace mpm::core

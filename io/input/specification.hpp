@@ -1,0 +1,92 @@
+// The input language as data: what io/input/Specification.xml says, with the laws' own parameter tables merged in.
+// Its notation is described at the head of that file.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/scene/catalogue.hpp"
+
+namespace mpm::io {
+
+enum class ValueType { text, real, integer, boolean };
+
+/// The words that are allowed (any when empty) and the interval of numbers.
+struct Range {
+  std::vector<std::string> words;
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_open = false;
+  bool max_open = false;
+
+  bool bounded() const;
+  bool contains(double value) const;
+};
+
+struct AttributeSpec {
+  std::string name;
+  bool required = false;
+  bool multiple = false;  ///< values joined by |
+  ValueType type = ValueType::text;
+  Range range;
+  std::vector<std::string> for_types;  ///< empty: for every type
+  std::optional<std::string> default_value;  ///< starts with @ where it is a rule in words
+  std::string unit;
+  std::string meaning;
+  bool later = false;                     ///< any value but the default is not implemented yet
+  std::vector<std::string> later_values;  ///< these values are not implemented yet
+  std::string instead_of;                 ///< a refused spelling of the name
+  std::string also;                       ///< a second accepted spelling of the name
+  std::pair<std::string, std::string> also_word;  ///< accepted spelling of a word, and the word
+  std::string twice;                      ///< what is meant where the attribute stands twice
+  std::string word;                       ///< accepted in place of a number
+
+  bool applies_to(std::string_view element_type) const;
+};
+
+/// Attributes that are given all or none.
+struct TogetherSpec {
+  std::vector<std::string> names;
+  std::vector<std::string> for_types;
+};
+
+enum class LawFamily { none, strength, eos, failure };
+
+struct ElementSpec {
+  std::string name;
+  bool required = false;
+  bool multiple = false;
+  std::vector<std::string> for_types;
+  std::string meaning;
+  bool later = false;
+  std::string instead_of;
+  LawFamily laws = LawFamily::none;
+  std::vector<TogetherSpec> together;
+  std::vector<AttributeSpec> attributes;
+  std::vector<ElementSpec> children;
+
+  bool applies_to(std::string_view element_type) const;
+  const ElementSpec* child(std::string_view child_name) const;
+  /// The row of an attribute that holds for this type, if there is one.
+  const AttributeSpec* attribute(std::string_view attribute_name, std::string_view element_type) const;
+};
+
+/// Reads the notation; throws std::logic_error on a mistake in it, for it is part of the program.
+ElementSpec parse_specification(std::string_view xml);
+
+/// The built-in Specification.xml; the root is PeneBlast.
+const ElementSpec& specification();
+
+/// The language that a program with these laws reads: for types that the catalogue implements, its parameters replace
+/// the Specification's; types that only the Specification knows are marked as not implemented yet; types that only
+/// the catalogue knows are added.
+ElementSpec language(const core::Catalogue& catalogue);
+
+/// `a number greater than 0`, `one of a, b, c` ...
+std::string expectation(const AttributeSpec& attribute);
+
+}  // namespace mpm::io

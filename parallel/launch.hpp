@@ -1,0 +1,98 @@
+// What one rank does for all: read a file, check it, write it. All ranks go on with the same result, or leave
+// together with the same error.
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "core/scene/errors.hpp"
+#include "parallel/mpi.hpp"
+
+namespace mpm::parallel {
+
+/// Rank 0's bytes, of any length, on every rank. Collective.
+std::string broadcast(const Communicator& comm, std::string bytes);
+
+/// The text of the lowest rank whose text is not empty, or an empty one. For steps in which some ranks may fail and
+/// all must leave with one message. Collective.
+std::string first_complaint(const Communicator& comm, const std::string& mine);
+
+namespace detail {
+
+std::string to_bytes(const core::InputErrors& errors);
+core::InputErrors errors_from(const std::string& bytes);
+
+template <class T>
+std::string bytes_of(const T& value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return value;
+  } else {
+    static_assert(std::is_trivially_copyable_v<T>, "only plain data and std::string travel between ranks");
+    return std::string(reinterpret_cast<const char*>(&value), sizeof(T));
+  }
+}
+
+template <class T>
+T value_from(std::string bytes) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return bytes;
+  } else {
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof(T));
+    return value;
+  }
+}
+
+// The first letter of what is broadcast.
+inline constexpr char is_value = 'v', is_input_errors = 'i', is_other = 'x', is_first_kept = 'A';
+
+template <class... Kept>
+char letter_of(const std::exception& e) {
+  char letter = is_other;
+  char next = is_first_kept;
+  ((letter = letter == is_other && dynamic_cast<const Kept*>(&e) != nullptr ? next : letter, ++next), ...);
+  return letter;
+}
+
+template <class... Kept>
+[[noreturn]] void rethrow(char letter, const std::string& text) {
+  if (letter == is_input_errors) throw errors_from(text);
+  [[maybe_unused]] char next = is_first_kept;
+  ((letter == next++ ? throw Kept(text) : void()), ...);
+  throw std::runtime_error(text);
+}
+
+}  // namespace detail
+
+/// Run f() on rank 0 and return its result, a std::string, plain data or nothing, on every rank. If it throws, every
+/// rank throws: InputErrors as they are; those of the types `Kept`, each made from its text; anything else as a
+/// std::runtime_error with the same text. Collective.
+template <class... Kept, class F>
+auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&> {
+  using Result = std::invoke_result_t<F&>;
+  std::string message;
+  if (comm.rank() == 0) {
+    try {
+      if constexpr (std::is_void_v<Result>) {
+        f();
+        message = detail::is_value;
+      } else {
+        message = detail::is_value + detail::bytes_of<Result>(f());
+      }
+    } catch (const core::InputErrors& e) {
+      message = detail::is_input_errors + detail::to_bytes(e);
+    } catch (const std::exception& e) {
+      message = detail::letter_of<Kept...>(e) + std::string(e.what());
+    }
+  }
+  message = broadcast(comm, std::move(message));
+  if (message[0] != detail::is_value) detail::rethrow<Kept...>(message[0], message.substr(1));
+  if constexpr (!std::is_void_v<Result>) return detail::value_from<Result>(message.erase(0, 1));
+}
+
+}  // namespace mpm::parallel

@@ -1,0 +1,152 @@
+// Thin owners over MPI: the library's life, a communicator, persistent messages. Every return code is checked.
+// Sizes are 64-bit on this side; where MPI counts with an int, messages are cut or the call is refused.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <mpi.h>
+
+namespace mpm::parallel {
+
+/// A call of MPI that failed, perhaps on this rank alone: the others may be waiting, so the answer is abort().
+class MpiError : public std::runtime_error {
+ public:
+  MpiError(const char* function, int code);
+};
+
+/// Throws MpiError unless `code` is MPI_SUCCESS.
+void check(int code, const char* function);
+/// `n` as MPI counts; throws std::length_error if it is too large.
+int count_of(std::size_t n);
+
+/// End every rank of the run at once. For bugs, and for errors that the ranks have not agreed on.
+[[noreturn]] void abort(int exit_code);
+
+/// MPI from start to end of main: the first thing in it and the last to go. An exception that passes it ends every
+/// rank, because the other ranks may be waiting for this one.
+class Environment {
+ public:
+  /// Starts MPI for calls from the main thread only.
+  Environment(int& argc, char**& argv);
+  ~Environment();
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+};
+
+/// What every rank gave, one after the other in the order of ranks; that of rank r is [begin[r], begin[r + 1]).
+template <class T>
+struct Gathered {
+  std::vector<T> items;
+  std::vector<std::size_t> begin;
+  std::span<const T> of(int rank) const {
+    const auto r = static_cast<std::size_t>(rank);
+    return std::span(items).subspan(begin[r], begin[r + 1] - begin[r]);
+  }
+};
+
+class Communicator {
+ public:
+  /// A communicator of its own over all ranks. Collective.
+  static Communicator world();
+  /// The same ranks, messages apart from this one's. Collective.
+  Communicator duplicate() const { return Communicator(handle_); }
+
+  Communicator(Communicator&& other) noexcept;
+  Communicator& operator=(Communicator&&) = delete;
+  ~Communicator();
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  MPI_Comm handle() const { return handle_; }
+
+  /// Collective.
+  void barrier() const;
+  /// Entry by entry over the ranks, in place. Collective.
+  void reduce(std::span<double> values, MPI_Op op) const;
+  void reduce(std::span<std::int64_t> values, MPI_Op op) const;
+  /// In place on every rank what `root` holds. Collective.
+  void broadcast(std::span<std::byte> bytes, int root = 0) const;
+
+  /// Every rank's list to every rank. Collective.
+  template <class T>
+  Gathered<T> all_gather(std::span<const T> mine) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    Gathered<T> all;
+    all.begin = gather_begins(mine.size());
+    all.items.resize(all.begin.back());
+    gather_bytes(mine.data(), all.items.data(), sizeof(T), all.begin);
+    return all;
+  }
+
+  /// Stretch [begin[r], begin[r + 1]) of `send` goes to rank r; what arrives is put in the order of ranks. Messages
+  /// are cut at `longest` bytes. Collective.
+  template <class T>
+  std::vector<T> all_to_all(std::span<const T> send, std::span<const std::size_t> begin,
+                            std::size_t longest = std::size_t{1} << 30) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::vector<std::size_t> arriving = exchange_begins(begin);
+    std::vector<T> received(arriving.back());
+    exchange_bytes(send.data(), begin, received.data(), arriving, sizeof(T), longest);
+    return received;
+  }
+
+ private:
+  explicit Communicator(MPI_Comm parent);
+  std::vector<std::size_t> gather_begins(std::size_t mine) const;
+  void gather_bytes(const void* mine, void* all, std::size_t item, std::span<const std::size_t> begin) const;
+  std::vector<std::size_t> exchange_begins(std::span<const std::size_t> begin) const;
+  void exchange_bytes(const void* send, std::span<const std::size_t> send_begin, void* receive,
+                      std::span<const std::size_t> receive_begin, std::size_t item, std::size_t longest) const;
+
+  MPI_Comm handle_ = MPI_COMM_NULL;
+  int rank_ = 0;
+  int size_ = 1;
+  int exceptions_ = 0;  ///< in flight when made; while more are, the handle is left to the end of the run
+};
+
+/// Messages on their way. Their buffers stay as they are until wait_all() returns.
+class Requests {
+ public:
+  void send(const Communicator& comm, const void* data, std::size_t bytes, int rank, int tag);
+  void receive(const Communicator& comm, void* data, std::size_t bytes, int rank, int tag);
+  void wait_all();
+
+ private:
+  std::vector<MPI_Request> requests_;
+};
+
+/// Messages of fixed place and length, set up once and sent again and again.
+class PersistentRequests {
+ public:
+  PersistentRequests() = default;
+  ~PersistentRequests();
+  PersistentRequests(PersistentRequests&& other) noexcept : requests_(std::move(other.requests_)) {
+    other.requests_.clear();
+  }
+  PersistentRequests& operator=(PersistentRequests&& other) noexcept {
+    requests_.swap(other.requests_);
+    return *this;
+  }
+
+  /// Each adds one request, numbered from 0 on.
+  void add_send(const Communicator& comm, const double* data, std::size_t n, int rank, int tag);
+  void add_receive(const Communicator& comm, double* data, std::size_t n, int rank, int tag);
+
+  std::size_t size() const { return requests_.size(); }
+  void start(std::size_t i);
+  void start_all();
+  /// Number of a request that has arrived, or -1 if none is under way.
+  int wait_any();
+  void wait_all();
+
+ private:
+  std::vector<MPI_Request> requests_;
+};
+
+}  // namespace mpm::parallel

@@ -1,0 +1,40 @@
+// The pressure of a material without an equation of state: linear elastic in volume, p = p - K tr(de) (thesis 2-97),
+// which is p = K ln(rho/rho0) (2-58) in increments. Not a type of the input; K comes from Young and Poisson.
+// The energy of a body placed at another density is the work of bringing it there from the reference density.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "physics/eos/point.hpp"
+
+namespace mpm::physics {
+
+struct ElasticBulk {
+  static constexpr std::array<core::Column, 0> state{};
+
+  double bulk = 0;  ///< K, stress
+
+  template <class T>
+  EosLine<T> line(const EosPoint<T>& point) const {
+    return {point.pressure - bulk * point.volumetric_strain, 0.0, bulk * point.relative_volume, 0.0};
+  }
+
+  /// p and E of a particle placed at the point's density.
+  template <class T>
+  void initialise(EosPoint<T>& point) const {
+    using core::log;
+    const T v = point.relative_volume, log_v = log(v);
+    point.pressure = -bulk * log_v;
+    point.energy = bulk * (v * log_v - v + 1.0);
+  }
+
+  /// What a failed particle feels: of the density alone, so that a gap must close before it presses again.
+  template <class T>
+  T broken_pressure(const EosPoint<T>& point) const {
+    using core::log;
+    return -bulk * log(point.relative_volume);
+  }
+};
+
+}  // namespace mpm::physics

@@ -1,0 +1,14 @@
+// The equations of state. To add one: a file beside these, and its name here.
+#pragma once
+
+#include <variant>
+
+#include "physics/eos/elastic_bulk.hpp"
+#include "physics/eos/gruneisen.hpp"
+
+namespace mpm::physics {
+
+/// The first is what a material without EquationOfState has.
+using EquationOfState = std::variant<ElasticBulk, Gruneisen>;
+
+}  // namespace mpm::physics

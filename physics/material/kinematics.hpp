@@ -1,0 +1,105 @@
+// First stage: strain increment and volume from the velocity gradient L (manual 3.10.5).
+//   de = sym(L) dt;   V: 0 V (1 + tr de), 1 as the background cell, 2 V exp(tr de), 3 V det(I + L dt),
+//   4 V0 (1 + e_xx)(1 + e_yy)(1 + e_zz) of the accumulated strain, taken as a ratio from step to step.
+// A volume that would become zero, negative or no number keeps its old value and is counted; one outside the
+// bounds of Volume min/max is put on the bound and counted.
+#pragma once
+
+#include "core/material/batch.hpp"
+#include "core/material/constitutive_model.hpp"
+#include "core/simd/math.hpp"
+#include "physics/material/vectors.hpp"
+
+namespace mpm::physics {
+
+template <class T>
+core::Mat3<T> load_gradient(const core::Batch& batch, int row) {
+  const auto get = [&](int i) { return core::load<T>(batch.gradient[i] + row); };
+  return {get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8)};
+}
+
+/// V^{n+1}/V^n. `strain` is the increment, `accumulated` its sum before it (update type 4 only).
+template <class T>
+T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::Sym3<T>& strain,
+               const core::Sym3<T>& accumulated, const T& cell_strain) {
+  using core::exp;
+  switch (update_type) {
+    case 1: return 1.0 + cell_strain;
+    case 2: return exp(trace(strain));
+    case 3:
+      return determinant(core::Mat3<T>{1.0 + dt * l.xx, dt * l.xy, dt * l.xz, dt * l.yx, 1.0 + dt * l.yy, dt * l.yz,
+                                       dt * l.zx, dt * l.zy, 1.0 + dt * l.zz});
+    case 4: {
+      const core::Sym3<T> old = accumulated, now = accumulated + strain;
+      return (1.0 + now.xx) * (1.0 + now.yy) * (1.0 + now.zz) /
+             ((1.0 + old.xx) * (1.0 + old.yy) * (1.0 + old.zz));
+    }
+    default: return 1.0 + trace(strain);
+  }
+}
+
+/// The volume held within Volume min/max, which are factors of the volume at reference density.
+template <class T>
+T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double reference_density, const T& mass,
+               const T& volume, int row) {
+  using core::max;
+  using core::min;
+  const T reference = mass * (1 / reference_density);
+  T held = volume;
+  if (options.volume_min > 0) held = max(held, options.volume_min * reference);
+  if (options.volume_max > 0) held = min(held, options.volume_max * reference);
+  batch.events.volume_limited += count<T>(held != volume, row, batch.particles);
+  return held;
+}
+
+/// Fills strain, volumetric_strain and old_volume of the batch; updates the volume and, where the layout has them,
+/// the accumulated strains.
+template <class T>
+[[gnu::noinline]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
+                                         double reference_density) {
+  using core::Column;
+  const core::ColumnLayout& layout = *batch.layout;
+  const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);
+  const int strain_at = layout.offset(Column::strain_xx);
+  const bool limits = options.volume_min > 0 || options.volume_max > 0;
+  const double dt = batch.dt;
+  const int type = options.volume_update;
+
+  for_each_vector<T>(batch, [&](double* block, int row) {
+    const core::Mat3<T> l = load_gradient<T>(batch, row);
+    const core::Sym3<T> strain{dt * l.xx,
+                               dt * l.yy,
+                               dt * l.zz,
+                               (0.5 * dt) * (l.xy + l.yx),
+                               (0.5 * dt) * (l.yz + l.zy),
+                               (0.5 * dt) * (l.xz + l.zx)};
+    const T components[6] = {strain.xx, strain.yy, strain.zz, strain.xy, strain.yz, strain.xz};
+    for (int i = 0; i < 6; ++i) core::store(batch.strain[i] + row, components[i]);
+    core::store(batch.volumetric_strain + row, trace(strain));
+
+    core::Sym3<T> accumulated{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    if (strain_at >= 0) {
+      T old[6];
+      for (int i = 0; i < 6; ++i) {
+        double* column = block + strain_at + core::block_lanes * i;  // the six columns are neighbours
+        old[i] = core::load<T>(column);
+        core::store(column, old[i] + components[i]);
+      }
+      accumulated = {old[0], old[1], old[2], old[3], old[4], old[5]};
+    }
+    const T cell_strain = type == 1 ? core::load<T>(batch.cell_volumetric_strain + row) : T(0.0);
+
+    const T old_volume = core::load<T>(block + volume_at);
+    const T ratio = volume_ratio(type, l, dt, strain, accumulated, cell_strain);
+    const auto usable = ratio > 0.0;
+    batch.events.negative_volume += count<T>(!usable, row, batch.particles);
+    T volume = core::select(usable, old_volume * ratio, old_volume);
+    if (limits) {
+      volume = limit_volume(batch, options, reference_density, core::load<T>(block + mass_at), volume, row);
+    }
+    core::store(batch.old_volume + row, old_volume);
+    core::store(block + volume_at, volume);
+  });
+}
+
+}  // namespace mpm::physics

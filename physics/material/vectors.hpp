@@ -1,0 +1,48 @@
+// The batch as the stages of the update walk it: one vector of particles after another, T = double or Lanes.
+#pragma once
+
+#include "core/material/batch.hpp"
+
+namespace mpm::physics {
+
+/// f(block, row): `block + layout.offset(column)` is where the vector's values of a column lie, `row` its place in
+/// the rows of the batch.
+template <class T, class F>
+inline void for_each_vector(const core::Batch& batch, F f) {
+  for (int b = 0; b < batch.blocks; ++b) {
+    for (int lane = 0; lane < core::block_lanes; lane += core::LaneTraits<T>::width) {
+      f(batch.block[b] + lane, core::block_lanes * b + lane);
+    }
+  }
+}
+
+/// Lanes of `mask` that hold particles, for a vector at `row` of a batch with `particles`.
+template <class T>
+inline long count(core::MaskOf<T> mask, int row, int particles) {
+  if (!core::any(mask)) return 0;
+  if constexpr (core::LaneTraits<T>::width == 1) {
+    return row < particles ? 1 : 0;
+  } else {
+    long n = 0;
+    for (int i = 0; i < core::LaneTraits<T>::width && row + i < particles; ++i) n += mask[i] ? 1 : 0;
+    return n;
+  }
+}
+
+template <class T>
+inline core::Sym3<T> load_deviator(const double* block, const core::ColumnLayout& layout) {
+  using core::Column;
+  const auto get = [&](Column c) { return core::load<T>(block + layout.offset(c)); };
+  return {get(Column::s_xx), get(Column::s_yy), get(Column::s_zz),
+          get(Column::s_xy), get(Column::s_yz), get(Column::s_xz)};
+}
+
+template <class T>
+inline void store_deviator(double* block, const core::ColumnLayout& layout, const core::Sym3<T>& s) {
+  using core::Column;
+  const auto put = [&](Column c, const T& value) { core::store(block + layout.offset(c), value); };
+  put(Column::s_xx, s.xx), put(Column::s_yy, s.yy), put(Column::s_zz, s.zz);
+  put(Column::s_xy, s.xy), put(Column::s_yz, s.yz), put(Column::s_xz, s.xz);
+}
+
+}  // namespace mpm::physics

@@ -1,0 +1,41 @@
+// Isotropic linear elasticity of the deviator, the base of most strength laws: Young and Poisson, the moduli that
+// follow, and the trial stress s + 2 G de' of the Jaumann rate form (thesis 2-93 to 2-95, 2-100).
+#pragma once
+
+#include <array>
+
+#include "physics/parameter.hpp"
+#include "physics/strength/point.hpp"
+
+namespace mpm::physics {
+
+struct IsotropicElasticity {
+  double young = 0;    ///< stress
+  double poisson = 0;
+  double shear = 0;    ///< G, derived
+  double bulk = 0;     ///< K, derived
+
+  void derive_moduli() {
+    shear = young / (2 * (1 + poisson));
+    bulk = young / (3 * (1 - 2 * poisson));
+  }
+
+  /// s becomes the trial stress.
+  template <class T>
+  void elastic_step(StrengthPoint<T>& point) const {
+    point.s = point.s + T(2 * shear) * point.strain;
+    point.shear_modulus = shear;
+  }
+};
+
+template <class Law>
+constexpr auto elastic_parameters() {
+  return std::array<Parameter<Law>, 2>{{
+      {&Law::young, {.name = "Young", .required = true, .min = 0, .min_open = true, .dimension = "stress",
+                     .meaning = "Young's modulus"}},
+      {&Law::poisson, {.name = "Poisson", .required = true, .min = -1, .max = 0.5, .min_open = true,
+                       .max_open = true, .meaning = "Poisson's ratio"}},
+  }};
+}
+
+}  // namespace mpm::physics

@@ -1,0 +1,41 @@
+// What the plastic laws of von Mises type share: yield stress and heat as parameters, and the radial return.
+#pragma once
+
+#include <array>
+
+#include "physics/strength/elasticity.hpp"
+
+namespace mpm::physics {
+
+struct MisesPlasticity : IsotropicElasticity {
+  double yield0 = 0;                    ///< initial yield stress
+  double plastic_work_coefficient = 0;  ///< part of the plastic work that becomes heat
+
+  /// Books the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112 to
+  /// 2-120). `before` and `after` are the yield stress at the ends of the plastic part of the step; where
+  /// the increment is zero the trial stress stays as it is.
+  template <class T>
+  static void radial_return(StrengthPoint<T>& point, const T& trial, const T& before, const T& after,
+                            const T& increment) {
+    using core::min;
+    // Below the yield surface the ratio exceeds one; 0/0 at zero stress counts as below.
+    point.s = min(after / trial, 1.0) * point.s;
+    point.effective_plastic_strain += increment;
+    point.yield_stress = after;
+    point.plastic_work = 0.5 * (before + after) * increment;
+  }
+};
+
+template <class Law>
+constexpr auto plastic_parameters() {
+  return join(elastic_parameters<Law>(),
+              std::array<Parameter<Law>, 2>{{
+                  {&Law::yield0, {.name = "Yield0", .required = true, .min = 0, .min_open = true,
+                                  .dimension = "stress", .meaning = "initial yield stress"}},
+                  {&Law::plastic_work_coefficient,
+                   {.name = "PlasticWorkCoefficient", .default_value = 0.9, .min = 0, .max = 1,
+                    .meaning = "part of the plastic work that becomes heat"}},
+              }});
+}
+
+}  // namespace mpm::physics

@@ -1,0 +1,432 @@
+#include "tests/support/reference_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <time.h>
+
+namespace mpm::tests {
+namespace {
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix c{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
+  return c;
+}
+
+Matrix transposed(const Matrix& a) {
+  Matrix b{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) b[i][j] = a[j][i];
+  return b;
+}
+
+double contraction(const Matrix& a, const Matrix& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) sum += a[i][j] * b[i][j];
+  return sum;
+}
+
+/// (I - W/2)^-1 (I + W/2) of a skew W: Hughes and Winget's mid-point rule. With A = W/2 of axial vector a,
+/// A^3 = -|a|^2 A, hence I + 2/(1 + |a|^2) (A + A A).
+Matrix mid_point_rotation(const Matrix& W) {
+  Matrix A{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) A[i][j] = 0.5 * W[i][j];
+  const Matrix AA = product(A, A);
+  const double k = 2 / (1 + 0.5 * contraction(A, A));
+  Matrix R{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) R[i][j] = (i == j ? 1.0 : 0.0) + k * (A[i][j] + AA[i][j]);
+  return R;
+}
+
+[[noreturn]] void report_outside(const Vector& x) {
+  throw std::runtime_error("a particle left the grid at " + std::to_string(x[0]) + " " +
+                           std::to_string(x[1]) + " " + std::to_string(x[2]));
+}
+
+/// Mie-Grueneisen 2-130 as p = A + B E, with dA/dmu for the wave speed.
+struct Pressure {
+  double A, B, dA_dmu;
+};
+
+Pressure gruneisen(const ReferenceMaterial& material, double mu) {
+  const double k = material.density * material.c0 * material.c0;
+  if (mu < 0) return {k * mu, material.gamma0, k};
+  const double a = 1 - material.gamma0 / 2;
+  const double b = material.s - 1;
+  const double n = mu * (1 + a * mu);
+  const double d = 1 - b * mu;
+  return {k * n / (d * d), material.gamma0, k * ((1 + 2 * a * mu) / (d * d) + 2 * b * n / (d * d * d))};
+}
+
+}  // namespace
+
+double wave_speed(const ReferenceMaterial& material, const ReferenceParticle& particle) {
+  const double rho = particle.m / particle.V;
+  const double G = material.shear();
+  if (!material.gruneisen) return std::sqrt((4 * G + 3 * material.bulk()) / (3 * rho));
+  const double rho0 = material.density;
+  const Pressure eos = gruneisen(material, rho / rho0 - 1);
+  const double relative_volume = rho0 / rho;
+  const double bulk_part = eos.dA_dmu / rho0 + particle.p * relative_volume * relative_volume / rho0 * eos.B;
+  return std::sqrt(std::max(0.0, 4 * G / (3 * rho) + bulk_part));
+}
+
+void update_stress(const ReferenceMaterial& material, double length, double dt, const Matrix& L,
+                   ReferenceParticle& particle) {
+  const double G = material.shear();
+  const Matrix Lt = transposed(L);
+  Matrix de{}, dw{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      de[i][j] = 0.5 * dt * (L[i][j] + Lt[i][j]);
+      dw[i][j] = 0.5 * dt * (L[i][j] - Lt[i][j]);
+    }
+  const double de_kk = de[0][0] + de[1][1] + de[2][2];
+
+  const double V_old = particle.V;
+  const double V_new = V_old * (1 + de_kk);  // 2-87
+  const double dV = V_new - V_old;
+  const double V_mid = 0.5 * (V_old + V_new);
+  const double rho = particle.m / V_new;
+  const double V0 = particle.m / material.density;
+
+  // Deviator: rotate, try elastic (2-100), return radially (2-112 to 2-115).
+  const Matrix s_old = particle.s;
+  const Matrix R = mid_point_rotation(dw);
+  Matrix s = product(product(R, s_old), transposed(R));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) s[i][j] += 2 * G * (de[i][j] - (i == j ? de_kk / 3 : 0.0));
+  const double sigma_eq = std::sqrt(1.5 * contraction(s, s));
+  const double sigma_y = material.yield + material.plastic_modulus * particle.epef;
+  if (sigma_eq > sigma_y) {
+    const double depef = (sigma_eq - sigma_y) / (3 * G + material.plastic_modulus);
+    const double ratio = (sigma_y + material.plastic_modulus * depef) / sigma_eq;
+    particle.epef += depef;
+    for (auto& row : s)
+      for (double& component : row) component *= ratio;
+  }
+
+  // Viscosity 2-69 with the density at the end and the wave speed at the start of the update.
+  const double D = de_kk / dt;
+  const double q_old = particle.q;
+  const double q =
+      D < 0 ? rho * length * (material.bq1 * length * D * D - material.bq2 * particle.c * D) : 0.0;
+
+  // Energy and pressure together, 2-89 to 2-92.
+  double work = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) work += 0.5 * (s_old[i][j] + s[i][j]) * de[i][j];
+  const double e_star = particle.E * V0 - 0.5 * dV * particle.p - 0.5 * dV * (q_old + q) + V_mid * work;
+  double p = 0;
+  if (material.gruneisen) {
+    const Pressure eos = gruneisen(material, rho / material.density - 1);
+    p = (eos.A + eos.B * e_star / V0) / (1 + 0.5 * eos.B * dV / V0);
+  } else {
+    p = particle.p - material.bulk() * de_kk;  // 2-97
+  }
+
+  particle.V = V_new;
+  particle.s = s;
+  particle.p = p;
+  particle.q = q;
+  particle.E = (e_star - 0.5 * dV * p) / V0;
+  particle.D = D;
+  particle.c = wave_speed(material, particle);
+}
+
+ReferenceStepper::ReferenceStepper(ReferenceCase setup) : case_(std::move(setup)) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    nodes_[a] = static_cast<std::size_t>(case_.cells[a]) + 1;
+    inverse_cell_[a] = 1 / case_.cell[a];
+  }
+  length_ = std::min({case_.cell[0], case_.cell[1], case_.cell[2]});
+  node_mass_unit_ = case_.material.density * case_.cell[0] * case_.cell[1] * case_.cell[2];
+  grid_.resize(nodes_[0] * nodes_[1] * nodes_[2]);
+  next_x_.resize(case_.particles.size());
+  for (auto& particle : case_.particles) particle.c = wave_speed(case_.material, particle);
+}
+
+double ReferenceStepper::dt() const {
+  double critical = std::numeric_limits<double>::infinity();
+  for (const auto& particle : case_.particles) {
+    const double Q =
+        particle.D < 0 ? case_.material.bq2 * particle.c - case_.material.bq1 * length_ * particle.D : 0.0;
+    const auto& v = particle.v;
+    const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    critical = std::min(critical, length_ / (Q + std::sqrt(Q * Q + particle.c * particle.c) + speed));
+  }
+  return case_.dt_factor * critical;
+}
+
+void ReferenceStepper::step() {
+  const double dt = this->dt();
+  if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
+  const bool usf = case_.scheme == ReferenceScheme::usf;
+  particles_to_grid();
+  if (usf) {
+    initial_velocities();
+    update_stresses(dt);
+  }
+  integrate_momentum(dt);
+  grid_to_particles(dt);
+  if (!usf) {
+    final_velocities(dt);
+    update_stresses(dt);
+  }
+  for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].x = next_x_[n];
+  time_ += dt;
+}
+
+ReferenceStepper::Support ReferenceStepper::support(const Vector& x) const {
+  std::array<std::size_t, 3> first{};
+  double N[3][2], dN[3][2];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double scaled = (x[a] - case_.origin[a]) * inverse_cell_[a];
+    const double cells = case_.cells[a];
+    if (!(scaled >= 0 && scaled <= cells)) report_outside(x);
+    const double below = std::min(std::floor(scaled), cells - 1);  // the upper face belongs to the last cell
+    first[a] = static_cast<std::size_t>(below);
+    N[a][1] = scaled - below;
+    N[a][0] = 1 - N[a][1];
+    dN[a][1] = inverse_cell_[a];
+    dN[a][0] = -dN[a][1];
+  }
+  Support result;
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t j = 0; j < 2; ++j)
+      for (std::size_t i = 0; i < 2; ++i, ++n) {
+        result.node[n] = first[0] + i + nodes_[0] * (first[1] + j + nodes_[1] * (first[2] + k));
+        result.S[n] = N[0][i] * N[1][j] * N[2][k];
+        result.G[n] = {dN[0][i] * N[1][j] * N[2][k], N[0][i] * dN[1][j] * N[2][k],
+                       N[0][i] * N[1][j] * dN[2][k]};
+      }
+  return result;
+}
+
+/// What the faces of the grid do to node (i, j, k): the velocity (or momentum) there, and the force with it.
+void ReferenceStepper::constrain(std::size_t i, std::size_t j, std::size_t k, Vector& velocity,
+                                 Vector* force) const {
+  const std::array<std::size_t, 3> index{i, j, k};
+  const auto stop = [&](std::size_t axis) {
+    velocity[axis] = 0;
+    if (force) (*force)[axis] = 0;
+  };
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (index[a] != (side == 0 ? 0 : nodes_[a] - 1)) continue;
+      const double outward = side == 0 ? -velocity[a] : velocity[a];
+      switch (case_.boundary[2 * a + side]) {
+        case 1: stop(0), stop(1), stop(2); break;
+        case 2: stop(a); break;
+        case 4:
+          if (outward > 0) stop(a);
+          break;
+        default: break;
+      }
+    }
+}
+
+template <class Operation>
+void ReferenceStepper::for_active_nodes(Operation&& operation) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < nodes_[2]; ++k)
+    for (std::size_t j = 0; j < nodes_[1]; ++j)
+      for (std::size_t i = 0; i < nodes_[0]; ++i, ++n)
+        if (grid_[n].active) operation(i, j, k, grid_[n]);
+}
+
+/// 2-31, 2-32; the forces at once unless USF has yet to update the stress.
+void ReferenceStepper::particles_to_grid() {
+  std::fill(grid_.begin(), grid_.end(), Node{});
+  for (const auto& particle : case_.particles) {
+    const Support at = support(particle.x);
+    for (std::size_t n = 0; n < 8; ++n) {
+      Node& node = grid_[at.node[n]];
+      node.m += particle.m * at.S[n];
+      for (std::size_t a = 0; a < 3; ++a) node.p[a] += particle.m * particle.v[a] * at.S[n];
+    }
+    if (case_.scheme != ReferenceScheme::usf) add_force(particle, at);
+  }
+  const double cutoff = case_.mass_cutoff * node_mass_unit_;
+  for (Node& node : grid_) node.active = node.m > cutoff;
+}
+
+/// 2-38 to 2-40.
+void ReferenceStepper::add_force(const ReferenceParticle& particle, const Support& at) {
+  Matrix sigma = particle.s;
+  for (std::size_t a = 0; a < 3; ++a) sigma[a][a] -= particle.p + particle.q;
+  for (std::size_t n = 0; n < 8; ++n) {
+    Node& node = grid_[at.node[n]];
+    const Vector& G = at.G[n];
+    for (std::size_t a = 0; a < 3; ++a)
+      node.f[a] += particle.m * at.S[n] * case_.gravity[a] -
+                   particle.V * (sigma[a][0] * G[0] + sigma[a][1] * G[1] + sigma[a][2] * G[2]);
+  }
+}
+
+/// 2-33.
+void ReferenceStepper::initial_velocities() {
+  for_active_nodes([&](std::size_t i, std::size_t j, std::size_t k, Node& node) {
+    for (std::size_t a = 0; a < 3; ++a) node.w[a] = node.p[a] / node.m;
+    constrain(i, j, k, node.w, nullptr);
+  });
+}
+
+/// 2-41 with the boundary conditions.
+void ReferenceStepper::integrate_momentum(double dt) {
+  for_active_nodes([&](std::size_t i, std::size_t j, std::size_t k, Node& node) {
+    for (std::size_t a = 0; a < 3; ++a) node.p[a] += node.f[a] * dt;
+    constrain(i, j, k, node.p, &node.f);
+    for (std::size_t a = 0; a < 3; ++a) {
+      node.v[a] = node.p[a] / node.m;
+      node.a[a] = node.f[a] / node.m;
+      node.w[a] = 0;
+    }
+  });
+}
+
+/// 2-42, 2-43, and the sum of 2-45.
+void ReferenceStepper::grid_to_particles(double dt) {
+  for (std::size_t index = 0; index < case_.particles.size(); ++index) {
+    auto& particle = case_.particles[index];
+    const Support at = support(particle.x);
+    next_x_[index] = particle.x;
+    for (std::size_t n = 0; n < 8; ++n) {
+      const Node& node = grid_[at.node[n]];
+      if (!node.active) continue;
+      for (std::size_t a = 0; a < 3; ++a) {
+        next_x_[index][a] += dt * at.S[n] * node.v[a];
+        particle.v[a] += dt * at.S[n] * node.a[a];
+      }
+    }
+    if (case_.scheme != ReferenceScheme::musl) continue;
+    for (std::size_t n = 0; n < 8; ++n)
+      for (std::size_t a = 0; a < 3; ++a) grid_[at.node[n]].w[a] += particle.m * particle.v[a] * at.S[n];
+  }
+}
+
+/// MUSL: the rest of 2-45. USL: 2-44 with a remedy for its singularity 2-49: a node almost without mass takes
+/// v^k + (f/m) dt m/m_floor.
+void ReferenceStepper::final_velocities(double dt) {
+  const double floor = case_.usl_mass_floor * node_mass_unit_;
+  for_active_nodes([&](std::size_t i, std::size_t j, std::size_t k, Node& node) {
+    const double left_out = node.m < floor ? 1 - node.m / floor : 0.0;
+    for (std::size_t a = 0; a < 3; ++a)
+      node.w[a] =
+          case_.scheme == ReferenceScheme::musl ? node.w[a] / node.m : node.v[a] - left_out * dt * node.a[a];
+    constrain(i, j, k, node.w, nullptr);
+  });
+}
+
+void ReferenceStepper::update_stresses(double dt) {
+  for (auto& particle : case_.particles) {
+    const Support at = support(particle.x);
+    Matrix L{};
+    for (std::size_t n = 0; n < 8; ++n) {
+      const Node& node = grid_[at.node[n]];
+      if (!node.active) continue;
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b) L[a][b] += node.w[a] * at.G[n][b];
+    }
+    update_stress(case_.material, length_, dt, L, particle);
+    if (!(particle.V > 0)) throw std::runtime_error("a particle's volume is " + std::to_string(particle.V));
+    if (case_.scheme == ReferenceScheme::usf) add_force(particle, at);
+  }
+}
+
+ReferenceEnergy ReferenceStepper::energy() const {
+  ReferenceEnergy sum;
+  for (const auto& particle : case_.particles) {
+    sum.internal += particle.E * particle.m / case_.material.density;
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum.kinetic += 0.5 * particle.m * particle.v[a] * particle.v[a];
+      sum.potential -= particle.m * case_.gravity[a] * particle.x[a];
+    }
+  }
+  return sum;
+}
+
+Vector ReferenceStepper::momentum() const {
+  Vector sum{};
+  for (const auto& particle : case_.particles)
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += particle.m * particle.v[a];
+  return sum;
+}
+
+ReferenceCase taylor_bar(double dp) {
+  constexpr double bar_length = 25.4, bar_diameter = 7.6, impact_speed = 190;
+  ReferenceCase setup;
+  setup.material = {.density = 8.93e-3,
+                    .young = 117e3,
+                    .poisson = 0.35,
+                    .yield = 157,
+                    .plastic_modulus = 425,
+                    .gruneisen = true,
+                    .c0 = 3940,
+                    .s = 1.49,
+                    .gamma0 = 1.96,
+                    .bq1 = 1.5,
+                    .bq2 = 0.06};
+  const double cell = 2 * dp;
+  const int half = static_cast<int>(std::ceil(1.1 * bar_diameter / cell));  // the foot grows to 0.9 diameters
+  setup.cell = {cell, cell, cell};
+  setup.origin = {-half * cell, -half * cell, 0};
+  setup.cells = {2 * half, 2 * half, static_cast<int>(std::ceil(bar_length / cell)) + 1};
+  setup.boundary = {0, 0, 0, 0, 2, 0};
+
+  const int layers = static_cast<int>(std::lround(bar_length / dp));
+  const double dz = bar_length / layers;
+  const int side = static_cast<int>(std::ceil(bar_diameter / 2 / dp));
+  for (int k = 0; k < layers; ++k)
+    for (int j = -side; j < side; ++j)
+      for (int i = -side; i < side; ++i) {
+        const double x = (i + 0.5) * dp, y = (j + 0.5) * dp;
+        if (4 * (x * x + y * y) > bar_diameter * bar_diameter) continue;
+        ReferenceParticle particle;
+        particle.x = {x, y, (k + 0.5) * dz};
+        particle.v = {0, 0, -impact_speed};
+        particle.V = dp * dp * dz;
+        particle.m = setup.material.density * particle.V;
+        setup.particles.push_back(particle);
+      }
+  return setup;
+}
+
+BarShape bar_shape(std::span<const ReferenceParticle> particles, double dp, double height) {
+  BarShape shape;
+  for (const auto& particle : particles) {
+    const double z = particle.x[2];
+    const double diameter = 2 * std::hypot(particle.x[0], particle.x[1]) + dp;
+    shape.length = std::max(shape.length, z + dp / 2);
+    shape.foot_diameter = std::max(shape.foot_diameter, diameter);
+    if (std::abs(z - height) < dp / 2) shape.diameter = std::max(shape.diameter, diameter);
+  }
+  return shape;
+}
+
+double run_reference(int particles_target, int steps) {
+  const double bar_volume = std::numbers::pi / 4 * 7.6 * 7.6 * 25.4;
+  ReferenceStepper stepper(taylor_bar(std::cbrt(bar_volume / particles_target)));
+  stepper.step();  // the first one touches the memory
+  const auto cpu_ns = [] {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+  };
+  const double start = cpu_ns();
+  for (int n = 0; n < steps; ++n) stepper.step();
+  return (cpu_ns() - start) / (static_cast<double>(stepper.particles().size()) * steps);
+}
+
+}  // namespace mpm::tests

@@ -1,0 +1,158 @@
+// The oracle: a naive, textbook material point method, one struct per particle and one dense grid, in plain
+// double. Steps of thesis 2.2.2 (USF, USL, MUSL), FLIP transfer, trilinear shape functions (2-17), stress
+// update 2.4.1, J2 return 2.4.3, Mie-Grueneisen 2-130, bulk viscosity 2-69. It shares no code with the
+// production kernels. Limits: one material, one rank, uniform grid, no contact, no failure. Shown by
+// tests/core/reference.
+//
+// Symbols: S_ip, G_ip shape function and gradient; m_i, p_i, f_i mass, momentum, force of a node; index p a
+// particle. Units are the user's; the Taylor bar uses mm, g, ms, hence MPa.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace mpm::tests {
+
+using Vector = std::array<double, 3>;
+using Matrix =
+    std::array<std::array<double, 3>, 3>;  ///< [row][column]; a velocity gradient has dv_row/dx_column
+
+enum class ReferenceScheme { usf, usl, musl };
+
+struct ReferenceMaterial {
+  double density = 0;  ///< rho_0
+  double young = 0;
+  double poisson = 0;
+  double yield = std::numeric_limits<double>::infinity();  ///< initial yield stress
+  double plastic_modulus = 0;                              ///< E_p, slope of yield stress over plastic strain
+  bool gruneisen = false;                                  ///< otherwise dp = -K tr(d eps), 2-96
+  double c0 = 0, s = 0, gamma0 = 0;                        ///< Mie-Grueneisen: U_s = c0 + s U_p
+  double bq1 = 0, bq2 = 0;                                 ///< quadratic and linear bulk viscosity
+
+  double shear() const { return young / (2 * (1 + poisson)); }
+  double bulk() const { return young / (3 * (1 - 2 * poisson)); }
+};
+
+/// E_p of a tangent modulus.
+constexpr double plastic_modulus(double young, double tangent) { return young * tangent / (young - tangent); }
+
+struct ReferenceParticle {
+  Vector x{}, v{};
+  double m = 0;
+  double V = 0;     ///< current volume
+  Matrix s{};       ///< deviator of the Cauchy stress
+  double p = 0;     ///< pressure, positive in compression, without q
+  double q = 0;     ///< artificial viscous pressure
+  double E = 0;     ///< internal energy per unit of initial volume m/rho_0
+  double epef = 0;  ///< effective plastic strain
+  double c = 0;     ///< wave speed 2-57; set by the stepper
+  double D = 0;     ///< volumetric strain rate of the latest stress update
+};
+
+/// One stress update over dt at velocity gradient L: s, p, q, E, epef, V, c and D, thesis 2.4.
+/// `length` is the grid's smallest cell edge, l_e of the viscosity.
+void update_stress(const ReferenceMaterial& material, double length, double dt, const Matrix& L,
+                   ReferenceParticle& particle);
+
+/// Wave speed 2-57 of the particle's present state.
+double wave_speed(const ReferenceMaterial& material, const ReferenceParticle& particle);
+
+struct ReferenceCase {
+  Vector origin{};
+  Vector cell{};
+  std::array<int, 3> cells{};
+  /// Lower and upper face of x, y, z: 0 free, 1 fixed, 2 symmetry, 4 rigid wall (no penetration, free to
+  /// leave).
+  std::array<int, 6> boundary{};
+  Vector gravity{};
+  ReferenceScheme scheme = ReferenceScheme::musl;
+  double dt_factor = 0.5;                                       ///< of the critical step
+  double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
+  /// USL only. Nodes lighter than this times rho_0 * cell volume take part of their acceleration into the
+  /// strain rate.
+  double usl_mass_floor = 1e-2;
+  ReferenceMaterial material;
+  std::vector<ReferenceParticle> particles;
+};
+
+struct ReferenceEnergy {
+  double kinetic = 0;
+  double internal = 0;
+  double potential = 0;  ///< of gravity, zero at x = 0
+  double total() const { return kinetic + internal + potential; }
+};
+
+class ReferenceStepper {
+ public:
+  explicit ReferenceStepper(ReferenceCase setup);
+
+  /// Throws std::runtime_error when a particle leaves the grid, a volume is not positive or dt is not a
+  /// number.
+  void step();
+
+  std::span<const ReferenceParticle> particles() const { return case_.particles; }
+  double time() const { return time_; }
+  /// Of the next step: dt_factor times the critical step of the present state, 2-51 and 2-74.
+  double dt() const;
+  ReferenceEnergy energy() const;
+  Vector momentum() const;
+
+ private:
+  struct Node {
+    double m = 0;
+    Vector p{}, f{};      ///< momentum and force
+    Vector v{}, a{};      ///< p^{k+1}/m and f/m
+    Vector w{};           ///< velocity of the strain rate
+    bool active = false;  ///< heavier than the cutoff
+  };
+  struct Support {
+    std::array<std::size_t, 8> node;
+    std::array<double, 8> S;
+    std::array<Vector, 8> G;
+  };
+
+  Support support(const Vector& x) const;
+  void constrain(std::size_t i, std::size_t j, std::size_t k, Vector& velocity, Vector* force) const;
+  template <class Operation>
+  void for_active_nodes(Operation&& operation);
+
+  void particles_to_grid();
+  void add_force(const ReferenceParticle& particle, const Support& at);
+  void initial_velocities();
+  void integrate_momentum(double dt);
+  void grid_to_particles(double dt);
+  void final_velocities(double dt);
+  void update_stresses(double dt);
+
+  ReferenceCase case_;
+  std::array<std::size_t, 3> nodes_{};  ///< along each axis
+  Vector inverse_cell_{};
+  double length_ = 0;          ///< smallest cell edge
+  double node_mass_unit_ = 0;  ///< rho_0 * cell volume
+  std::vector<Node> grid_;
+  std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
+  double time_ = 0;
+};
+
+/// The copper Taylor bar of thesis 3.5.1 and 5.3.3: a full cylinder, 25.4 long and 7.6 across, at 190 mm/ms
+/// onto the symmetry plane z = 0; particles on a lattice of spacing dp (along z: nearest that divides the
+/// length), cells 2 dp.
+ReferenceCase taylor_bar(double dp);
+
+struct BarShape {
+  double length = 0;
+  double foot_diameter = 0;  ///< largest
+  double diameter = 0;       ///< at the height asked for
+};
+
+/// Extents of particle centres plus half of dp on each side.
+BarShape bar_shape(std::span<const ReferenceParticle> particles, double dp, double height);
+
+/// The naive baseline: MUSL on a Taylor bar of about that many particles.
+/// Returns CPU time of the stepping loop per particle and step, in ns.
+double run_reference(int particles_target, int steps);
+
+}  // namespace mpm::tests
