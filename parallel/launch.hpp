@@ -54,7 +54,7 @@ inline constexpr char is_value = 'v', is_input_errors = 'i', is_other = 'x', is_
 template <class... Kept>
 char letter_of(const std::exception& e) {
   char letter = is_other;
-  char next = is_first_kept;
+  [[maybe_unused]] char next = is_first_kept;
   ((letter = letter == is_other && dynamic_cast<const Kept*>(&e) != nullptr ? next : letter, ++next), ...);
   return letter;
 }

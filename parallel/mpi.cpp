@@ -92,6 +92,17 @@ void Communicator::broadcast(std::span<std::byte> bytes, int root) const {
   }
 }
 
+void Communicator::receive_onto(std::vector<double>& data, int rank, int tag) const {
+  MPI_Message message = MPI_MESSAGE_NULL;
+  MPI_Status status;
+  int n = 0;
+  check(MPI_Mprobe(rank, tag, handle_, &message, &status), "MPI_Mprobe");
+  check(MPI_Get_count(&status, MPI_BYTE, &n), "MPI_Get_count");
+  const std::size_t old = data.size();
+  data.resize(old + static_cast<std::size_t>(n) / sizeof(double));
+  check(MPI_Mrecv(data.data() + old, n, MPI_BYTE, &message, &status), "MPI_Mrecv");
+}
+
 std::vector<std::size_t> Communicator::gather_begins(std::size_t mine) const {
   const auto ranks = static_cast<std::size_t>(size_);
   const auto n = static_cast<std::uint64_t>(mine);

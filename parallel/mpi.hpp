@@ -73,6 +73,9 @@ class Communicator {
   /// In place on every rank what `root` holds. Collective.
   void broadcast(std::span<std::byte> bytes, int root = 0) const;
 
+  /// Append the next message of `rank` with `tag`, whatever its length.
+  void receive_onto(std::vector<double>& data, int rank, int tag) const;
+
   /// Every rank's list to every rank. Collective.
   template <class T>
   Gathered<T> all_gather(std::span<const T> mine) const {

@@ -19,7 +19,8 @@ void BlockSource::append_row(std::uint64_t row, std::uint64_t first, std::uint64
   const double z = LatticeLine(block_.origin[2], h).at(odd(row / ny));
   const double volume = h * h * h;
   for (std::uint64_t i = first; i < last; ++i)
-    out.push_back({frame_.to_global(Position{x.at(odd(i)), y, z}), density_ * volume, volume, row * width() + i});
+    out.push_back(
+        {frame_.to_global(Position{x.at(odd(i)), y, z}), density_ * volume, volume, row * width() + i});
 }
 
 Box BlockSource::bounds() const {

@@ -1,20 +1,20 @@
 #pragma once
 // Block: particles at the centres of cubes of edge dp, counted from the corner (x0, y0, z0).
-// Along each axis stand round(l/dp) particles, at least one; where l is no multiple of dp the spacing stays dp
-// and the block that they fill is longer or shorter than l by up to half a spacing. relative_volume_error() says
-// by how much.
-
-#include "core/discretise/frame.hpp"
-#include "core/discretise/rows.hpp"
+// Along each axis stand round(l/dp) particles, at least one; where l is no multiple of dp the spacing stays
+// dp and the block that they fill is longer or shorter than l by up to half a spacing.
+// relative_volume_error() says by how much.
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "core/discretise/frame.hpp"
+#include "core/discretise/rows.hpp"
+
 namespace mpm::core {
 
 class BlockSource final : public RowSource {
-public:
+ public:
   BlockSource(const BlockGeometry& block, const Frame& frame, double density);
 
   double expected_particles() const override { return counts_[0] * counts_[1] * counts_[2]; }
@@ -22,7 +22,7 @@ public:
   double solid_volume() const override { return block_.size[0] * block_.size[1] * block_.size[2]; }
   double relative_volume_error() const override;
 
-private:
+ private:
   void append_row(std::uint64_t row, std::uint64_t first, std::uint64_t last,
                   std::vector<Seed>& out) const override;
 

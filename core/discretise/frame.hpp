@@ -1,10 +1,10 @@
 #pragma once
-// Between a body's work plane and the global frame. Axes along the global ones bring no round-off but that of the
-// one addition of the origin.
-
-#include "core/scene/scene.hpp"
+// Between a body's work plane and the global frame. Axes along the global ones bring no round-off but that of
+// the one addition of the origin.
 
 #include <array>
+
+#include "core/scene/scene.hpp"
 
 namespace mpm::core {
 
@@ -12,7 +12,7 @@ using Position = std::array<double, 3>;
 using Box = std::array<Position, 2>;  ///< smallest and largest coordinates
 
 class Frame {
-public:
+ public:
   Frame() = default;
   explicit Frame(const WorkPlane& plane);
   Frame(const Scene& scene, const BodyInput& body);
@@ -22,7 +22,7 @@ public:
   /// The global box around a local one.
   Box to_global(const Box& local) const;
 
-private:
+ private:
   Position origin_{};
   std::array<Position, 3> axes_{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 };

@@ -1,9 +1,9 @@
 #include "core/discretise/grading.hpp"
 
-#include "core/discretise/line.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/discretise/line.hpp"
 
 namespace mpm::core {
 

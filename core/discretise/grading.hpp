@@ -1,12 +1,13 @@
 #pragma once
-// Layers whose thickness grows by one factor from layer to layer, exactly from `bottom` to `top`. Their number is the
-// one with which they fill the height best; like a block's, a stack of whole layers is longer or shorter than the
-// height by up to half a layer. With bottom = top this is the uniform stack of round(height/spacing) layers.
+// Layers whose thickness grows by one factor from layer to layer, exactly from `bottom` to `top`. Their
+// number is the one with which they fill the height best; like a block's, a stack of whole layers is longer
+// or shorter than the height by up to half a layer. With bottom = top this is the uniform stack of
+// round(height/spacing) layers.
 
 namespace mpm::core {
 
 class Grading {
-public:
+ public:
   /// All > 0. A height below one spacing gives a single layer of the geometric mean's thickness.
   Grading(double bottom, double top, double height);
 
@@ -15,7 +16,7 @@ public:
   double thickness(double k) const;          ///< of layer k, counted from 0
   double lower(double k) const;              ///< height of layer k's lower face; k = layers: of the top
 
-private:
+ private:
   double first_;
   double layers_ = 1;
   double log_ratio_ = 0;  ///< logarithm of the factor

@@ -1,11 +1,11 @@
 #include "core/discretise/lattice.hpp"
 
-#include "core/discretise/line.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "core/discretise/line.hpp"
 
 namespace mpm::core {
 
@@ -90,7 +90,8 @@ double LayeredLattice::relative_volume_error() const {
 
 BallLattice::BallLattice(const SphereGeometry& ball, const Frame& frame, double density)
     : LayeredLattice(ball.centre, ball.angle, frame, density), ball_(ball) {
-  const double radius_in_steps = std::sqrt(std::floor(squared_steps(ball.outer_radius, ball.spacing) * (1 + on_boundary)));
+  const double radius_in_steps =
+      std::sqrt(std::floor(squared_steps(ball.outer_radius, ball.spacing) * (1 + on_boundary)));
   const double half = std::floor((std::floor(radius_in_steps) + 1) / 2);
   set_layers(ball.upper_half ? half : 2 * half, half);
   if (!numbered()) return;

@@ -1,16 +1,16 @@
 #pragma once
 // Round shapes cut out of orthogonal lattices: layers along local Z, each a square lattice of its own spacing
 // with points at the odd multiples of half the spacing from the axis. A point (2i + 1, 2j + 1) of a layer
-// belongs to the shape when the sum of the squares lies between two whole numbers; with that, nothing depends on
-// round-off and the mirror images of a point have its very coordinates. A particle's volume is spacing^3.
-
-#include "core/discretise/frame.hpp"
-#include "core/discretise/rows.hpp"
-#include "core/discretise/sweep.hpp"
+// belongs to the shape when the sum of the squares lies between two whole numbers; with that, nothing depends
+// on round-off and the mirror images of a point have its very coordinates. A particle's volume is spacing^3.
 
 #include <array>
 #include <cstdint>
 #include <vector>
+
+#include "core/discretise/frame.hpp"
+#include "core/discretise/rows.hpp"
+#include "core/discretise/sweep.hpp"
 
 namespace mpm::core {
 
@@ -23,14 +23,15 @@ struct Layer {
 };
 
 class LayeredLattice : public RowSource {
-public:
+ public:
   double relative_volume_error() const final;
 
-protected:
+ protected:
   /// centre: of all layers, local frame. Spans of layers follow with set_layers.
   LayeredLattice(const Position& centre, double angle, const Frame& frame, double density);
 
-  /// layers, half_columns: whole numbers of any size; half_columns: points from the axis to the widest layer's rim.
+  /// layers, half_columns: whole numbers of any size; half_columns: points from the axis to the widest
+  /// layer's rim.
   void set_layers(double layers, double half_columns);
 
   const Position& centre() const { return centre_; }
@@ -39,11 +40,12 @@ protected:
   /// box about the axis, moved to the centre, in the global frame
   Box placed(Box box) const;
 
-private:
+ private:
   virtual Layer layer(std::uint64_t k) const = 0;
   /// Columns of a layer's row that belong to the shape: left and right of the axis.
   std::array<Span, 2> columns(const Layer& layer, std::int64_t row) const;
-  void append_row(std::uint64_t row, std::uint64_t first, std::uint64_t last, std::vector<Seed>& out) const final;
+  void append_row(std::uint64_t row, std::uint64_t first, std::uint64_t last,
+                  std::vector<Seed>& out) const final;
 
   Position centre_;
   Sweep sweep_;
@@ -56,14 +58,14 @@ private:
 
 /// Sphere or spherical shell: a point is inside when inner radius <= distance <= outer radius.
 class BallLattice final : public LayeredLattice {
-public:
+ public:
   BallLattice(const SphereGeometry& ball, const Frame& frame, double density);
 
   double expected_particles() const override;
   Box bounds() const override;
   double solid_volume() const override;
 
-private:
+ private:
   Layer layer(std::uint64_t k) const override;
 
   SphereGeometry ball_;

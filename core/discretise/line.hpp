@@ -6,15 +6,15 @@
 
 namespace mpm::core {
 
-/// Relative tolerance with which a particle on a boundary counts as inside: far above the round-off of an input's
-/// decimal numbers, far below anything seen in a result, and free of units.
+/// Relative tolerance with which a particle on a boundary counts as inside: far above the round-off of an
+/// input's decimal numbers, far below anything seen in a result, and free of units.
 inline constexpr double on_boundary = 1e-9;
 
-/// Coordinates origin + half * odd, half being half a spacing. Where the origin itself is a multiple of `half`
-/// (to 1e-9 of it) both go through one whole number: a body symmetric about zero then has mirror images to the
-/// last bit, and bodies that share a lattice share its coordinates.
+/// Coordinates origin + half * odd, half being half a spacing. Where the origin itself is a multiple of
+/// `half` (to 1e-9 of it) both go through one whole number: a body symmetric about zero then has mirror
+/// images to the last bit, and bodies that share a lattice share its coordinates.
 class LatticeLine {
-public:
+ public:
   LatticeLine(double origin, double spacing) : origin_(origin), half_(spacing / 2) {
     const double steps = origin / half_;
     steps_ = std::nearbyint(steps);
@@ -22,7 +22,7 @@ public:
   }
   double at(double odd) const { return snapped_ ? (steps_ + odd) * half_ : origin_ + odd * half_; }
 
-private:
+ private:
   double origin_;
   double half_;
   double steps_ = 0;

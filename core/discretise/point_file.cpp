@@ -1,13 +1,13 @@
 #include "core/discretise/point_file.hpp"
 
-#include <fmt/format.h>
-#include <zlib.h>
-
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+
+#include <fmt/format.h>
+#include <zlib.h>
 
 namespace mpm::core {
 
@@ -64,7 +64,8 @@ bool PointFile::refill() {
   const char* reason = gzerror(file_.get(), &error);
   if (got < 0 || (error != Z_OK && error != Z_STREAM_END)) {
     const std::string why = error == Z_ERRNO && errno != 0 ? std::strerror(errno) : reason;
-    throw std::runtime_error("reading stopped after line " + std::to_string(following_.number - 1) + ": " + why);
+    throw std::runtime_error("reading stopped after line " + std::to_string(following_.number - 1) + ": " +
+                             why);
   }
   exhausted_ = got == 0;
   end_ += static_cast<std::size_t>(got);
@@ -83,8 +84,8 @@ bool PointFile::next(std::string_view& line) {
   }
   if (newline == nullptr && end_ == begin_) return false;
   const char* start = buffer_.data() + begin_;
-  const auto length =
-      newline != nullptr ? static_cast<std::size_t>(static_cast<const char*>(newline) - start) : end_ - begin_;
+  const auto length = newline != nullptr ? static_cast<std::size_t>(static_cast<const char*>(newline) - start)
+                                         : end_ - begin_;
   place_ = following_;
   if (length > longest_line)
     throw std::runtime_error(fmt::format("line {} is longer than {} characters: this is no file of particles",
@@ -127,7 +128,8 @@ ParsedLine parse_point_line(std::string_view line) {
   const std::string_view extra = take_word(rest);
   if (!extra.empty())
     return wrong(fmt::format("expected four numbers, mass x y z, found more: `{}`", printable(extra)));
-  if (!(parsed.values[0] > 0)) return wrong(fmt::format("mass: expected more than 0, found {}", parsed.values[0]));
+  if (!(parsed.values[0] > 0))
+    return wrong(fmt::format("mass: expected more than 0, found {}", parsed.values[0]));
   parsed.kind = LineKind::point;
   return parsed;
 }

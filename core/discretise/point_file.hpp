@@ -1,6 +1,6 @@
 #pragma once
-// The lines of a text file of particles, plain or gzipped: mass x y z, separated by blanks. Empty lines are skipped,
-// and what follows a # or !. Reads in blocks; remembers nothing of what it has passed.
+// The lines of a text file of particles, plain or gzipped: mass x y z, separated by blanks. Empty lines are
+// skipped, and what follows a # or !. Reads in blocks; remembers nothing of what it has passed.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ struct LinePlace {
 };
 
 class PointFile {
-public:
+ public:
   /// Longest line that is still taken for one of a particle.
   static constexpr std::size_t longest_line = 4096;
 
@@ -35,7 +35,7 @@ public:
   /// Makes next() return the line at `place`. Going back in a gzipped file unpacks it from its start.
   void seek(const LinePlace& place);
 
-private:
+ private:
   bool refill();
 
   struct Close {

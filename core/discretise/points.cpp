@@ -1,10 +1,10 @@
 #include "core/discretise/points.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+
+#include <fmt/format.h>
 
 namespace mpm::core {
 
@@ -62,10 +62,12 @@ void InlinePoints::generate(std::uint64_t first_unit, std::uint64_t last_unit, s
     out.push_back(seed(points_[i].mass, points_[i].position, i));
 }
 
-FilePoints::FilePoints(const std::string& path, const SourceLocation& body, const Frame& frame, double density)
+FilePoints::FilePoints(const std::string& path, const SourceLocation& body, const Frame& frame,
+                       double density)
     : PointList(frame, density), path_(path), file_(open(path, body)) {
   scan(body);
-  if (identities() == 0) throw about_file(path, body, "the file holds no particles: expected lines of mass x y z");
+  if (identities() == 0)
+    throw about_file(path, body, "the file holds no particles: expected lines of mass x y z");
 }
 
 void FilePoints::scan(const SourceLocation& body) {
@@ -98,7 +100,8 @@ void FilePoints::generate(std::uint64_t first_unit, std::uint64_t last_unit, std
     file_.seek(unit_starts_[first_unit]);
     append_lines(first_unit * points_per_unit, std::min(last_unit * points_per_unit, identities()), out);
   } catch (const std::runtime_error& error) {
-    throw InputErrors({at_line(path_, 0, fmt::format("the file changed while it was read: {}", error.what()))});
+    throw InputErrors(
+        {at_line(path_, 0, fmt::format("the file changed while it was read: {}", error.what()))});
   }
 }
 

@@ -9,7 +9,7 @@ namespace mpm::core {
 namespace {
 
 class Cone final : public Profile {
-public:
+ public:
   explicit Cone(const CylinderGeometry& cylinder) : c_(cylinder) {}
   double height() const override { return c_.height; }
   double inner(double z) const override { return between(c_.bottom_inner_radius, c_.top_inner_radius, z); }
@@ -24,7 +24,7 @@ public:
     return frustum(to) - frustum(from);
   }
 
-private:
+ private:
   double between(double bottom, double top, double z) const {
     return bottom + (top - bottom) * std::clamp(z / c_.height, 0.0, 1.0);
   }
@@ -34,7 +34,7 @@ private:
 };
 
 class Ogive final : public Profile {
-public:
+ public:
   explicit Ogive(const OgiveGeometry& ogive)
       : arc_(ogive.ogive_radius),
         offset_(ogive.ogive_radius - ogive.end_radius),
@@ -48,7 +48,7 @@ public:
     return (to * to - from * from) * (below(upper) - below(lower));
   }
 
-private:
+ private:
   /// Integral of pi r^2 from the base to z.
   double below(double z) const {
     z = std::clamp(z, 0.0, height_);

@@ -1,16 +1,17 @@
 #include "core/discretise/revolved.hpp"
 
-#include "core/discretise/line.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/discretise/line.hpp"
 
 namespace mpm::core {
 
 namespace {
 
-/// Calls visit(first, last) for groups of consecutive layers, some hundred of them however many layers there are.
+/// Calls visit(first, last) for groups of consecutive layers, some hundred of them however many layers there
+/// are.
 template <class Visit>
 void for_groups(double layers, Visit&& visit) {
   constexpr double most = 512;
@@ -23,8 +24,8 @@ void for_groups(double layers, Visit&& visit) {
 
 double middle(const Grading& grading, double k) { return grading.lower(k) + grading.thickness(k) / 2; }
 
-/// Upper bound over all layers of length(z)/thickness, with z at the middle of a layer of a stack stretched by
-/// `stretch`; length must be monotone in z.
+/// Upper bound over all layers of length(z)/thickness, with z at the middle of a layer of a stack stretched
+/// by `stretch`; length must be monotone in z.
 template <class Length>
 double most_steps(const Grading& grading, double height, double stretch, Length&& length) {
   double most = 0;
@@ -73,7 +74,8 @@ Layer RevolvedLattice::layer(std::uint64_t k) const {
   const double h = grading_.thickness(number);
   const double height = middle(grading_, number);
   const double z = std::fmin(height, solid_.profile->height());
-  const double plane = grading_.uniform() ? LatticeLine(solid_.base[2], h).at(odd(k)) : solid_.base[2] + height;
+  const double plane =
+      grading_.uniform() ? LatticeLine(solid_.base[2], h).at(odd(k)) : solid_.base[2] + height;
   return {plane, h, inner_limit(solid_.profile->inner(z), h), outer_limit(solid_.profile->outer(z), h)};
 }
 

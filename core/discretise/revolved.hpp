@@ -1,30 +1,29 @@
 #pragma once
-// Particles of cylinders, cones, frustums and ogives: graded layers along local Z (grading.hpp), the radii of a layer
-// taken at its middle.
-// Orthogonal: each layer a square lattice of the layer's own thickness (lattice.hpp).
-// Polar: the layers stretched evenly to fill the height; in each the wall cut into rings of equal thickness close to
-// the layer's, each ring into arcs of about the same length. A particle stands at half the layer's height
-// and at its arc's middle, at the radius of the cell's centroid, and has the cell's volume; all cells together are
-// the solid, to round-off.
+// Particles of cylinders, cones, frustums and ogives: graded layers along local Z (grading.hpp), the radii of
+// a layer taken at its middle. Orthogonal: each layer a square lattice of the layer's own thickness
+// (lattice.hpp). Polar: the layers stretched evenly to fill the height; in each the wall cut into rings of
+// equal thickness close to the layer's, each ring into arcs of about the same length. A particle stands at
+// half the layer's height and at its arc's middle, at the radius of the cell's centroid, and has the cell's
+// volume; all cells together are the solid, to round-off.
+
+#include <cstdint>
+#include <vector>
 
 #include "core/discretise/grading.hpp"
 #include "core/discretise/lattice.hpp"
 #include "core/discretise/profile.hpp"
 
-#include <cstdint>
-#include <vector>
-
 namespace mpm::core {
 
 class RevolvedLattice final : public LayeredLattice {
-public:
+ public:
   RevolvedLattice(const Revolved& solid, const Frame& frame, double density);
 
   double expected_particles() const override;
   Box bounds() const override;
   double solid_volume() const override;
 
-private:
+ private:
   Layer layer(std::uint64_t k) const override;
 
   Revolved solid_;
@@ -32,7 +31,7 @@ private:
 };
 
 class RingSource final : public RowSource {
-public:
+ public:
   RingSource(const Revolved& solid, const Frame& frame, double density);
 
   double expected_particles() const override;
@@ -40,7 +39,7 @@ public:
   double solid_volume() const override;
   double relative_volume_error() const override { return 0; }
 
-private:
+ private:
   void append_row(std::uint64_t row, std::uint64_t first, std::uint64_t last,
                   std::vector<Seed>& out) const override;
 

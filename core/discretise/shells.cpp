@@ -1,11 +1,11 @@
 #include "core/discretise/shells.hpp"
 
-#include "core/discretise/lattice.hpp"
-#include "core/discretise/line.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/discretise/lattice.hpp"
+#include "core/discretise/line.hpp"
 
 namespace mpm::core {
 

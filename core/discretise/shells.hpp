@@ -1,20 +1,20 @@
 #pragma once
-// Particles of spheres in spherical shells: round((outer - inner)/dp) shells of equal thickness; each hemisphere of a
-// shell cut into bands of equal polar angle, each band into arcs of about dp. A particle stands at its cell's
-// centroid along each of r, cos(polar angle) and azimuth, and has its cell's volume; all cells together are the solid,
-// to round-off. Hemispheres and quadrants are mirror images to the last bit.
+// Particles of spheres in spherical shells: round((outer - inner)/dp) shells of equal thickness; each
+// hemisphere of a shell cut into bands of equal polar angle, each band into arcs of about dp. A particle
+// stands at its cell's centroid along each of r, cos(polar angle) and azimuth, and has its cell's volume; all
+// cells together are the solid, to round-off. Hemispheres and quadrants are mirror images to the last bit.
+
+#include <cstdint>
+#include <vector>
 
 #include "core/discretise/frame.hpp"
 #include "core/discretise/rows.hpp"
 #include "core/discretise/sweep.hpp"
 
-#include <cstdint>
-#include <vector>
-
 namespace mpm::core {
 
 class ShellSource final : public RowSource {
-public:
+ public:
   ShellSource(const SphereGeometry& ball, const Frame& frame, double density);
 
   double expected_particles() const override;
@@ -22,7 +22,7 @@ public:
   double solid_volume() const override;
   double relative_volume_error() const override { return 0; }
 
-private:
+ private:
   void append_row(std::uint64_t row, std::uint64_t first, std::uint64_t last,
                   std::vector<Seed>& out) const override;
 

@@ -1,11 +1,11 @@
 #include "core/discretise/sweep.hpp"
 
-#include "core/discretise/line.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "core/discretise/line.hpp"
 
 namespace mpm::core {
 
@@ -64,7 +64,8 @@ bool Sweep::contains(double x, double y) const {
 }
 
 Box Sweep::box(double radius, double lower, double upper) const {
-  return {{{only_positive_x() ? 0 : -radius, only_positive_y() ? 0 : -radius, lower}, {radius, radius, upper}}};
+  return {
+      {{only_positive_x() ? 0 : -radius, only_positive_y() ? 0 : -radius, lower}, {radius, radius, upper}}};
 }
 
 double Sweep::arc_count(double radius, double spacing) const {
@@ -74,8 +75,7 @@ double Sweep::arc_count(double radius, double spacing) const {
 
 std::array<double, 2> Sweep::arc_direction(std::uint64_t index, std::uint64_t count) const {
   if (quadrants_ == 0) {
-    const double angle =
-        radian * degrees_ * (static_cast<double>(index) + 0.5) / static_cast<double>(count);
+    const double angle = radian * degrees_ * (static_cast<double>(index) + 0.5) / static_cast<double>(count);
     return {std::cos(angle), std::sin(angle)};
   }
   const std::uint64_t per_quadrant = count / static_cast<std::uint64_t>(quadrants_);

@@ -2,10 +2,10 @@
 // The part of a solid of revolution from the xz half plane (x > 0) through `angle` about local Z, and points
 // on its arcs. Sweeps of whole quadrants are exact, and their arcs symmetric to the last bit.
 
-#include "core/discretise/frame.hpp"
-
 #include <array>
 #include <cstdint>
+
+#include "core/discretise/frame.hpp"
 
 namespace mpm::core {
 
@@ -16,7 +16,7 @@ struct Span {
 };
 
 class Sweep {
-public:
+ public:
   /// degrees in (0, 360]
   explicit Sweep(double degrees);
 
@@ -30,13 +30,13 @@ public:
   /// Box around the swept disc, between the heights given.
   Box box(double radius, double lower, double upper) const;
 
-  /// Number of nearly equal steps of about `spacing` along the arc at `radius`; a multiple of the quadrants where
-  /// the sweep is made of whole ones. Grows with radius/spacing.
+  /// Number of nearly equal steps of about `spacing` along the arc at `radius`; a multiple of the quadrants
+  /// where the sweep is made of whole ones. Grows with radius/spacing.
   double arc_count(double radius, double spacing) const;
   /// Cosine and sine at the middle of an arc's step, index < count.
   std::array<double, 2> arc_direction(std::uint64_t index, std::uint64_t count) const;
 
-private:
+ private:
   double degrees_;
   double cotangent_ = 0;
   int quadrants_ = 0;  ///< 0 unless made of whole quadrants

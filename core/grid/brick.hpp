@@ -95,8 +95,10 @@ struct NodeBlockShape {
   int index(int i, int j, int k) const { return (i + halo) + side() * ((j + halo) + side() * (k + halo)); }
 };
 
-/// A node is eight doubles, one cache line. What they mean changes in the course of a step:
-/// contributions: momentum 3, mass, force 3, (free);  after the node update: see step/node_update.hpp.
+/// A scheme maps to the nodes twice per step at most, and the first sums are still wanted after the second map:
+/// so there are two arrays. Records of the first: momentum 3, mass, force 3, (free); of the second: momentum 3, mass.
+enum class NodeArray { first, second };
 inline constexpr int node_doubles = 8;
+constexpr int record_doubles(NodeArray of) { return of == NodeArray::first ? node_doubles : node_doubles / 2; }
 
 }  // namespace mpm::core

@@ -8,7 +8,8 @@ namespace mpm::core {
 void AlignedDoubles::resize(std::size_t n) {
   if (n > capacity_) {
     constexpr std::size_t alignment = 4096;
-    const std::size_t bytes = (n * sizeof(double) + alignment - 1) / alignment * alignment;
+    const std::size_t wanted = (n + n / 8) * sizeof(double);  // bricks come one by one; do not move for each
+    const std::size_t bytes = (wanted + alignment - 1) / alignment * alignment;
     data_.reset();
     data_.reset(static_cast<double*>(std::aligned_alloc(alignment, bytes)));
     if (!data_) throw std::bad_alloc();
@@ -56,8 +57,9 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   bricks_ = std::move(bricks);
   ghosts_ = std::move(ghosts);
   slot_ = std::move(slot);
-  contributions_.resize(stride() * (bricks_.size() + ghosts_.size()));
-  nodes_.resize(stride() * bricks_.size());
+  for (NodeArray of : {NodeArray::first, NodeArray::second}) {
+    array(of).resize(stride(of) * (bricks_.size() + ghosts_.size()));
+  }
   ++revision_;
 }
 

@@ -1,4 +1,4 @@
-// The bricks of one rank: which exist, who their neighbours are, and the nodes of each.
+// The bricks of one rank: which exist, who their neighbours are, and what each adds to its nodes.
 //
 // Slots 0 .. owned()-1 are this rank's bricks, those that touch another rank's first; slots from owned() on are
 // ghosts: other ranks' bricks next to ours, of which only the contributions to shared nodes are kept.
@@ -74,27 +74,26 @@ class BrickGrid {
   /// a brick that is dropped must be empty. Slots, neighbours and node arrays are new afterwards.
   void reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts);
 
-  /// Contributions of the slot's own particles to its nodes: shape().nodes() x node_doubles.
-  double* contributions(Slot s) { return contributions_.data() + stride() * static_cast<std::size_t>(s); }
-  const double* contributions(Slot s) const { return contributions_.data() + stride() * static_cast<std::size_t>(s); }
-  /// Node values that the slot's particles read: sums over all bricks, updated. Owned slots only.
-  double* nodes(Slot s) { return nodes_.data() + stride() * static_cast<std::size_t>(s); }
-  const double* nodes(Slot s) const { return nodes_.data() + stride() * static_cast<std::size_t>(s); }
-
-  std::size_t node_bytes() const { return contributions_.bytes() + nodes_.bytes(); }
+  /// What the slot's own particles add to its nodes: shape().nodes() records of record_doubles(of).
+  double* contributions(NodeArray of, Slot s) { return array(of).data() + stride(of) * static_cast<std::size_t>(s); }
+  const double* contributions(NodeArray of, Slot s) const {
+    return array(of).data() + stride(of) * static_cast<std::size_t>(s);
+  }
+  std::size_t node_bytes() const { return first_.bytes() + second_.bytes(); }
   /// Counts up whenever the set of bricks changes; communication plans are made anew then.
   std::uint64_t revision() const { return revision_; }
 
  private:
-  std::size_t stride() const { return static_cast<std::size_t>(shape_.nodes()) * node_doubles; }
+  std::size_t stride(NodeArray of) const { return static_cast<std::size_t>(shape_.nodes() * record_doubles(of)); }
+  AlignedDoubles& array(NodeArray of) { return of == NodeArray::first ? first_ : second_; }
+  const AlignedDoubles& array(NodeArray of) const { return of == NodeArray::first ? first_ : second_; }
 
   GridGeometry geometry_;
   NodeBlockShape shape_;
   std::vector<Brick> bricks_;
   std::vector<BrickCoord> ghosts_;
   std::unordered_map<BrickKey, Slot> slot_;
-  AlignedDoubles contributions_;
-  AlignedDoubles nodes_;
+  AlignedDoubles first_, second_;
   int boundary_ = 0;
   std::uint64_t revision_ = 0;
 };

@@ -44,6 +44,8 @@ struct Batch {
   double cell_size = 0;                  ///< characteristic length of the artificial viscosity
   /// Velocity gradient, row i column j = d v_i / d x_j, in the order of Mat3.
   alignas(64) Row gradient[9];
+  /// Volumetric strain increment of the particle's cell; read for volume update 1 only.
+  alignas(64) Row cell_volumetric_strain;
 
   // --- passed between the stages of the material update ---
   alignas(64) Row strain[6];             ///< strain increment, in the order of Sym3
@@ -51,8 +53,9 @@ struct Batch {
   alignas(64) Row old_volume;            ///< V^n; the column holds V^{n+1} after the kinematic stage
   alignas(64) Row deviatoric_work;       ///< 1/2 (s^n + s^{n+1}) : strain increment, per current volume
   alignas(64) Row shear_modulus;         ///< for the wave speed, of the state reached
+  alignas(64) Row shear_viscosity;       ///< for the critical step, s = 2 viscosity D'
   // --- results beside the columns ---
-  alignas(64) Row sound_speed;           ///< longitudinal wave speed c of the state reached
+  alignas(64) Row sound_speed;           ///< longitudinal wave speed c; filled where the layout has that column
   alignas(64) Row critical_speed;        ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is not to count
   MaterialEvents events;
 

@@ -1,14 +1,14 @@
 #pragma once
 // Bodies, the components that group them, and what is prescribed for them.
 
-#include "core/scene/errors.hpp"
-#include "core/scene/geometry.hpp"
-
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "core/scene/errors.hpp"
+#include "core/scene/geometry.hpp"
 
 namespace mpm::core {
 

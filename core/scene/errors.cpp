@@ -6,6 +6,14 @@ namespace mpm::core {
 
 namespace {
 
+/// On one line and of readable length, whatever the file held.
+std::string shown(const std::string& value) {
+  constexpr std::size_t longest = 120;
+  std::string text;
+  for (const char c : value.substr(0, longest)) text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  return value.size() > longest ? text + "..." : text;
+}
+
 std::string join(const std::vector<Diagnostic>& diagnostics) {
   std::string text;
   for (const Diagnostic& d : diagnostics) {
@@ -22,8 +30,8 @@ std::string to_text(const Diagnostic& d) {
   if (d.line > 0) text += fmt::format("{}{}", text.empty() ? "line " : ":", d.line);
   if (!text.empty()) text += ": ";
   if (!d.element.empty()) {
-    text += '<' + d.element;
-    if (!d.attribute.empty()) text += fmt::format(" {}=\"{}\"", d.attribute, d.value);
+    text += '<' + shown(d.element);
+    if (!d.attribute.empty()) text += fmt::format(" {}=\"{}\"", shown(d.attribute), shown(d.value));
     text += ">: ";
   }
   return text + d.message;

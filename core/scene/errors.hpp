@@ -31,14 +31,14 @@ std::string to_text(const Diagnostic& diagnostic);
 
 /// Every complaint about an input, sorted by file and line. what() is the full text, one complaint per line.
 class InputErrors : public std::runtime_error {
-public:
+ public:
   explicit InputErrors(std::vector<Diagnostic> diagnostics);
   /// A single complaint about something declared at `where` (for checks made after the file was read).
   InputErrors(const SourceLocation& where, std::string element, std::string message);
 
   const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
 
-private:
+ private:
   std::vector<Diagnostic> diagnostics_;
 };
 

@@ -1,11 +1,12 @@
 #pragma once
 // The background grid as the input states it.
 
-#include "core/scene/errors.hpp"
-
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
+
+#include "core/scene/errors.hpp"
 
 namespace mpm::core {
 
@@ -43,7 +44,7 @@ struct GridAxis {
   Boundary lower = Boundary::free;
   Boundary upper = Boundary::free;
   double cell_size = 0;
-  /// Cells along the axis. Where (max - min)/cell_size is not whole, the last cell reaches beyond max.
+  /// Cells along the axis. A wall at max lies on a face of cells; a free face may lie within the last cell.
   std::size_t cells = 0;
   std::vector<GridSegment> segments;  ///< nonuniform grids only; empty: uniform
 };
@@ -53,8 +54,11 @@ struct MovingGridInput {
   bool enable = false;
   bool consider_failed_particles = false;
   double time_step_factor = 0.8;
-  std::array<double, 3> min{};  ///< -infinity where not bounded
-  std::array<double, 3> max{};  ///< +infinity where not bounded
+  /// Infinite where the motion is not bounded.
+  std::array<double, 3> min{-infinity, -infinity, -infinity};
+  std::array<double, 3> max{infinity, infinity, infinity};
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
 /// Storage only of cells with particles. Always so here; the settings are kept for the record.

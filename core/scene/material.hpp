@@ -2,14 +2,14 @@
 // Materials as the input states them: the names and values of each law's parameters, checked, defaults filled
 // in. Units are the user's own and consistent throughout.
 
-#include "core/scene/errors.hpp"
-
 #include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/scene/errors.hpp"
 
 namespace mpm::core {
 

@@ -1,12 +1,12 @@
 #pragma once
 // What the run writes, as the input states it.
 
-#include "core/scene/errors.hpp"
-
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "core/scene/errors.hpp"
 
 namespace mpm::core {
 

@@ -3,6 +3,13 @@
 // structs. It holds no particles and no file format; `io` makes it, `core` discretises it. Units are the
 // user's own and consistent; vectors are in the global frame unless a work plane says otherwise.
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "core/scene/body.hpp"
 #include "core/scene/errors.hpp"
 #include "core/scene/geometry.hpp"
@@ -10,13 +17,6 @@
 #include "core/scene/material.hpp"
 #include "core/scene/output.hpp"
 #include "core/scene/solution.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace mpm::core {
 

@@ -1,11 +1,11 @@
 #pragma once
 // How the equations are integrated, as the input states it.
 
-#include "core/scene/body.hpp"
-
 #include <array>
 #include <optional>
 #include <vector>
+
+#include "core/scene/body.hpp"
 
 namespace mpm::core {
 

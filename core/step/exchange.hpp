@@ -47,9 +47,10 @@ class Exchange {
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
-  /// Send our boundary bricks' contributions to shared nodes, node components [first, first + count), and
-  /// receive the ghosts'. Between begin and end the boundary bricks' contributions stay untouched. Collective.
-  virtual void begin_halo(BrickGrid& grid, int first, int count) = 0;
+  /// Send our boundary bricks' contributions to shared nodes, components [first, first + count) of the array's
+  /// records, and receive the ghosts'. Between begin and end the boundary bricks' contributions stay untouched.
+  /// Collective.
+  virtual void begin_halo(BrickGrid& grid, NodeArray of, int first, int count) = 0;
   virtual void end_halo(BrickGrid& grid) = 0;
 
   /// True on every rank if `mine` is true on any. Collective.
@@ -96,7 +97,7 @@ class SoloExchange final : public Exchange {
  public:
   int rank() const override { return 0; }
   int size() const override { return 1; }
-  void begin_halo(BrickGrid&, int, int) override {}
+  void begin_halo(BrickGrid&, NodeArray, int, int) override {}
   void end_halo(BrickGrid&) override {}
   bool any(bool mine) override { return mine; }
   void minimum(std::span<double>) override {}

@@ -8,38 +8,47 @@ namespace {
 
 using Record = Lanes<8>;
 using Half = Lanes<4>;
-
-/// Nodes first .. last along one axis that the brick shares with its neighbour at `offset`.
-struct Overlap {
-  int first, last;
-  Overlap(const NodeBlockShape& shape, int offset)
-      : first(std::max(-shape.halo, brick_cells * offset - shape.halo)),
-        last(std::min(brick_cells + shape.halo, brick_cells * (offset + 1) + shape.halo)) {}
-};
-
 }  // namespace
 
-void sum_contributions(const BrickGrid& grid, Slot slot, double* sums) {
-  const NodeBlockShape& shape = grid.shape();
-  std::fill_n(sums, node_doubles * shape.nodes(), 0.0);
-  const Brick& brick = grid.brick(slot);
-  for (int n = 0; n < neighbourhood; ++n) {
-    const Slot other = brick.neighbour[static_cast<std::size_t>(n)];
-    if (other == no_slot) continue;
-    const BrickCoord d = neighbour_offset(n);
-    const Overlap x(shape, d.x), y(shape, d.y), z(shape, d.z);
-    // The same node counts 4 d less from the neighbour's lowest node.
-    const double* theirs = grid.contributions(other) - node_doubles * brick_cells * (d.x + shape.side() * (d.y + shape.side() * d.z));
-    for (int k = z.first; k <= z.last; ++k) {
-      for (int j = y.first; j <= y.last; ++j) {
-        for (int i = x.first; i <= x.last; ++i) {
-          const int at = node_doubles * shape.index(i, j, k);
-          store(sums + at, load<Record>(sums + at) + load<Record>(theirs + at));
+SharedNodes::SharedNodes(const NodeBlockShape& shape) {
+  const int low = -shape.halo, high = brick_cells + shape.halo;
+  const auto within = [&](int i) { return low <= i && i <= high; };
+  for (int k = low; k <= high; ++k) {
+    for (int j = low; j <= high; ++j) {
+      for (int i = low; i <= high; ++i) {
+        first_.push_back(static_cast<int>(shares_.size()));
+        for (int n = 0; n < neighbourhood; ++n) {
+          // The same node, counted from the neighbour's lowest.
+          const BrickCoord d = neighbour_offset(n);
+          const int a = i - brick_cells * d.x, b = j - brick_cells * d.y, c = k - brick_cells * d.z;
+          if (within(a) && within(b) && within(c)) shares_.push_back({n, shape.index(a, b, c)});
         }
       }
     }
   }
+  first_.push_back(static_cast<int>(shares_.size()));
 }
+
+template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums) {
+  constexpr int width = record_doubles(of);
+  using Part = Lanes<width>;
+  static const std::vector<double> nothing(static_cast<std::size_t>(node_doubles * 11 * 11 * 11), 0.0);
+  const Brick& brick = grid.brick(slot);
+  std::array<const double*, neighbourhood> from{};
+  for (std::size_t n = 0; n < neighbourhood; ++n) {
+    from[n] = brick.neighbour[n] == no_slot ? nothing.data() : grid.contributions(of, brick.neighbour[n]);
+  }
+  for (int node = 0; node < shared.nodes(); ++node) {
+    Part sum(0.0);
+    for (const SharedNodes::Share& s : shared.of(node)) {
+      sum += load<Part>(from[static_cast<std::size_t>(s.neighbour)] + width * s.node);
+    }
+    store(sums + node_doubles * node, sum);
+  }
+}
+template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, double*);
+template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, double*);
 
 BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape& shape, BrickCoord brick)
     : shape_(shape) {
@@ -99,22 +108,11 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
 }
 }  // namespace
 
-void velocities_from_momenta(double mass_cutoff, const BoundaryFaces& faces, int nodes, double* record) {
+void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes, double* record) {
   for (int n = 0; n < nodes; ++n) {
     double* at = record + node_doubles * n;
     const double m = at[3];
-    const Half v = m > mass_cutoff ? load<Half>(at) * Half(1 / m) : Half(0.0);
-    store(at + 4, v);
-  }
-  constrain_second_velocity(faces, record);
-}
-
-void velocities_from_remapped(const double* sums, const BoundaryFaces& faces, int nodes, double* record) {
-  for (int n = 0; n < nodes; ++n) {
-    double* at = record + node_doubles * n;
-    const double m = at[3];  // zero where the node update left the node out
-    const Half v = m > 0 ? load<Half>(sums + node_doubles * n) * Half(1 / m) : Half(0.0);
-    store(at + 4, v);
+    store(at + 4, m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
   }
   constrain_second_velocity(faces, record);
 }

@@ -9,11 +9,31 @@
 
 namespace mpm::core {
 
-/// Component range of a node record that is summed.
-enum class Summed { all, momentum_and_mass, force };
+/// Which bricks share each node of a brick, in the order of summation: made once for a shape of node block.
+class SharedNodes {
+ public:
+  explicit SharedNodes(const NodeBlockShape& shape);
 
-/// sums = contributions of the brick and its 26 neighbours; sums: shape().nodes() x node_doubles.
-void sum_contributions(const BrickGrid& grid, Slot slot, double* sums);
+  struct Share {
+    int neighbour;  ///< 0..26
+    int node;       ///< its number in that brick
+  };
+  int nodes() const { return static_cast<int>(first_.size()) - 1; }
+  std::span<const Share> of(int node) const {
+    return {shares_.data() + first_[static_cast<std::size_t>(node)],
+            static_cast<std::size_t>(first_[static_cast<std::size_t>(node) + 1] - first_[static_cast<std::size_t>(node)])};
+  }
+
+ private:
+  std::vector<Share> shares_;
+  std::vector<int> first_;
+};
+
+/// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
+/// node_doubles for the second array, all of them for the first. A brick that does not exist counts as zeros, so
+/// every copy of a node adds up the same numbers.
+template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
 
 /// What acts on nodes beside the particles' stress.
 struct NodeForces {
@@ -46,11 +66,9 @@ class BoundaryFaces {
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces, int nodes,
                   double* record);
 
-/// [p, m, *] -> [p, m, v^k]: USF's velocity at the start of the step.
-void velocities_from_momenta(double mass_cutoff, const BoundaryFaces& faces, int nodes, double* record);
-
-/// MUSL: components 4..6 become the velocity of the re-mapped momenta `sums` (0..2), over the mass in 3.
-void velocities_from_remapped(const double* sums, const BoundaryFaces& faces, int nodes, double* record);
+/// Components 4..6 become the velocity of `momenta` (0..2 of each record) over the masses in component 3 of
+/// `record`: USF's velocity at the start of the step (momenta = record), MUSL's re-mapped one.
+void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes, double* record);
 
 template <class F>
 void BoundaryFaces::for_each_node(double* nodes, F f) const {

@@ -10,11 +10,19 @@
 
 namespace mpm::core {
 
-/// What is mapped. Components of a node record: 0..2 momentum, 3 mass, 4..6 force.
-enum class Mapped { momentum_mass_force, momentum_mass, momentum, force };
+/// What is mapped, to which array: components 0..2 momentum, 3 mass, 4..6 force of its records.
+enum class Mapped {
+  momentum_mass_force,  ///< first array
+  momentum_mass,        ///< second
+  momentum,             ///< second; mass stays 0
+  force                 ///< first; momentum and mass stay 0
+};
 
 constexpr bool maps_momentum(Mapped m) { return m != Mapped::force; }
 constexpr bool maps_mass(Mapped m) { return m == Mapped::momentum_mass_force || m == Mapped::momentum_mass; }
+constexpr NodeArray array_of(Mapped m) {
+  return m == Mapped::momentum_mass || m == Mapped::momentum ? NodeArray::second : NodeArray::first;
+}
 constexpr bool maps_force(Mapped m) { return m == Mapped::momentum_mass_force || m == Mapped::force; }
 
 namespace detail {
@@ -53,10 +61,12 @@ struct CellSums {
     if (node < 0) return;
     detail::Nodes r[8] = {px, py, pz, m, fx, fy, fz, detail::Nodes(0.0)};
     detail::transpose(r);
-    double* lowest = contributions + node_doubles * node;
+    constexpr int width = record_doubles(array_of(what));
+    using Record = Lanes<width>;
+    double* lowest = contributions + width * node;
     for (int n = 0; n < 8; ++n) {
-      double* at = lowest + corners.offset[n];
-      store(at, load<detail::Nodes>(at) + r[n]);
+      double* at = lowest + width * corners.node[n];
+      store(at, load<Record>(at) + load<Record>(reinterpret_cast<const double*>(&r[n])));
     }
   }
 };
@@ -64,8 +74,9 @@ struct CellSums {
 /// Add the first `used` particles of a block.
 template <Mapped what>
 inline void add_block(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                      const double* block, int used, CellSums<what>& sums, double* contributions) {
+                      const double* block, int used, CellSums<what>& running, double* contributions) {
   using N = detail::Nodes;
+  CellSums<what> sums = running;  // a local of its own stays in registers
   const auto col = [&](Column c) { return block + layout.offset(c); };
   alignas(64) double q[10][block_lanes];  // m, m v, -V sigma
   alignas(64) double f[3][block_lanes];
@@ -115,6 +126,7 @@ inline void add_block(const BrickFrame& frame, const CellCorners& corners, const
       sums.fz += gx * N(q[9][i]) + gy * N(q[8][i]) + gz * N(q[6][i]);
     }
   }
+  running = sums;
 }
 
 }  // namespace mpm::core

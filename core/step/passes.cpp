@@ -28,7 +28,8 @@ constexpr double usl_mass_floor = 0.05;
 
 }  // namespace
 
-Passes::Passes(Model& model, Exchange& exchange) : model_(model), exchange_(exchange) {
+Passes::Passes(Model& model, Exchange& exchange)
+    : model_(model), exchange_(exchange), shared_(model.grid->shape()) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = to_vec(solution.gravity);
   forces_.damping = solution.damping;
@@ -41,6 +42,10 @@ Passes::Passes(Model& model, Exchange& exchange) : model_(model), exchange_(exch
   velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
   erosion_volume_ = solution.volume.erode.value_or(0);
   workplaces_.resize(static_cast<std::size_t>(omp_get_max_threads()));
+  for (Workplace& w : workplaces_) {
+    w.nodes.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
+    w.sums.resize(w.nodes.size());
+  }
 }
 
 template <class F>
@@ -57,8 +62,8 @@ void Passes::map_brick(Slot s) {
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
   const CellCorners corners(grid.shape().side());
-  double* contributions = grid.contributions(s);
-  std::fill_n(contributions, node_doubles * grid.shape().nodes(), 0.0);
+  double* contributions = grid.contributions(array_of(what), s);
+  std::fill_n(contributions, record_doubles(array_of(what)) * grid.shape().nodes(), 0.0);
   CellSums<what> sums;
   sums.clear();
   for (const Cohort& cohort : brick.cohorts) {
@@ -84,63 +89,33 @@ constexpr Components components(Mapped what) {
 }
 }  // namespace
 
+/// work(slot, workplace), then map the brick, for all bricks; the boundary bricks' sums travel meanwhile.
+template <Mapped what, class F>
+void Passes::map_after(F work) {
+  BrickGrid& grid = *model_.grid;
+  const auto both = [&](Slot s, Workplace& at) {
+    work(s, at);
+    map_brick<what>(s);
+  };
+  for_bricks(0, grid.boundary(), both);
+  exchange_.begin_halo(grid, array_of(what), components(what).first, components(what).count);
+  for_bricks(grid.boundary(), grid.owned(), both);
+}
+
 template <Mapped what>
 void Passes::map_to_grid() {
-  BrickGrid& grid = *model_.grid;
-  for_bricks(0, grid.boundary(), [&](Slot s, Workplace&) { map_brick<what>(s); });
-  exchange_.begin_halo(grid, components(what).first, components(what).count);
-  for_bricks(grid.boundary(), grid.owned(), [&](Slot s, Workplace&) { map_brick<what>(s); });
+  map_after<what>([](Slot, Workplace&) {});
 }
 template void Passes::map_to_grid<Mapped::momentum_mass_force>();
 template void Passes::map_to_grid<Mapped::momentum_mass>();
-template void Passes::map_to_grid<Mapped::momentum>();
-template void Passes::map_to_grid<Mapped::force>();
 
 // --- nodes ------------------------------------------------------------------------------------------------
 
-void Passes::update_nodes() {
-  BrickGrid& grid = *model_.grid;
-  for_all_bricks([&](Slot s, Workplace&) {
-    sum_contributions(grid, s, grid.nodes(s));
-    core::update_nodes(forces_, dt, grid.geometry().mass_cutoff,
-                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), grid.shape().nodes(),
-                       grid.nodes(s));
-  });
-}
-
-void Passes::start_velocities() {
-  BrickGrid& grid = *model_.grid;
-  for_all_bricks([&](Slot s, Workplace&) {
-    sum_contributions(grid, s, grid.nodes(s));
-    velocities_from_momenta(grid.geometry().mass_cutoff,
-                            BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
-                            grid.shape().nodes(), grid.nodes(s));
-  });
-}
-
-void Passes::update_nodes_with_new_stress() {
-  BrickGrid& grid = *model_.grid;
-  const int nodes = grid.shape().nodes();
-  for_all_bricks([&](Slot s, Workplace& at) {
-    at.sums.resize(static_cast<std::size_t>(node_doubles * nodes));
-    sum_contributions(grid, s, at.sums.data());
-    double* record = grid.nodes(s);
-    for (int n = 0; n < nodes; ++n) {
-      for (int a = 4; a < 8; ++a) record[node_doubles * n + a] = at.sums[static_cast<std::size_t>(node_doubles * n + a)];
-    }
-    core::update_nodes(forces_, dt, grid.geometry().mass_cutoff,
-                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), nodes, record);
-  });
-}
-
-void Passes::remapped_velocities() {
-  BrickGrid& grid = *model_.grid;
-  for_all_bricks([&](Slot s, Workplace& at) {
-    at.sums.resize(static_cast<std::size_t>(node_doubles * grid.shape().nodes()));
-    sum_contributions(grid, s, at.sums.data());
-    velocities_from_remapped(at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
-                             grid.shape().nodes(), grid.nodes(s));
-  });
+void Passes::move_nodes(Slot s, Workplace& at) {
+  const BrickGrid& grid = *model_.grid;
+  sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
+  update_nodes(forces_, dt, grid.geometry().mass_cutoff, BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
+               shared_.nodes(), at.nodes.data());
 }
 
 // --- particles --------------------------------------------------------------------------------------------
@@ -179,7 +154,7 @@ void Passes::velocities_of_brick(Slot s, Workplace& at) {
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       prefetch(*body.pool, cohort, b + 2, Column::position_x, 7);
-      add_velocity_increment(frame, corners, body.pool->layout(), grid.nodes(s), body.pool->block(cohort.blocks[b]));
+      add_velocity_increment(frame, corners, body.pool->layout(), at.nodes.data(), body.pool->block(cohort.blocks[b]));
     }
     if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
       hold_velocities(body, frame, cohort, at);
@@ -231,10 +206,10 @@ void Passes::stress_of_brick(Slot s, StrainVelocity which, Workplace& at) {
         prefetch(pool, cohort, at_block + 2, Column::position_x, pool.layout().columns());
         batch.block[b] = pool.block(cohort.blocks[at_block]);
         if (which == StrainVelocity::second) {
-          velocity_gradient<StrainVelocity::second>(frame, corners, pool.layout(), grid.nodes(s), batch.block[b],
+          velocity_gradient<StrainVelocity::second>(frame, corners, pool.layout(), at.nodes.data(), batch.block[b],
                                                     batch.gradient, block_lanes * b);
         } else {
-          velocity_gradient<StrainVelocity::regularised>(frame, corners, pool.layout(), grid.nodes(s), batch.block[b],
+          velocity_gradient<StrainVelocity::regularised>(frame, corners, pool.layout(), at.nodes.data(), batch.block[b],
                                                          batch.gradient, block_lanes * b);
         }
       }
@@ -271,7 +246,7 @@ void Passes::move_brick(Slot s, Workplace& at) {
       if (body.prescribed_velocity) {
         for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
       } else {
-        move_with_grid(frame, corners, layout, grid.nodes(s), dt, block);
+        move_with_grid(frame, corners, layout, at.nodes.data(), dt, block);
       }
       if (works && !body.prescribed_velocity) {
         const double* m = block + layout.offset(Column::mass);
@@ -302,52 +277,56 @@ void Passes::move_brick(Slot s, Workplace& at) {
   if (work != 0) at.found.work.add(work);
 }
 
-void Passes::update_velocities() {
-  for_all_bricks([&](Slot s, Workplace& at) { velocities_of_brick(s, at); });
-}
+// --- what the schemes are made of ---------------------------------------------------------------------------
 
 void Passes::update_velocities_and_map_back() {
-  BrickGrid& grid = *model_.grid;
-  const auto both = [&](Slot s, Workplace& at) {
+  map_after<Mapped::momentum>([&](Slot s, Workplace& at) {
+    move_nodes(s, at);
     velocities_of_brick(s, at);
-    map_brick<Mapped::momentum>(s);
-  };
-  for_bricks(0, grid.boundary(), both);
-  exchange_.begin_halo(grid, components(Mapped::momentum).first, components(Mapped::momentum).count);
-  for_bricks(grid.boundary(), grid.owned(), both);
-}
-
-void Passes::update_stress() {
-  for_all_bricks([&](Slot s, Workplace& at) { stress_of_brick(s, StrainVelocity::second, at); });
-}
-
-void Passes::update_stress_and_map_forces() {
-  BrickGrid& grid = *model_.grid;
-  const auto both = [&](Slot s, Workplace& at) {
-    stress_of_brick(s, StrainVelocity::second, at);
-    map_brick<Mapped::force>(s);
-  };
-  for_bricks(0, grid.boundary(), both);
-  exchange_.begin_halo(grid, components(Mapped::force).first, components(Mapped::force).count);
-  for_bricks(grid.boundary(), grid.owned(), both);
-}
-
-void Passes::move() {
-  leavers_.resize(static_cast<std::size_t>(model_.grid->owned()));
-  for_all_bricks([&](Slot s, Workplace& at) { move_brick(s, at); });
+  });
 }
 
 void Passes::update_stress_and_move() {
-  leavers_.resize(static_cast<std::size_t>(model_.grid->owned()));
-  for_all_bricks([&](Slot s, Workplace& at) {
+  const BrickGrid& grid = *model_.grid;
+  leavers_.resize(static_cast<std::size_t>(grid.owned()));
+  for_bricks(0, grid.owned(), [&](Slot s, Workplace& at) {
+    // The nodes' motion is computed again: that costs less than keeping it in memory from one pass to the next.
+    move_nodes(s, at);
+    sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
+    second_velocities(0, at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
+                      at.nodes.data());
     stress_of_brick(s, StrainVelocity::second, at);
+    move_brick(s, at);
+  });
+}
+
+void Passes::update_stress_and_map_forces() {
+  const BrickGrid& grid = *model_.grid;
+  map_after<Mapped::force>([&](Slot s, Workplace& at) {
+    sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
+    second_velocities(grid.geometry().mass_cutoff, at.nodes.data(),
+                      BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(), at.nodes.data());
+    stress_of_brick(s, StrainVelocity::second, at);
+  });
+}
+
+void Passes::update_velocities_and_move() {
+  const BrickGrid& grid = *model_.grid;
+  leavers_.resize(static_cast<std::size_t>(grid.owned()));
+  for_bricks(0, grid.owned(), [&](Slot s, Workplace& at) {
+    sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());   // forces; momenta and masses are zero
+    sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());  // overwrites those
+    update_nodes(forces_, dt, grid.geometry().mass_cutoff, BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
+                 shared_.nodes(), at.nodes.data());
+    velocities_of_brick(s, at);
     move_brick(s, at);
   });
 }
 
 void Passes::update_all() {
   leavers_.resize(static_cast<std::size_t>(model_.grid->owned()));
-  for_all_bricks([&](Slot s, Workplace& at) {
+  for_bricks(0, model_.grid->owned(), [&](Slot s, Workplace& at) {
+    move_nodes(s, at);
     stress_of_brick(s, StrainVelocity::regularised, at);
     velocities_of_brick(s, at);
     move_brick(s, at);

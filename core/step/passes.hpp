@@ -39,28 +39,17 @@ class Passes {
   void map_to_grid();
   void finish_exchange() { exchange_.end_halo(*model_.grid); }
 
-  /// Sum and move the nodes: the equation of motion.
-  void update_nodes();
-  /// USF: sum, and the velocity before the motion.
-  void start_velocities();
-  /// USF: sum the forces of the new stress and move the nodes.
-  void update_nodes_with_new_stress();
-  /// MUSL: sum the re-mapped momenta, and their velocity.
-  void remapped_velocities();
-
-  /// v += dv.
-  void update_velocities();
-  /// MUSL: v += dv, and the new momentum back to the nodes while the block is at hand.
+  /// MUSL: equation of motion on the nodes, v += dv, and the new momentum back to the nodes.
   void update_velocities_and_map_back();
-  /// Strain and stress at the unmoved particles.
-  void update_stress();
-  /// USF: strain and stress, then the forces of the new stress.
-  void update_stress_and_map_forces();
-  /// x += dt v of the grid; whoever leaves its brick or is to be deleted is noted.
-  void move();
-  /// MUSL: strain and stress, then move.
+  /// MUSL: strain with the re-mapped velocity, stress, then move.
   void update_stress_and_move();
-  /// USL: strain and stress, velocity, then move.
+
+  /// USF: strain with the velocity before the motion, stress, and its forces to the nodes.
+  void update_stress_and_map_forces();
+  /// USF: equation of motion with the new stress, v += dv, then move.
+  void update_velocities_and_move();
+
+  /// USL: equation of motion, strain and stress, v += dv, then move.
   void update_all();
 
   std::vector<std::vector<Leaver>>& leavers() { return leavers_; }
@@ -71,15 +60,17 @@ class Passes {
   struct alignas(128) Workplace {  // of one thread
     Batch batch;
     StepFindings found;
-    std::vector<double> sums;
+    std::vector<double> nodes, sums;  ///< of the brick at hand: records of node_doubles
   };
   template <class F>
   void for_bricks(int first, int last, F f);
-  template <class F>
-  void for_all_bricks(F f) { for_bricks(0, model_.grid->owned(), f); }
 
+  /// Sum the first array and move the nodes: `at.nodes` as grid_to_particles.hpp describes.
+  void move_nodes(Slot s, Workplace& at);
   template <Mapped what>
   void map_brick(Slot s);
+  template <Mapped what, class F>
+  void map_after(F work);
   void stress_of_brick(Slot s, StrainVelocity which, Workplace& at);
   void velocities_of_brick(Slot s, Workplace& at);
   void move_brick(Slot s, Workplace& at);
@@ -88,6 +79,7 @@ class Passes {
 
   Model& model_;
   Exchange& exchange_;
+  SharedNodes shared_;
   NodeForces forces_;
   double velocity_limit_;  ///< infinite without LimitVelocity
   double erosion_volume_;

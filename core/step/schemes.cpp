@@ -15,27 +15,21 @@ std::vector<Phase> phases_of(Stepper& s, Scheme scheme) {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_to_grid<momentum_mass_force>(); });
       then("exchange", [&] { pass.finish_exchange(); });
-      then("update nodes", [&] { pass.update_nodes(); });
       then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
       then("exchange again", [&] { pass.finish_exchange(); });
-      then("node velocities", [&] { pass.remapped_velocities(); });
       then("stress and motion", [&] { pass.update_stress_and_move(); });
       break;
     case Scheme::usf:
       then("particles to grid", [&] { pass.map_to_grid<momentum_mass>(); });
       then("exchange", [&] { pass.finish_exchange(); });
-      then("node velocities", [&] { pass.start_velocities(); });
       then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
       then("exchange again", [&] { pass.finish_exchange(); });
-      then("update nodes", [&] { pass.update_nodes_with_new_stress(); });
-      then("velocities", [&] { pass.update_velocities(); });
-      then("motion", [&] { pass.move(); });
+      then("velocities and motion", [&] { pass.update_velocities_and_move(); });
       break;
     case Scheme::usl:
       then("particles to grid", [&] { pass.map_to_grid<momentum_mass_force>(); });
       then("exchange", [&] { pass.finish_exchange(); });
-      then("update nodes", [&] { pass.update_nodes(); });
-      then("velocities, stress and motion", [&] { pass.update_all(); });
+      then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
   }
 

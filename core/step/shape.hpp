@@ -54,11 +54,15 @@ inline Located<T> locate(const BrickFrame& f, const double* x, const double* y, 
   return p;
 }
 
-/// The eight nodes of a cell, as offsets in doubles from its lowest node; node i + 2 j + 4 k.
+/// The eight nodes of a cell, counted from its lowest: number i + 2 j + 4 k.
 struct CellCorners {
-  int offset[8];
+  int node[8];
+  int offset[8];  ///< in doubles, for node records of node_doubles
   explicit CellCorners(int side) {
-    for (int n = 0; n < 8; ++n) offset[n] = node_doubles * ((n & 1) + side * (((n >> 1) & 1) + side * (n >> 2)));
+    for (int n = 0; n < 8; ++n) {
+      node[n] = (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2));
+      offset[n] = node_doubles * node[n];
+    }
   }
 };
 

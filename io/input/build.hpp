@@ -1,5 +1,5 @@
-// From the checked document to the scene, one function per part. Each adds complaints about what the Specification
-// cannot say: names that do not resolve, bounds in the wrong order, shapes that are none.
+// From the checked document to the scene, one function per part. Each adds complaints about what the
+// Specification cannot say: names that do not resolve, bounds in the wrong order, shapes that are none.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,8 @@ struct BuildContext {
 
 core::HeaderInput build_header(const Node& root);
 std::vector<core::MaterialInput> build_materials(const Node& root, const BuildContext& context);
-std::vector<core::FrictionPair> build_frictions(const Node& root, const std::vector<core::MaterialInput>& materials,
+std::vector<core::FrictionPair> build_frictions(const Node& root,
+                                                const std::vector<core::MaterialInput>& materials,
                                                 const BuildContext& context);
 std::vector<core::WorkPlane> build_work_planes(const Node& root, const BuildContext& context);
 /// Uses the materials, work planes and grid of `scene`.

@@ -17,12 +17,15 @@ namespace {
 /// No machine holds more particles; beyond it the spacing is a mistake.
 constexpr double most_particles = 0x1p48;
 
-void check_count(const Node& node, std::string_view spacing, double volume, double cell, const BuildContext& context) {
+void check_count(const Node& node, std::string_view spacing, double volume, double cell,
+                 const BuildContext& context) {
   const double count = volume / cell;
   if (count > most_particles)
-    node.complain(context.diagnostics, spacing,
-                  fmt::format("this makes about {:.3g} particles, more than any machine holds (2^48); expected a "
-                              "larger distance of particles", count));
+    node.complain(
+        context.diagnostics, spacing,
+        fmt::format("this makes about {:.3g} particles, more than any machine holds (2^48); expected a "
+                    "larger distance of particles",
+                    count));
 }
 
 /// The file of a geometry against the input's folder; complains when it cannot be read.
@@ -37,7 +40,8 @@ std::string build_file(const Node& node, const BuildContext& context) {
 }
 
 /// Inline children or a file: one of the two.
-void check_one_source(const Node& node, bool has_children, std::string_view children, const BuildContext& context) {
+void check_one_source(const Node& node, bool has_children, std::string_view children,
+                      const BuildContext& context) {
   const bool has_file = node.find("file") != nullptr;
   if (has_file && has_children)
     node.complain(context.diagnostics, "file",
@@ -57,7 +61,8 @@ core::PointGeometry build_points(const Node& node, const BuildContext& context) 
 }
 
 core::BlockGeometry build_block(const Node& node, const BuildContext& context) {
-  const core::BlockGeometry block{node.real("dp"), node.reals("x0", "y0", "z0"), node.reals("lx", "ly", "lz")};
+  const core::BlockGeometry block{node.real("dp"), node.reals("x0", "y0", "z0"),
+                                  node.reals("lx", "ly", "lz")};
   const double volume = block.size[0] * block.size[1] * block.size[2];
   check_count(node, "dp", volume, std::pow(block.spacing, 3), context);
   return block;
@@ -107,9 +112,11 @@ core::CylinderGeometry build_cylinder(const Node& node, const BuildContext& cont
   check_radii(node, "Bottom_Inner_Radius", "Bottom_Outer_Radius", c.top_outer_radius > 0, context);
   check_radii(node, "Top_Inner_Radius", "Top_Outer_Radius", c.bottom_outer_radius > 0, context);
   // Frusta without and with the hole, at the mean of the cubed spacings: an estimate.
-  const auto frustum = [&](double a, double b) { return std::numbers::pi / 3 * c.height * (a * a + a * b + b * b); };
-  const double volume = frustum(c.bottom_outer_radius, c.top_outer_radius) -
-                        frustum(c.bottom_inner_radius, c.top_inner_radius);
+  const auto frustum = [&](double a, double b) {
+    return std::numbers::pi / 3 * c.height * (a * a + a * b + b * b);
+  };
+  const double volume =
+      frustum(c.bottom_outer_radius, c.top_outer_radius) - frustum(c.bottom_inner_radius, c.top_inner_radius);
   const double cell = std::pow(c.bottom_spacing * c.top_spacing, 1.5);
   check_count(node, "dp_bottom", volume * c.angle / 360, cell, context);
   return c;
@@ -125,7 +132,8 @@ core::OgiveGeometry build_ogive(const Node& node, const BuildContext& context) {
   o.angle = node.real("angle");
   o.layout = layout(node);
   if (o.ogive_radius < o.end_radius)
-    node.complain(context.diagnostics, "Ogive_Radius", fmt::format("expected at least End_Radius, {}", o.end_radius));
+    node.complain(context.diagnostics, "Ogive_Radius",
+                  fmt::format("expected at least End_Radius, {}", o.end_radius));
   const double length = std::sqrt(std::max(0., o.end_radius * (2 * o.ogive_radius - o.end_radius)));
   const double volume = std::numbers::pi * o.end_radius * o.end_radius * length * o.angle / 360;
   check_count(node, "dp_bottom", volume, std::pow(o.bottom_spacing * o.top_spacing, 1.5), context);
@@ -140,7 +148,8 @@ core::MeshGeometry<N> build_mesh(const Node& node, const BuildContext& context) 
   mesh.file_elements = node.integer("nb_elements");
   if (N == 3) mesh.thickness = node.real("thickness");
   constexpr int first_id = N == 8 ? 1 : 0;  // hexahedra count their corners from 1
-  for (const Node& n : node.children("Point")) mesh.nodes.push_back({n.integer("node_id"), n.reals("x", "y", "z")});
+  for (const Node& n : node.children("Point"))
+    mesh.nodes.push_back({n.integer("node_id"), n.reals("x", "y", "z")});
   std::set<std::int64_t> ids;
   for (const auto& n : mesh.nodes) ids.insert(n.id);
   for (const Node& e : node.children("Element")) {
@@ -155,7 +164,8 @@ core::MeshGeometry<N> build_mesh(const Node& node, const BuildContext& context) 
     if (N == 2) element.sectional_area = e.real("sectional_area");
     mesh.elements.push_back(element);
   }
-  check_one_source(node, !mesh.nodes.empty() || !mesh.elements.empty(), "<Point> and <Element> elements", context);
+  check_one_source(node, !mesh.nodes.empty() || !mesh.elements.empty(), "<Point> and <Element> elements",
+                   context);
   return mesh;
 }
 
@@ -204,12 +214,14 @@ core::Geometry build_geometry(const Node& node, const BuildContext& context) {
   if (type == "NettyForBar") return build_bar_net(node);
   if (type == "PointForMembrane") return build_mesh<3>(node, context);
   if (type == "RectangularForMembrane")
-    return core::MembraneRectangleGeometry{node.real("thickness"), node.real("element_size"),
-                                           node.reals("x0", "y0", "z0"), {node.real("lx"), node.real("ly")}};
+    return core::MembraneRectangleGeometry{node.real("thickness"),
+                                           node.real("element_size"),
+                                           node.reals("x0", "y0", "z0"),
+                                           {node.real("lx"), node.real("ly")}};
   if (type == "CylinderForMembrane")
-    return core::MembraneCylinderGeometry{node.real("thickness"), node.real("element_size"),
-                                          node.reals("x0", "y0", "z0"), node.real("radius"), node.real("height"),
-                                          node.real("angle")};
+    return core::MembraneCylinderGeometry{node.real("thickness"),       node.real("element_size"),
+                                          node.reals("x0", "y0", "z0"), node.real("radius"),
+                                          node.real("height"),          node.real("angle")};
   if (type == "PointForFEM") return build_mesh<8>(node, context);
   if (type == "BlockForFEM") return core::HexahedronBlockGeometry{build_block(node, context)};
   return core::PointGeometry{};

@@ -106,7 +106,8 @@ std::vector<core::MaterialInput> build_materials(const Node& root, const BuildCo
     core::MaterialInput material;
     material.name = node.word("name");
     material.source = context.at(node);
-    if (const auto density = node.child("ReferenceDensity")) material.reference_density = density->real("value");
+    if (const auto density = node.child("ReferenceDensity"))
+      material.reference_density = density->real("value");
     if (const auto strength = node.child("StrengthModel")) material.strength = build_law(*strength, context);
     if (const auto eos = node.child("EquationOfState")) material.eos = build_law(*eos, context);
     material.failures = build_failures(node, context);
@@ -116,7 +117,8 @@ std::vector<core::MaterialInput> build_materials(const Node& root, const BuildCo
   return materials;
 }
 
-std::vector<core::FrictionPair> build_frictions(const Node& root, const std::vector<core::MaterialInput>& materials,
+std::vector<core::FrictionPair> build_frictions(const Node& root,
+                                                const std::vector<core::MaterialInput>& materials,
                                                 const BuildContext& context) {
   std::vector<core::FrictionPair> pairs;
   const std::optional<Node> friction = root.child("Friction");
@@ -127,7 +129,8 @@ std::vector<core::FrictionPair> build_frictions(const Node& root, const std::vec
     const auto second = resolve(node, "mat2", "material", names, context);
     if (!first || !second) continue;
     const auto [low, high] = std::minmax(*first, *second);
-    if (std::ranges::any_of(pairs, [&](const auto& p) { return p.first_material == low && p.second_material == high; }))
+    if (std::ranges::any_of(
+            pairs, [&](const auto& p) { return p.first_material == low && p.second_material == high; }))
       node.complain(context.diagnostics, "the friction of this pair of materials is given twice");
     pairs.push_back({low, high, node.real("value")});
   }

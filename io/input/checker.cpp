@@ -26,7 +26,8 @@ class Checker {
   void run() {
     const XmlElement& root = document_.elements().front();
     if (root.name != language_.name) {
-      diagnostics_.add(root.line, root.name, fmt::format("the root of an input file is <{}>", language_.name));
+      diagnostics_.add(root.line, root.name,
+                       fmt::format("the root of an input file is <{}>", language_.name));
       return;
     }
     element(Node(document_, 0, language_, {}));
@@ -39,6 +40,7 @@ class Checker {
   void element(const Node& node) {
     if (node.spec().later && !accept_later_)
       node.complain(diagnostics_, "known, but not implemented yet; remove the element");
+    misspelt_.clear();
     for (const XmlAttribute& a : document_.attributes(node.element())) attribute(node, a);
     missing_attributes(node);
     together(node);
@@ -53,21 +55,26 @@ class Checker {
     if (!row) {
       for (const AttributeSpec& other : node.spec().attributes) {
         if (!other.also.empty() && other.also == given.name) row = &other;
-        if (!other.instead_of.empty() && other.instead_of == given.name)
+        if (!other.instead_of.empty() && other.instead_of == given.name) {
+          misspelt_.push_back(other.name);
           return complain(fmt::format("the right spelling is '{}'", other.name));
+        }
       }
       if (!row && hangs_on_wrong_type(node, given.name)) return;
       if (!row) return complain(unknown_attribute(node, given.name));
-      if (node.find(row->name) != &given) return complain(fmt::format("the same as '{}', which is given too", row->name));
+      if (node.find(row->name) != &given)
+        return complain(fmt::format("the same as '{}', which is given too", row->name));
     }
-    if (std::string wrong = complaint(*row, given.value); !wrong.empty()) complain(std::move(wrong));
-    else if (!accept_later_) later(node, *row, given);
+    if (std::string wrong = complaint(*row, given.value); !wrong.empty())
+      complain(std::move(wrong));
+    else if (!accept_later_)
+      later(node, *row, given);
   }
 
   /// The type itself is wrong or missing, which was said once.
   static bool hangs_on_wrong_type(const Node& node, std::string_view name) {
-    return node.type().empty() &&
-           std::ranges::any_of(node.spec().attributes, [&](const AttributeSpec& a) { return a.name == name; });
+    return node.type().empty() && std::ranges::any_of(node.spec().attributes,
+                                                      [&](const AttributeSpec& a) { return a.name == name; });
   }
 
   std::string unknown_attribute(const Node& node, std::string_view name) {
@@ -83,6 +90,7 @@ class Checker {
     constexpr std::size_t short_list = 12;
     std::string message = "no such attribute";
     if (list.size() <= short_list) message += fmt::format("; expected {}", join(list, ", "));
+    misspelt_.emplace_back(nearest(name, names));
     return message + did_you_mean(name, names);
   }
 
@@ -93,8 +101,9 @@ class Checker {
     };
     const std::vector<std::string_view> values = row.multiple ? split(value, '|') : std::vector{value};
     const bool other_than_default =
-        row.later && !(row.default_value && (value == *row.default_value ||
-                                             (parse_real(value) && parse_real(value) == parse_real(*row.default_value))));
+        row.later &&
+        !(row.default_value && (value == *row.default_value ||
+                                (parse_real(value) && parse_real(value) == parse_real(*row.default_value))));
     if (!other_than_default && std::ranges::none_of(values, listed)) return;
 
     std::vector<std::string> ready;
@@ -114,6 +123,7 @@ class Checker {
   void missing_attributes(const Node& node) {
     for (const AttributeSpec& row : node.spec().attributes) {
       if (!row.required || !row.applies_to(node.type()) || node.find(row.name)) continue;
+      if (std::ranges::find(misspelt_, row.name) != misspelt_.end()) continue;
       node.complain(diagnostics_, fmt::format("attribute '{}' is missing: {}{}", row.name, expectation(row),
                                               row.meaning.empty() ? "" : fmt::format(" ({})", row.meaning)));
     }
@@ -121,13 +131,15 @@ class Checker {
 
   void together(const Node& node) {
     for (const TogetherSpec& group : node.spec().together) {
-      if (!group.for_types.empty() && std::ranges::find(group.for_types, node.type()) == group.for_types.end()) continue;
+      if (!group.for_types.empty() &&
+          std::ranges::find(group.for_types, node.type()) == group.for_types.end())
+        continue;
       std::vector<std::string> missing;
       for (const std::string& name : group.names)
         if (!node.find(name)) missing.push_back(name);
       if (missing.empty() || missing.size() == group.names.size()) continue;
-      node.complain(diagnostics_, fmt::format("{} are given all or none; missing: {}", join(group.names, ", "),
-                                              join(missing, ", ")));
+      node.complain(diagnostics_, fmt::format("{} are given all or none; missing: {}",
+                                              join(group.names, ", "), join(missing, ", ")));
     }
   }
 
@@ -144,8 +156,9 @@ class Checker {
       if (!node.type().empty() && !spec->applies_to(node.type()))
         diagnostics_.add(child.line, child.name, fmt::format("not with type {}", node.type()));
       else if (!is_first && !spec->multiple)
-        diagnostics_.add(child.line, child.name,
-                         fmt::format("stands once in <{}>; the first is on line {}", node.name(), first->second));
+        diagnostics_.add(
+            child.line, child.name,
+            fmt::format("stands once in <{}>; the first is on line {}", node.name(), first->second));
       element(Node(document_, i, *spec, node.type()));
     }
     for (const ElementSpec& spec : node.spec().children)
@@ -172,11 +185,14 @@ class Checker {
   const ElementSpec& language_;
   const bool accept_later_;
   Diagnostics& diagnostics_;
+  std::vector<std::string>
+      misspelt_;  ///< what wrong names on the present element probably mean: not missing too
 };
 
 }  // namespace
 
-void check(const Document& document, const ElementSpec& language, bool accept_later, Diagnostics& diagnostics) {
+void check(const Document& document, const ElementSpec& language, bool accept_later,
+           Diagnostics& diagnostics) {
   Checker(document, language, accept_later, diagnostics).run();
 }
 

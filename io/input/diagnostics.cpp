@@ -13,8 +13,8 @@ void Diagnostics::add(int line, std::string_view element, std::string_view attri
     ++left_out_;
     return;
   }
-  found_.push_back({file_, line, std::string(element), std::string(attribute), std::string(value),
-                    std::move(message)});
+  found_.push_back(
+      {file_, line, std::string(element), std::string(attribute), std::string(value), std::move(message)});
 }
 
 void Diagnostics::raise_if_any() {

@@ -28,7 +28,9 @@ std::string_view view(const xmlChar* begin, const xmlChar* end) {
   return {reinterpret_cast<const char*>(begin), static_cast<std::size_t>(end - begin)};
 }
 
-int newlines(const xmlChar* begin, const xmlChar* end) { return static_cast<int>(std::count(begin, end, '\n')); }
+int newlines(const xmlChar* begin, const xmlChar* end) {
+  return static_cast<int>(std::count(begin, end, '\n'));
+}
 
 }  // namespace
 
@@ -53,8 +55,8 @@ class DocumentBuilder {
     xmlSAXHandler& sax = *parser->sax;
     std::memset(&sax, 0, sizeof sax);
     sax.initialized = XML_SAX2_MAGIC;
-    sax.startElementNs = [](void* p, const xmlChar* name, const xmlChar* prefix, const xmlChar*, int namespaces,
-                            const xmlChar**, int count, int, const xmlChar** attributes) {
+    sax.startElementNs = [](void* p, const xmlChar* name, const xmlChar* prefix, const xmlChar*,
+                            int namespaces, const xmlChar**, int count, int, const xmlChar** attributes) {
       self(p).begin(name, prefix, namespaces > 0, count, attributes);
     };
     sax.endElementNs = [](void* p, const xmlChar*, const xmlChar*, const xmlChar*) { self(p).end(); };
@@ -93,7 +95,8 @@ class DocumentBuilder {
     return *document_.names_.insert(std::move(full)).first;
   }
 
-  /// The text of the tag is still in the parser's buffer: `<` cannot occur in it again, and lines are counted in it.
+  /// The text of the tag is still in the parser's buffer: `<` cannot occur in it again, and lines are counted
+  /// in it.
   void begin(const xmlChar* local, const xmlChar* prefix, bool namespaces, int count, const xmlChar** raw) {
     const xmlChar* const base = parser_->input->base;
     const xmlChar* const cursor = parser_->input->cur;
@@ -101,13 +104,19 @@ class DocumentBuilder {
     while (tag > base && *tag != '<') --tag;
 
     const auto index = static_cast<std::uint32_t>(document_.elements_.size());
-    XmlElement element{name(local, prefix), line() - newlines(tag, cursor),
-                       static_cast<std::uint32_t>(document_.attributes_.size()), 0, 0, 0};
+    XmlElement element{name(local, prefix),
+                       line() - newlines(tag, cursor),
+                       static_cast<std::uint32_t>(document_.attributes_.size()),
+                       0,
+                       0,
+                       0};
     int at_line = element.line;
     const xmlChar* at = tag;
     for (int i = 0; i < count; ++i, raw += 5) {
       const xmlChar* const value = raw[3];
-      if (std::less_equal<>{}(at, value) && std::less_equal<>{}(value, cursor)) {  // else: a copy, because it held a character reference or a tab
+      if (std::less_equal<>{}(at, value) &&
+          std::less_equal<>{}(value,
+                              cursor)) {  // else: a copy, because it held a character reference or a tab
         at_line += newlines(at, value);
         at = value;
       }
@@ -152,10 +161,12 @@ namespace {
 /// The declared encoding where it has to be overridden: gb2312 files hold characters of its supersets.
 const char* override_encoding(std::string_view bytes) {
   std::string head(bytes.substr(0, std::min(bytes.find("?>"), std::size_t{200})));
-  std::ranges::transform(head, head.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(head, head.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (!head.starts_with("<?xml")) return nullptr;
-  const bool chinese = std::ranges::any_of(std::initializer_list<std::string_view>{"gb2312", "gb_2312", "gbk", "cp936"},
-                                           [&](std::string_view s) { return head.find(s) != head.npos; });
+  const bool chinese =
+      std::ranges::any_of(std::initializer_list<std::string_view>{"gb2312", "gb_2312", "gbk", "cp936"},
+                          [&](std::string_view s) { return head.find(s) != head.npos; });
   return chinese ? "GB18030" : nullptr;
 }
 
@@ -188,10 +199,12 @@ int overfull_tag(std::size_t count, const Unit& unit) {
 }
 
 int overfull_tag(std::string_view bytes) {
-  if (bytes.substr(0, 4).find('\0') == bytes.npos && !bytes.starts_with("\xFF\xFE") && !bytes.starts_with("\xFE\xFF"))
+  if (bytes.substr(0, 4).find('\0') == bytes.npos && !bytes.starts_with("\xFF\xFE") &&
+      !bytes.starts_with("\xFE\xFF"))
     return overfull_tag(bytes.size(), [&](std::size_t i) { return bytes[i]; });
   const std::size_t low = bytes.starts_with("\xFE\xFF") || bytes[0] == '\0' ? 1 : 0;
-  return overfull_tag(bytes.size() / 2, [&](std::size_t i) { return bytes[2 * i + 1 - low] ? '?' : bytes[2 * i + low]; });
+  return overfull_tag(bytes.size() / 2,
+                      [&](std::size_t i) { return bytes[2 * i + 1 - low] ? '?' : bytes[2 * i + low]; });
 }
 
 }  // namespace
@@ -200,17 +213,23 @@ Document parse_document(std::string_view bytes, std::optional<XmlError>& error) 
   error.reset();
   if (trim(bytes).empty()) error = XmlError{0, "the file is empty", {}};
   if (bytes.size() > largest_document)
-    error = XmlError{0, fmt::format("{} bytes are more than the {} that an input may have; put particles into a file "
-                                    "of their own (Geometry file=)", bytes.size(), largest_document), {}};
+    error = XmlError{
+        0,
+        fmt::format("{} bytes are more than the {} that an input may have; put particles into a file "
+                    "of their own (Geometry file=)",
+                    bytes.size(), largest_document),
+        {}};
   if (error) return {};
-  if (bytes.starts_with(std::string_view("\0\0", 2)) || bytes.starts_with(std::string_view("\xFF\xFE\0\0", 4)) ||
+  if (bytes.starts_with(std::string_view("\0\0", 2)) ||
+      bytes.starts_with(std::string_view("\xFF\xFE\0\0", 4)) ||
       bytes.starts_with(std::string_view("<\0\0\0", 4)))
     error = XmlError{0, "UTF-32 is not read; save the file as UTF-8", {}};
   else if (const int line = overfull_tag(bytes))
     error = XmlError{line, fmt::format("more than {} attributes on one element", most_attributes), {}};
   if (error) return {};
 
-  const std::unique_ptr<xmlParserCtxt, void (*)(xmlParserCtxtPtr)> parser(xmlNewParserCtxt(), xmlFreeParserCtxt);
+  const std::unique_ptr<xmlParserCtxt, void (*)(xmlParserCtxtPtr)> parser(xmlNewParserCtxt(),
+                                                                          xmlFreeParserCtxt);
   if (!parser) throw std::bad_alloc();
   DocumentBuilder builder(parser.get());
   xmlDocPtr unused = xmlCtxtReadMemory(parser.get(), bytes.data(), static_cast<int>(bytes.size()), nullptr,

@@ -40,16 +40,19 @@ AttributeSpec row(const core::ParameterInfo& p, std::string_view type) {
   return a;
 }
 
-/// A common parameter whose row is the same for every type of the program: one row without ForTypes per type would
-/// be the same text again and again, so rows carry the list of types.
+/// A common parameter whose row is the same for every type of the program: one row without ForTypes per type
+/// would be the same text again and again, so rows carry the list of types.
 void add_row(std::vector<AttributeSpec>& rows, AttributeSpec a) {
   const auto same = std::ranges::find_if(rows, [&](const AttributeSpec& b) {
-    return a.name == b.name && a.required == b.required && a.type == b.type && a.default_value == b.default_value &&
-           a.range.min == b.range.min && a.range.max == b.range.max && a.range.min_open == b.range.min_open &&
-           a.range.max_open == b.range.max_open && a.unit == b.unit && a.meaning == b.meaning && a.later == b.later;
+    return a.name == b.name && a.required == b.required && a.type == b.type &&
+           a.default_value == b.default_value && a.range.min == b.range.min && a.range.max == b.range.max &&
+           a.range.min_open == b.range.min_open && a.range.max_open == b.range.max_open && a.unit == b.unit &&
+           a.meaning == b.meaning && a.later == b.later;
   });
-  if (same == rows.end()) rows.push_back(std::move(a));
-  else same->for_types.push_back(std::move(a.for_types.front()));
+  if (same == rows.end())
+    rows.push_back(std::move(a));
+  else
+    same->for_types.push_back(std::move(a.for_types.front()));
 }
 
 void add_groups(ElementSpec& element, const core::TypeInfo& type) {
@@ -61,6 +64,25 @@ void add_groups(ElementSpec& element, const core::TypeInfo& type) {
     for (const core::ParameterInfo& p : type.parameters)
       if (p.group == group) together.names.emplace_back(p.name);
     element.together.push_back(std::move(together));
+  }
+}
+
+/// Types without a table of their own: their common parameters have the common table's range and meaning;
+/// whether they are required is the Specification's to say.
+void add_common_rows_of_the_rest(std::vector<AttributeSpec>& rows,
+                                 const std::vector<core::ParameterInfo>& common) {
+  const std::vector<AttributeSpec> specified = rows;
+  for (const core::ParameterInfo& p : common) {
+    std::erase_if(rows, [&](const AttributeSpec& a) { return a.name == p.name; });
+    for (const AttributeSpec& a : specified) {
+      if (a.name != p.name) continue;
+      for (const std::string& type : a.for_types) {
+        AttributeSpec mixed = row(p, type);
+        mixed.required = a.required;
+        if (mixed.required) mixed.default_value.reset();
+        add_row(rows, std::move(mixed));
+      }
+    }
   }
 }
 
@@ -99,9 +121,11 @@ void merge_laws(ElementSpec& element, const Family& family) {
     if (!unknown.for_types.empty()) leftover.push_back(std::move(unknown));
   }
   std::erase_if(element.together, [&](const TogetherSpec& t) {
-    return std::ranges::any_of(t.for_types, [&](const std::string& type) { return implemented.contains(type); });
+    return std::ranges::any_of(t.for_types,
+                               [&](const std::string& type) { return implemented.contains(type); });
   });
 
+  if (family.common) add_common_rows_of_the_rest(rows, *family.common);
   for (const core::TypeInfo& t : family.types) {
     if (!t.implemented) continue;
     for (const core::ParameterInfo& p : t.parameters) add_row(rows, row(p, t.name));
@@ -113,7 +137,8 @@ void merge_laws(ElementSpec& element, const Family& family) {
   }
   for (AttributeSpec& a : leftover) {  // without those that a law has under the same name
     std::erase_if(a.for_types, [&](const std::string& t) {
-      return std::ranges::any_of(rows, [&](const AttributeSpec& b) { return a.name == b.name && b.applies_to(t); });
+      return std::ranges::any_of(rows,
+                                 [&](const AttributeSpec& b) { return a.name == b.name && b.applies_to(t); });
     });
     if (!a.for_types.empty()) rows.push_back(std::move(a));
   }

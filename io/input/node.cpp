@@ -32,11 +32,11 @@ std::string complaint_about_one(const AttributeSpec& a, std::string_view value) 
     case ValueType::text:
       if (a.range.words.empty() ? !value.empty() : is_word(a, value)) return {};
       return expected(a, value);
-    case ValueType::boolean:
-      return value == "0" || value == "1" ? std::string() : expected(a, value);
+    case ValueType::boolean: return value == "0" || value == "1" ? std::string() : expected(a, value);
     case ValueType::integer: {
       const std::optional<std::int64_t> number = parse_integer(value);
-      const bool fits = number && *number >= std::numeric_limits<int>::min() && *number <= std::numeric_limits<int>::max();
+      const bool fits =
+          number && *number >= std::numeric_limits<int>::min() && *number <= std::numeric_limits<int>::max();
       return fits && allowed(a, static_cast<double>(*number)) ? std::string() : expected(a, value);
     }
     case ValueType::real: {
@@ -52,7 +52,8 @@ std::string complaint_about_one(const AttributeSpec& a, std::string_view value) 
 
 std::string_view canonical_word(const AttributeSpec& a, std::string_view value) {
   value = trim(value);
-  return !a.also_word.first.empty() && value == a.also_word.first ? std::string_view(a.also_word.second) : value;
+  return !a.also_word.first.empty() && value == a.also_word.first ? std::string_view(a.also_word.second)
+                                                                  : value;
 }
 
 std::string complaint(const AttributeSpec& a, std::string_view value) {
@@ -65,7 +66,8 @@ std::string complaint(const AttributeSpec& a, std::string_view value) {
   return {};
 }
 
-Node::Node(const Document& document, std::uint32_t element, const ElementSpec& spec, std::string_view outer_type)
+Node::Node(const Document& document, std::uint32_t element, const ElementSpec& spec,
+           std::string_view outer_type)
     : document_(&document), element_(element), spec_(&spec), type_(outer_type) {
   if (const AttributeSpec* row = spec.attribute("type", {}); row && !row->multiple) type_ = word("type");
 }
@@ -144,8 +146,10 @@ void Node::complain(Diagnostics& diagnostics, std::string message) const {
 
 void Node::complain(Diagnostics& diagnostics, std::string_view attribute, std::string message) const {
   const XmlAttribute* given = find(attribute);
-  if (given) diagnostics.add(given->line, name(), given->name, given->value, std::move(message));
-  else diagnostics.add(line(), name(), std::move(message));
+  if (given)
+    diagnostics.add(given->line, name(), given->name, given->value, std::move(message));
+  else
+    diagnostics.add(line(), name(), std::move(message));
 }
 
 }  // namespace mpm::io

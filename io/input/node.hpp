@@ -1,6 +1,6 @@
 // An element of the input seen through its specification: typed values with defaults filled in.
-// Values that are missing or wrong were reported by the checker; here they read as NaN, 0, false or empty, so that
-// later checks can go on and stay silent about them.
+// Values that are missing or wrong were reported by the checker; here they read as NaN, 0, false or empty, so
+// that later checks can go on and stay silent about them.
 #pragma once
 
 #include <array>
@@ -35,7 +35,8 @@ class Node {
   std::uint32_t index() const { return element_; }
   std::string_view name() const { return element().name; }
   int line() const { return element().line; }
-  /// The nearest type: of this element, or of the nearest one further up that has one. Empty when it is not valid.
+  /// The nearest type: of this element, or of the nearest one further up that has one. Empty when it is not
+  /// valid.
   std::string_view type() const { return type_; }
 
   /// The attribute under its name or its second accepted spelling.

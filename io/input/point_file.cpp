@@ -1,7 +1,5 @@
 #include "io/input/point_file.hpp"
 
-#include <zlib.h>
-
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include "core/scene/errors.hpp"
 #include "io/input/text.hpp"
@@ -19,7 +18,8 @@ namespace mpm::io {
 std::string why_unreadable(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return error && error.value() != ENOENT ? error.message() : "no such file";
+  if (!std::filesystem::exists(status))
+    return error && error.value() != ENOENT ? error.message() : "no such file";
   if (std::filesystem::is_directory(status)) return "this is a folder, not a file";
   if (!std::filesystem::is_regular_file(status)) return "not a regular file";
   std::FILE* const opened = std::fopen(file.c_str(), "rb");
@@ -97,7 +97,8 @@ bool PointFile::next(core::PointMass& point) {
       line.remove_prefix(word.size());
       line = line.substr(std::min(line.find_first_not_of(" \t,"), line.size()));
     }
-    if (!line.empty()) fail(fmt::format("expected four numbers `mass x y z`, found '{}' after them", line.substr(0, 40)));
+    if (!line.empty())
+      fail(fmt::format("expected four numbers `mass x y z`, found '{}' after them", line.substr(0, 40)));
     if (!(values[0] > 0)) fail(fmt::format("the mass {} of a particle is not positive", values[0]));
     point = {values[0], {values[1], values[2], values[3]}};
     return true;

@@ -23,7 +23,8 @@ class PointFile {
   PointFile& operator=(PointFile&&) noexcept;
 
   /// The next particle; false at the end. Empty lines and lines that start with # are passed over.
-  /// Throws core::InputErrors with file and line on anything but four numbers, or a mass that is not positive.
+  /// Throws core::InputErrors with file and line on anything but four numbers, or a mass that is not
+  /// positive.
   bool next(core::PointMass& point);
 
  private:

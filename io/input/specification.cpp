@@ -94,18 +94,29 @@ AttributeSpec parse_attribute(std::string_view text) {
 }
 
 void parse_detail(AttributeSpec& a, std::string_view key, std::string_view value) {
-  if (key == "default") a.default_value = value;
-  else if (key == "unit") a.unit = value;
-  else if (key == "meaning") a.meaning = value;
-  else if (key == "insteadOf") a.instead_of = value;
-  else if (key == "twice") a.twice = value;
-  else if (key == "word") a.word = value;
-  else if (key == "later" && value == "*") a.later = true;
-  else if (key == "later") a.later_values = words_of(value);
+  if (key == "default")
+    a.default_value = value;
+  else if (key == "unit")
+    a.unit = value;
+  else if (key == "meaning")
+    a.meaning = value;
+  else if (key == "insteadOf")
+    a.instead_of = value;
+  else if (key == "twice")
+    a.twice = value;
+  else if (key == "word")
+    a.word = value;
+  else if (key == "later" && value == "*")
+    a.later = true;
+  else if (key == "later")
+    a.later_values = words_of(value);
   else if (key == "also" && value.find('=') != value.npos)
-    a.also_word = {std::string(value.substr(0, value.find('='))), std::string(value.substr(value.find('=') + 1))};
-  else if (key == "also") a.also = value;
-  else mistake(key, "unknown key");
+    a.also_word = {std::string(value.substr(0, value.find('='))),
+                   std::string(value.substr(value.find('=') + 1))};
+  else if (key == "also")
+    a.also = value;
+  else
+    mistake(key, "unknown key");
 }
 
 LawFamily parse_laws(std::string_view text) {
@@ -184,7 +195,8 @@ const ElementSpec* ElementSpec::child(std::string_view child_name) const {
   return found == children.end() ? nullptr : &*found;
 }
 
-const AttributeSpec* ElementSpec::attribute(std::string_view attribute_name, std::string_view element_type) const {
+const AttributeSpec* ElementSpec::attribute(std::string_view attribute_name,
+                                            std::string_view element_type) const {
   for (const AttributeSpec& a : attributes)
     if (a.name == attribute_name && a.applies_to(element_type)) return &a;
   return nullptr;
@@ -207,9 +219,14 @@ namespace {
 std::string interval(const Range& r, std::string_view noun) {
   const bool low = std::isfinite(r.min), high = std::isfinite(r.max);
   if (low && high)
-    return fmt::format("{} in {}{}, {}{}", noun, r.min_open ? '(' : '[', r.min, r.max, r.max_open ? ')' : ']');
-  if (low) return r.min_open ? fmt::format("{} greater than {}", noun, r.min) : fmt::format("{} of at least {}", noun, r.min);
-  if (high) return r.max_open ? fmt::format("{} less than {}", noun, r.max) : fmt::format("{} of at most {}", noun, r.max);
+    return fmt::format("{} in {}{}, {}{}", noun, r.min_open ? '(' : '[', r.min, r.max,
+                       r.max_open ? ')' : ']');
+  if (low)
+    return r.min_open ? fmt::format("{} greater than {}", noun, r.min)
+                      : fmt::format("{} of at least {}", noun, r.min);
+  if (high)
+    return r.max_open ? fmt::format("{} less than {}", noun, r.max)
+                      : fmt::format("{} of at most {}", noun, r.max);
   return std::string(noun);
 }
 
@@ -219,8 +236,12 @@ std::string expectation(const AttributeSpec& a) {
   std::string text;
   if (!a.range.words.empty()) {
     const std::string words = join(a.range.words, ", ");
-    if (a.range.words.size() == 1) text = fmt::format("'{}'", words);
-    else text = fmt::format(a.multiple ? "one or more of {}, joined by |" : "one of {}", words);
+    if (a.range.words.size() == 1)
+      text = fmt::format("'{}'", words);
+    else if (a.multiple)
+      text = fmt::format("one or more of {}, joined by |", words);
+    else
+      text = fmt::format("one of {}", words);
   } else if (a.type == ValueType::boolean) {
     text = "0 or 1";
   } else if (a.type == ValueType::integer) {

@@ -1,5 +1,5 @@
-// The input language as data: what io/input/Specification.xml says, with the laws' own parameter tables merged in.
-// Its notation is described at the head of that file.
+// The input language as data: what io/input/Specification.xml says, with the laws' own parameter tables
+// merged in. Its notation is described at the head of that file.
 #pragma once
 
 #include <limits>
@@ -33,17 +33,17 @@ struct AttributeSpec {
   bool multiple = false;  ///< values joined by |
   ValueType type = ValueType::text;
   Range range;
-  std::vector<std::string> for_types;  ///< empty: for every type
+  std::vector<std::string> for_types;        ///< empty: for every type
   std::optional<std::string> default_value;  ///< starts with @ where it is a rule in words
   std::string unit;
   std::string meaning;
-  bool later = false;                     ///< any value but the default is not implemented yet
-  std::vector<std::string> later_values;  ///< these values are not implemented yet
-  std::string instead_of;                 ///< a refused spelling of the name
-  std::string also;                       ///< a second accepted spelling of the name
+  bool later = false;                             ///< any value but the default is not implemented yet
+  std::vector<std::string> later_values;          ///< these values are not implemented yet
+  std::string instead_of;                         ///< a refused spelling of the name
+  std::string also;                               ///< a second accepted spelling of the name
   std::pair<std::string, std::string> also_word;  ///< accepted spelling of a word, and the word
-  std::string twice;                      ///< what is meant where the attribute stands twice
-  std::string word;                       ///< accepted in place of a number
+  std::string twice;                              ///< what is meant where the attribute stands twice
+  std::string word;                               ///< accepted in place of a number
 
   bool applies_to(std::string_view element_type) const;
 };
@@ -81,9 +81,9 @@ ElementSpec parse_specification(std::string_view xml);
 /// The built-in Specification.xml; the root is PeneBlast.
 const ElementSpec& specification();
 
-/// The language that a program with these laws reads: for types that the catalogue implements, its parameters replace
-/// the Specification's; types that only the Specification knows are marked as not implemented yet; types that only
-/// the catalogue knows are added.
+/// The language that a program with these laws reads: for types that the catalogue implements, its parameters
+/// replace the Specification's; types that only the Specification knows are marked as not implemented yet;
+/// types that only the catalogue knows are added.
 ElementSpec language(const core::Catalogue& catalogue);
 
 /// `a number greater than 0`, `one of a, b, c` ...

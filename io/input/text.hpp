@@ -16,15 +16,15 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 
 std::string join(const std::vector<std::string>& words, std::string_view separator);
 
-/// A finite real in C notation with full double precision: `.5`, `1.`, `+2e-3`. Nothing for `1d3`, `nan`, `inf`,
-/// `0x1p3`, trailing text, or a value beyond the range of double.
+/// A finite real in C notation with full double precision: `.5`, `1.`, `+2e-3`. Nothing for `1d3`, `nan`,
+/// `inf`, `0x1p3`, trailing text, or a value beyond the range of double.
 std::optional<double> parse_real(std::string_view text);
 
 /// A whole number in decimal digits with an optional sign.
 std::optional<std::int64_t> parse_integer(std::string_view text);
 
-/// The candidate that `word` was probably meant to be: the same but for upper and lower case, else the nearest by
-/// edits when they are few for its length. Empty when none is near.
+/// The candidate that `word` was probably meant to be: the same but for upper and lower case, else the
+/// nearest by edits when they are few for its length. Empty when none is near.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 
 /// `; did you mean 'x'?`, or nothing.

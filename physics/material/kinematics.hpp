@@ -55,7 +55,7 @@ T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double re
 /// Fills strain, volumetric_strain and old_volume of the batch; updates the volume and, where the layout has them,
 /// the accumulated strains.
 template <class T>
-[[gnu::noinline]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
+[[gnu::noinline, gnu::flatten]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
                                          double reference_density) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
@@ -91,9 +91,9 @@ template <class T>
 
     const T old_volume = core::load<T>(block + volume_at);
     const T ratio = volume_ratio(type, l, dt, strain, accumulated, cell_strain);
-    const auto usable = ratio > 0.0;
-    batch.events.negative_volume += count<T>(!usable, row, batch.particles);
-    T volume = core::select(usable, old_volume * ratio, old_volume);
+    const core::MaskOf<T> unusable = !(ratio > 0.0);
+    if (core::any(unusable)) batch.events.negative_volume += count<T>(unusable, row, batch.particles);
+    T volume = core::select(unusable, old_volume, old_volume * ratio);
     if (limits) {
       volume = limit_volume(batch, options, reference_density, core::load<T>(block + mass_at), volume, row);
     }

@@ -1,7 +1,7 @@
-// Second stage: the deviatoric stress. Half of the step's rotation, the law in the frame of the middle of the step,
-// the other half: so each increment is turned by as much as belongs to it, and the whole is of second order where
-// one rotation per step is of first (tests/physics/objectivity_test.cpp). Each half is the mid-point rule for half of
-// the spin (Hughes and Winget 1980), orthogonal to round-off, in the place of thesis 2-81.
+// Second stage: the deviatoric stress. The old stress is turned by the mid-point rule for the step's spin (Hughes and
+// Winget 1980; orthogonal to round-off, in the place of thesis 2-81). The strain increment belongs to the middle of
+// the step and is turned by the other half, to first order in the angle: with that the whole is of second order,
+// where an unturned increment leaves it of first (tests/physics/objectivity_test.cpp). Then the law.
 // Failed particles have the stress of a fluid, s = 2 FailViscosity D', and their state rests.
 #pragma once
 
@@ -16,73 +16,107 @@ struct StrengthRules {
   double specific_heat = 0;  ///< 0: nothing heats
 };
 
-/// Rotation by half of the step's spin.
+/// Axial vector of the spin increment.
 template <class T>
-core::Mat3<T> half_rotation(const core::Batch& batch, int row) {
-  const double quarter = 0.25 * batch.dt;
+core::Vec3<T> spin_increment(const core::Batch& batch, int row) {
+  const double half = 0.5 * batch.dt;
   const auto get = [&](int i) { return core::load<T>(batch.gradient[i] + row); };
-  return core::mid_point_rotation(core::Vec3<T>{quarter * (get(7) - get(5)), quarter * (get(2) - get(6)),
-                                                quarter * (get(3) - get(1))});
+  return {half * (get(7) - get(5)), half * (get(2) - get(6)), half * (get(3) - get(1))};
 }
 
-/// Strain increment and density, as the law is given them; the rest of the point is zero.
+/// R a R^T for a deviator a, whose third diagonal component follows from the others.
+template <class T>
+core::Sym3<T> rotate_deviator(const core::Mat3<T>& r, const core::Sym3<T>& a) {
+  const core::Vec3<T> x{r.xx * a.xx + r.xy * a.xy + r.xz * a.xz, r.xx * a.xy + r.xy * a.yy + r.xz * a.yz,
+                        r.xx * a.xz + r.xy * a.yz + r.xz * a.zz};
+  const core::Vec3<T> y{r.yx * a.xx + r.yy * a.xy + r.yz * a.xz, r.yx * a.xy + r.yy * a.yy + r.yz * a.yz,
+                        r.yx * a.xz + r.yy * a.yz + r.yz * a.zz};
+  const core::Vec3<T> rx{r.xx, r.xy, r.xz}, ry{r.yx, r.yy, r.yz}, rz{r.zx, r.zy, r.zz};
+  const T xx = dot(x, rx), yy = dot(y, ry);
+  return {xx, yy, -(xx + yy), dot(x, ry), dot(y, rz), dot(x, rz)};
+}
+
+/// a + H a - a H for the skew tensor H of the axial vector h: a turned by h, to first order.
+template <class T>
+core::Sym3<T> turn_slightly(const core::Vec3<T>& h, const core::Sym3<T>& a) {
+  const T x = h.x * a.yz, y = h.y * a.xz, z = h.z * a.xy;
+  return {a.xx + 2.0 * (y - z),
+          a.yy + 2.0 * (z - x),
+          a.zz + 2.0 * (x - y),
+          a.xy + h.z * (a.xx - a.yy) + h.y * a.yz - h.x * a.xz,
+          a.yz + h.x * (a.yy - a.zz) + h.z * a.xz - h.y * a.xy,
+          a.xz + h.y * (a.zz - a.xx) + h.x * a.xy - h.z * a.yz};
+}
+
+/// What the law is given, but for its state: strain increment, pressure, density and the turned stress.
 template <class T>
 StrengthPoint<T> strength_point(const core::Batch& batch, const double* block, int row) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const auto get = [&](Column c) { return core::load<T>(block + layout.offset(c)); };
   const auto strain = [&](int i) { return core::load<T>(batch.strain[i] + row); };
+  const core::Vec3<T> spin = spin_increment<T>(batch, row);
+  const T tr = core::load<T>(batch.volumetric_strain + row);
+  const T mean = (1.0 / 3.0) * tr;
+
   StrengthPoint<T> point;
   point.dt = batch.dt;
-  point.strain = deviator(core::Sym3<T>{strain(0), strain(1), strain(2), strain(3), strain(4), strain(5)});
-  point.volumetric_strain = core::load<T>(batch.volumetric_strain + row);
+  point.volumetric_strain = tr;
+  point.strain = turn_slightly(T(0.5) * spin, core::Sym3<T>{strain(0) - mean, strain(1) - mean, strain(2) - mean,
+                                                            strain(3), strain(4), strain(5)});
+  point.s = rotate_deviator(core::mid_point_rotation(spin), load_deviator<T>(block, layout));
   point.pressure = get(Column::pressure);
   point.density = get(Column::mass) / get(Column::volume);
   return point;
 }
 
-/// Fills deviatoric_work, shear_modulus and shear_viscosity of the batch; updates s and the law's state.
+/// The lanes of `failed` become a viscous fluid; their state goes back to what it was.
 template <class T, class Law>
-[[gnu::noinline]] void update_strength(core::Batch& batch, const Law& law, const StrengthRules& rules) {
+void hold_failed(StrengthPoint<T>& point, const History<Law, StrengthPoint<T>>& history, const double* block,
+                 const StrengthRules& rules, core::MaskOf<T> failed) {
+  const auto put = [&](T& value, const T& fluid) { value = core::select(failed, fluid, value); };
+  const core::Sym3<T> viscous = T(2 * rules.fail_viscosity / point.dt) * point.strain;
+  put(point.s.xx, viscous.xx), put(point.s.yy, viscous.yy), put(point.s.zz, viscous.zz);
+  put(point.s.xy, viscous.xy), put(point.s.yz, viscous.yz), put(point.s.xz, viscous.xz);
+  put(point.shear_modulus, 0.0), put(point.plastic_work, 0.0), put(point.viscosity, rules.fail_viscosity);
+  history.restore(block, point, failed);
+}
+
+/// Fills deviatoric_work, shear_modulus and shear_viscosity of the batch; updates s, the law's state and, where the
+/// layout has it, the temperature (thesis 2-119).
+template <class T, class Law>
+[[gnu::noinline, gnu::flatten]] void update_strength(core::Batch& batch, const Law& law, const StrengthRules& rules) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const History<Law, StrengthPoint<T>> history(law, layout);
-  const int failed_at = layout.offset(Column::failed);
-  const int yield_at = layout.offset(Column::yield_stress);
+  const int failed_at = layout.offset(Column::failed), yield_at = layout.offset(Column::yield_stress);
   const int temperature_at = layout.offset(Column::temperature);
 
   for_each_vector<T>(batch, [&](double* block, int row) {
-    const core::Mat3<T> half = half_rotation<T>(batch, row);
     StrengthPoint<T> point = strength_point<T>(batch, block, row);
+    const core::Sym3<T> before = point.s;
     history.load(block, point);
-    const core::Sym3<T> before = rotate(half, load_deviator<T>(block, layout));
-    point.s = before;
     law.update(point);
-
     if (failed_at >= 0) {
-      const auto failed = core::load<T>(block + failed_at) > 0.5;
-      const T kept = core::select(failed, 0.0, T(1.0)), lost = 1.0 - kept;
-      point.s = kept * point.s + (lost * (2 * rules.fail_viscosity / batch.dt)) * point.strain;
-      point.shear_modulus *= kept;
-      point.plastic_work *= kept;
-      point.viscosity = kept * point.viscosity + lost * rules.fail_viscosity;
-      history.restore(block, point, failed);
-    }
-    if constexpr (requires { law.plastic_work_coefficient; }) {
-      if (temperature_at >= 0) {  // thesis 2-119
-        point.temperature = core::load<T>(block + temperature_at) + (law.plastic_work_coefficient / rules.specific_heat) *
-                            point.plastic_work / point.density;
-      }
+      hold_failed(point, history, block, rules, core::MaskOf<T>(core::load<T>(block + failed_at) > 0.5));
     }
     history.store(block, point);
     if constexpr (requires { law.plastic_work_coefficient; }) {
-      if (temperature_at >= 0) core::store(block + temperature_at, point.temperature);
+      if (temperature_at >= 0) {
+        const double heat = law.plastic_work_coefficient / rules.specific_heat;
+        double* temperature = block + temperature_at;
+        core::store(temperature, core::load<T>(temperature) + heat * point.plastic_work / point.density);
+      }
     }
     if (yield_at >= 0) core::store(block + yield_at, point.yield_stress);
+    store_deviator(block, layout, point.s);
     core::store(batch.deviatoric_work + row, T(0.5) * contract(before + point.s, point.strain));
     core::store(batch.shear_modulus + row, point.shear_modulus);
-    core::store(batch.shear_viscosity + row, point.viscosity);
-    store_deviator(block, layout, rotate(half, point.s));
+    if constexpr (requires { law.viscosity(); }) {
+      core::store(batch.shear_viscosity + row, point.viscosity);
+    } else if (rules.fail_viscosity > 0) {
+      core::store(batch.shear_viscosity + row, point.viscosity);
+    }
   });
 }
 

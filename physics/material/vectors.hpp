@@ -18,7 +18,7 @@ inline void for_each_vector(const core::Batch& batch, F f) {
 
 /// Lanes of `mask` that hold particles, for a vector at `row` of a batch with `particles`.
 template <class T>
-inline long count(core::MaskOf<T> mask, int row, int particles) {
+[[gnu::noinline, gnu::cold]] long count(core::MaskOf<T> mask, int row, int particles) {
   if (!core::any(mask)) return 0;
   if constexpr (core::LaneTraits<T>::width == 1) {
     return row < particles ? 1 : 0;

@@ -1,0 +1,262 @@
+#include "core/step/totals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mpm::core {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+enum Sum : std::size_t {
+  mass,
+  kinetic,
+  internal,
+  momentum,                        // three
+  angular_momentum = momentum + 3, // three
+  moment = angular_momentum + 3,   // mass times position, three
+  sums = moment + 3
+};
+enum Low : std::size_t { lower, upper = lower + 3, plastic_strain = upper + 3, temperature, lows };
+
+/// One body's share of one thread. Maxima are kept as minima of the negative.
+struct Partial {
+  std::array<ExactSum, sums> sum;
+  std::array<double, lows> low{};
+  std::int64_t particles = 0;
+  std::int64_t failed = 0;
+
+  Partial() { low.fill(infinity); }
+  void merge(const Partial& other) {
+    for (std::size_t i = 0; i < sums; ++i) sum[i] += other.sum[i];
+    for (std::size_t i = 0; i < lows; ++i) low[i] = std::fmin(low[i], other.low[i]);
+    particles += other.particles;
+    failed += other.failed;
+  }
+};
+
+void note_lowest(const double* column, int used, double sign, double& low) {
+  for (int i = 0; i < used; ++i) low = std::fmin(low, sign * column[i]);
+}
+
+void add_block(const ColumnLayout& layout, const double* block, int used, double inverse_density, Partial& to) {
+  const auto column = [&](Column c) { return block + layout.offset(c); };
+  const double* m = column(Column::mass);
+  const double* e = column(Column::internal_energy);
+  const double* x = column(Column::position_x);
+  const double* v = column(Column::velocity_x);
+  constexpr int y = block_lanes, z = 2 * block_lanes;
+  double s[sums] = {};
+  for (int i = 0; i < used; ++i) {
+    const double px = m[i] * v[i], py = m[i] * v[i + y], pz = m[i] * v[i + z];
+    s[mass] += m[i];
+    s[kinetic] += 0.5 * (px * v[i] + py * v[i + y] + pz * v[i + z]);
+    s[internal] += e[i] * m[i] * inverse_density;
+    s[momentum] += px;
+    s[momentum + 1] += py;
+    s[momentum + 2] += pz;
+    s[angular_momentum] += x[i + y] * pz - x[i + z] * py;
+    s[angular_momentum + 1] += x[i + z] * px - x[i] * pz;
+    s[angular_momentum + 2] += x[i] * py - x[i + y] * px;
+    s[moment] += m[i] * x[i];
+    s[moment + 1] += m[i] * x[i + y];
+    s[moment + 2] += m[i] * x[i + z];
+  }
+  for (std::size_t k = 0; k < sums; ++k) to.sum[k].add(s[k]);
+  for (std::size_t a = 0; a < 3; ++a) {
+    note_lowest(x + block_lanes * a, used, 1, to.low[lower + a]);
+    note_lowest(x + block_lanes * a, used, -1, to.low[upper + a]);
+  }
+  if (layout.has(Column::effective_plastic_strain)) {
+    note_lowest(column(Column::effective_plastic_strain), used, -1, to.low[plastic_strain]);
+  }
+  if (layout.has(Column::temperature)) note_lowest(column(Column::temperature), used, -1, to.low[temperature]);
+  if (layout.has(Column::failed)) {
+    for (int i = 0; i < used; ++i) to.failed += column(Column::failed)[i] >= 1;
+  }
+  to.particles += used;
+}
+
+/// f(brick, own partial result) over this rank's bricks by all threads; partial results are merged into `out`.
+template <class P, class F>
+void over_bricks(const Model& model, P& out, F f) {
+  const int bricks = model.grid->owned();
+#pragma omp parallel
+  {
+    P mine = out;
+#pragma omp for schedule(dynamic, 16) nowait
+    for (int s = 0; s < bricks; ++s) f(model.grid->brick(s), mine);
+#pragma omp critical(mpm_totals)
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].merge(mine[i]);
+  }
+}
+
+/// f(body index, layout, block, lanes in use) over one brick.
+template <class F>
+void over_blocks(const Model& model, const Brick& brick, F f) {
+  for (const Cohort& cohort : brick.cohorts) {
+    const BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      const int used = static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+      f(static_cast<std::size_t>(cohort.body), pool.layout(), pool.block(cohort.blocks[b]), used);
+    }
+  }
+}
+
+Vec3<double> vector_of(const ExactSum* sum) { return {sum[0].value(), sum[1].value(), sum[2].value()}; }
+
+Quantities quantities_of(const ExactSum* sum) {
+  return {sum[mass].value(), sum[kinetic].value(), sum[internal].value(), vector_of(sum + momentum),
+          vector_of(sum + angular_momentum)};
+}
+
+std::vector<double> inverse_densities(const Model& model) {
+  std::vector<double> inverse;
+  for (const Body& b : model.bodies) inverse.push_back(1 / b.model->reference_density());
+  return inverse;
+}
+
+BodyTotals body_totals(const ExactSum* sum, const double* low, std::int64_t particles) {
+  BodyTotals body;
+  static_cast<Quantities&>(body) = quantities_of(sum);
+  body.particles = particles;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  body.centre = body.lower = body.upper = {none, none, none};
+  if (particles > 0) {
+    const Vec3<double> first = vector_of(sum + moment);
+    for (int a = 0; a < 3; ++a) {
+      body.velocity[a] = body.momentum[a] / body.mass;
+      body.centre[a] = first[a] / body.mass;
+      body.lower[a] = low[lower + static_cast<std::size_t>(a)];
+      body.upper[a] = -low[upper + static_cast<std::size_t>(a)];
+    }
+  }
+  if (low[plastic_strain] < infinity) body.max_effective_plastic_strain = -low[plastic_strain];
+  if (low[temperature] < infinity) body.max_temperature = -low[temperature];
+  return body;
+}
+
+std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) { return i < values.size() ? values[i] : 0; }
+
+}  // namespace
+
+Totals compute_totals(const Model& model, Exchange& exchange) {
+  const std::size_t bodies = model.bodies.size();
+  const std::vector<double> inverse_density = inverse_densities(model);
+  std::vector<Partial> local(bodies);
+  over_bricks(model, local, [&](const Brick& brick, std::vector<Partial>& to) {
+    over_blocks(model, brick, [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
+      add_block(layout, block, used, inverse_density[body], to[body]);
+    });
+  });
+
+  const Books& books = model.books;
+  std::vector<ExactSum> sum;
+  std::vector<double> low;
+  std::vector<std::int64_t> count{books.eroded, books.left_grid, books.velocity_limited};
+  for (std::size_t b = 0; b < bodies; ++b) {
+    sum.insert(sum.end(), local[b].sum.begin(), local[b].sum.end());
+    low.insert(low.end(), local[b].low.begin(), local[b].low.end());
+    count.insert(count.end(), {local[b].particles, local[b].failed, entry(books.body_eroded, b),
+                               entry(books.body_left, b)});
+  }
+  for (const ExactSum* s : {&books.external_work, &books.removed_mass, &books.removed_kinetic,
+                            &books.removed_internal}) {
+    sum.push_back(*s);
+  }
+  exchange.sum(std::span(sum));
+  exchange.sum(std::span(count));
+  exchange.minimum(low);
+
+  Totals totals;
+  std::array<ExactSum, sums> all;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    const ExactSum* body_sum = &sum[sums * b];
+    const std::int64_t* c = &count[3 + 4 * b];
+    BodyTotals body = body_totals(body_sum, &low[lows * b], c[0]);
+    body.failed = c[1];
+    body.eroded = c[2];
+    body.left_grid = c[3];
+    totals.particles += body.particles;
+    totals.failed += body.failed;
+    totals.bodies.push_back(body);
+    for (std::size_t i = 0; i < sums; ++i) all[i] += body_sum[i];
+  }
+  static_cast<Quantities&>(totals) = quantities_of(all.data());
+  const ExactSum* booked = &sum[sums * bodies];
+  totals.external_work = booked[0].value();
+  totals.removed_mass = booked[1].value();
+  totals.removed_kinetic = booked[2].value();
+  totals.removed_internal = booked[3].value();
+  totals.eroded = count[0];
+  totals.left_grid = count[1];
+  totals.velocity_limited = count[2];
+  return totals;
+}
+
+Energies compute_energies(const Model& model, Exchange& exchange) {
+  struct Pair {
+    ExactSum kinetic, internal;
+    void merge(const Pair& other) {
+      kinetic += other.kinetic;
+      internal += other.internal;
+    }
+  };
+  const std::vector<double> inverse_density = inverse_densities(model);
+  std::vector<Pair> local(1);
+  over_bricks(model, local, [&](const Brick& brick, std::vector<Pair>& to) {
+    over_blocks(model, brick, [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
+      const double* m = block + layout.offset(Column::mass);
+      const double* e = block + layout.offset(Column::internal_energy);
+      const double* v = block + layout.offset(Column::velocity_x);
+      constexpr int y = block_lanes, z = 2 * block_lanes;
+      double t = 0, u = 0;
+      for (int i = 0; i < used; ++i) {
+        const double px = m[i] * v[i], py = m[i] * v[i + y], pz = m[i] * v[i + z];
+        t += 0.5 * (px * v[i] + py * v[i + y] + pz * v[i + z]);
+        u += e[i] * m[i] * inverse_density[body];
+      }
+      to[0].kinetic.add(t);
+      to[0].internal.add(u);
+    });
+  });
+  std::array<ExactSum, 2> sum{local[0].kinetic, local[0].internal};
+  exchange.sum(std::span<ExactSum>(sum));
+  return {sum[0].value(), sum[1].value()};
+}
+
+EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
+  EnergyBalance balance;
+  balance.total = totals.kinetic + totals.internal;
+  const double accounted = balance.total + totals.removed_kinetic + totals.removed_internal;
+  const double scale = std::max({std::abs(initial_energy), std::abs(totals.external_work), std::abs(accounted)});
+  if (scale > 0) balance.relative_drift = (accounted - totals.external_work - initial_energy) / scale;
+  return balance;
+}
+
+std::int64_t occupied_cells(const Model& model, Exchange& exchange) {
+  const GridGeometry& geometry = model.grid->geometry();
+  std::int64_t cells = 0;
+  const int bricks = model.grid->owned();
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : cells)
+  for (int s = 0; s < bricks; ++s) {
+    std::uint64_t seen = 0;
+    over_blocks(model, model.grid->brick(s), [&](std::size_t, const ColumnLayout& layout, const double* block, int used) {
+      const double* x = block + layout.offset(Column::position_x);
+      for (int i = 0; i < used; ++i) {
+        int cell = 0;
+        for (int a = 2; a >= 0; --a) {
+          cell = brick_cells * cell + static_cast<int>(geometry.cell_index(x[i + block_lanes * a], a) % brick_cells);
+        }
+        seen |= std::uint64_t{1} << (cell & 63);
+      }
+    });
+    cells += __builtin_popcountll(seen);
+  }
+  exchange.sum(std::span(&cells, 1));
+  return cells;
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,261 @@
+// Work planes, components, bodies and detonations.
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "io/input/build.hpp"
+#include "io/input/text.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector scaled(const Vector& a, double factor) { return {a[0] * factor, a[1] * factor, a[2] * factor}; }
+
+core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) {
+  core::WorkPlane plane;
+  plane.name = node.word("name");
+  plane.source = context.at(node);
+  plane.origin = node.reals("r0x", "r0y", "r0z");
+  const Vector z = node.reals("ex", "ey", "ez");
+  const Vector x = node.reals("a11", "a21", "a31");
+  const double lengths = std::sqrt(dot(z, z)) * std::sqrt(dot(x, x));
+  if (lengths == 0 || std::isinf(lengths)) {
+    node.complain(context.diagnostics, "the axes (ex, ey, ez) and (a11, a21, a31) must not be zero");
+    return plane;
+  }
+  constexpr double tolerance = 1e-6;  // of the cosine: axes written with seven digits pass
+  const double cosine = dot(z, x) / lengths;
+  if (std::abs(cosine) > tolerance) {
+    const double degrees = std::acos(std::clamp(cosine, -1., 1.)) * 180 / std::acos(-1.);
+    node.complain(context.diagnostics,
+                  fmt::format("the axes (ex, ey, ez) and (a11, a21, a31) must be orthogonal; the "
+                              "angle between them is {:.6g} degrees",
+                              degrees));
+  }
+  plane.z_axis = scaled(z, 1 / std::sqrt(dot(z, z)));
+  plane.y_axis = cross(plane.z_axis, x);  // exactly orthogonal, whatever the tolerance let through
+  plane.y_axis = scaled(plane.y_axis, 1 / std::sqrt(dot(plane.y_axis, plane.y_axis)));
+  plane.x_axis = cross(plane.y_axis, plane.z_axis);
+  return plane;
+}
+
+struct Box {
+  Vector lower{INFINITY, INFINITY, INFINITY};
+  Vector upper{-INFINITY, -INFINITY, -INFINITY};
+
+  void include(const Vector& p) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      lower[i] = std::fmin(lower[i], p[i]);
+      upper[i] = std::fmax(upper[i], p[i]);
+    }
+  }
+};
+
+/// A box in local axes around the body; empty for shapes that are read from files or made later.
+Box local_box(const core::Geometry& geometry) {
+  Box box;
+  const auto around = [&](const Vector& base, double radius, double below, double above) {
+    box.include({base[0] - radius, base[1] - radius, base[2] - below});
+    box.include({base[0] + radius, base[1] + radius, base[2] + above});
+  };
+  if (const auto* points = std::get_if<core::PointGeometry>(&geometry))
+    for (const core::PointMass& p : points->points) box.include(p.position);
+  if (const auto* b = std::get_if<core::BlockGeometry>(&geometry)) {
+    box.include(b->origin);
+    box.include({b->origin[0] + b->size[0], b->origin[1] + b->size[1], b->origin[2] + b->size[2]});
+  }
+  if (const auto* s = std::get_if<core::SphereGeometry>(&geometry))
+    around(s->centre, s->outer_radius, s->outer_radius, s->outer_radius);
+  if (const auto* c = std::get_if<core::CylinderGeometry>(&geometry))
+    around(c->base_centre, std::max(c->bottom_outer_radius, c->top_outer_radius), 0, c->height);
+  return box;
+}
+
+Box global_box(const Box& local, const core::WorkPlane* plane) {
+  if (!plane || local.lower[0] > local.upper[0]) return local;
+  Box box;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vector p = plane->origin;
+    const Vector r{corner & 1 ? local.upper[0] : local.lower[0], corner & 2 ? local.upper[1] : local.lower[1],
+                   corner & 4 ? local.upper[2] : local.lower[2]};
+    for (std::size_t i = 0; i < 3; ++i)
+      p[i] += r[0] * plane->x_axis[i] + r[1] * plane->y_axis[i] + r[2] * plane->z_axis[i];
+    box.include(p);
+  }
+  return box;
+}
+
+/// Refuses a body no part of which can be in the grid; particles are checked one by one when they are made.
+void check_inside(const Node& node, const core::BodyInput& body, const core::Scene& scene,
+                  const BuildContext& context) {
+  if (body.for_bool || body.deactivated) return;
+  const core::WorkPlane* plane = body.work_plane ? &scene.work_planes[*body.work_plane] : nullptr;
+  const Box box = global_box(local_box(body.geometry), plane);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const core::GridAxis& axis = scene.grid.axes[i];
+    if (std::isinf(box.lower[i]) || !(axis.min < axis.max)) continue;
+    if (box.upper[i] < axis.min || box.lower[i] > axis.max)
+      return node.complain(
+          context.diagnostics, "name",
+          fmt::format("the body lies outside the grid: its {0} from {1} to {2}, the grid's from {3} "
+                      "to {4}",
+                      "xyz"[i], box.lower[i], box.upper[i], axis.min, axis.max));
+  }
+}
+
+core::PrescribedAcceleration build_acceleration(const Node& node, const BuildContext& context) {
+  core::PrescribedAcceleration load;
+  load.linear_amplitude = node.reals("ax", "ay", "az");
+  load.angular_amplitude = node.reals("arx", "ary", "arz");
+  for (const Node& point : node.children("Coefficient")) {
+    load.points.push_back(
+        {point.real("time"), point.reals("cx", "cy", "cz"), point.reals("crx", "cry", "crz")});
+    const std::size_t n = load.points.size();
+    if (n > 1 && load.points[n - 1].time <= load.points[n - 2].time)
+      point.complain(context.diagnostics, "time",
+                     fmt::format("the times must increase; the one before is {}", load.points[n - 2].time));
+  }
+  return load;
+}
+
+core::HarmonicExcitation build_excitation(const Node& node) {
+  const auto reals_of = [&](std::string_view child) {
+    const std::optional<Node> found = node.child(child);
+    return found ? found->reals("x", "y", "z") : Vector{};
+  };
+  return {reals_of("A"), reals_of("Omega"), reals_of("Theta"), reals_of("EndTime")};
+}
+
+void build_loads(core::BodyInput& body, const Node& node, const BuildContext& context) {
+  if (const auto v = node.child("InitialVelocity")) body.initial_velocity = v->reals("vx", "vy", "vz");
+  if (const auto v = node.child("PrescribedVelocity")) body.prescribed_velocity = v->reals("vx", "vy", "vz");
+  if (const auto a = node.child("PrescribedAcceleration"))
+    body.prescribed_acceleration = build_acceleration(*a, context);
+  if (const auto h = node.child("HarmExcit")) {
+    body.harmonic_excitation = build_excitation(*h);
+    if (body.prescribed_acceleration)
+      h->complain(context.diagnostics, "a body has either PrescribedAcceleration or HarmExcit");
+  }
+  if (const auto c = node.child("ConstrainRigidPosition"))
+    body.constrain_rigid_position = c->boolean("value");
+  if (const auto s = node.child("AdaptiveSplit")) body.adaptive_split = s->given_real("value");
+  if (const auto f = node.child("CountFragDp")) body.fragment_spacing = f->given_real("value");
+  for (const Node& layer : node.children("LocalBoundaryCond"))
+    body.fixed_layers.push_back(build_fixed_layer(layer, context));
+}
+
+core::BodyInput build_body(const Node& node, const core::Scene& scene, const BuildContext& context) {
+  core::BodyInput body;
+  body.name = node.word("name");
+  body.source = context.at(node);
+  body.type = node.type();
+  const auto material = resolve(node, "material", "material", names_of(scene.materials), context);
+  body.material = material.value_or(0);
+  if (material) body.density = scene.materials[*material].reference_density;
+  if (const auto density = node.given_real("density")) body.density = *density;
+  body.work_plane = resolve(node, "workPlane", "work plane", names_of(scene.work_planes), context);
+  const std::optional<Node> control = node.child("BodyContrl");
+  body.deactivated = node.boolean("Deactive") || (control && control->boolean("Deactive"));
+  body.no_output = control && control->boolean("NoOutput");
+  body.for_bool = node.boolean("ForBoolBody");
+  if (const std::optional<Node> geometry = node.child("Geometry"))
+    body.geometry = build_geometry(*geometry, context);
+  build_loads(body, node, context);
+  check_inside(node, body, scene, context);
+  return body;
+}
+
+/// The operands of Bool bodies, once all bodies are known.
+void build_bool(core::BodyInput& body, const Node& node, const std::vector<core::BodyInput*>& bodies,
+                const BuildContext& context) {
+  std::vector<std::string_view> names;
+  for (const core::BodyInput* other : bodies) names.emplace_back(other->name);
+  const auto operand = [&](std::string_view attribute) {
+    const auto found = resolve(node, attribute, "body", names, context);
+    if (!found) return std::size_t{0};
+    const core::BodyInput& other = *bodies[*found];
+    if (!other.for_bool)
+      node.complain(context.diagnostics, attribute,
+                    fmt::format("body '{}' needs ForBoolBody=\"1\"", other.name));
+    constexpr std::array operands{"Point", "Block", "Sphere", "Cylinder", "Ogive"};
+    if (std::ranges::find(operands, other.type) == operands.end())
+      node.complain(context.diagnostics, attribute,
+                    fmt::format("a body of type {} cannot be an operand", other.type));
+    return *found;
+  };
+  body.geometry = core::BoolGeometry{operand("BoolBodyA"), operand("BoolBodyB")};
+}
+
+}  // namespace
+
+std::vector<core::WorkPlane> build_work_planes(const Node& root, const BuildContext& context) {
+  std::vector<core::WorkPlane> planes;
+  const std::vector<Node> nodes = root.children("WorkPlane");
+  check_unique_names(nodes, "work plane", context);
+  for (const Node& node : nodes) planes.push_back(build_work_plane(node, context));
+  return planes;
+}
+
+std::vector<core::ComponentInput> build_components(const Node& root, const core::Scene& scene,
+                                                   const BuildContext& context) {
+  std::vector<core::ComponentInput> components;
+  const std::vector<Node> nodes = root.children("Component");
+  check_unique_names(nodes, "component", context);
+  std::vector<Node> body_nodes;
+  for (const Node& node : nodes) {
+    core::ComponentInput component{
+        node.word("name"), node.real("normal_vector_weight"), {}, context.at(node)};
+    for (const Node& body : node.children("Body")) {
+      component.bodies.push_back(build_body(body, scene, context));
+      body_nodes.push_back(body);
+    }
+    components.push_back(std::move(component));
+  }
+  check_unique_names(body_nodes, "body", context);
+  std::vector<core::BodyInput*> bodies;
+  for (core::ComponentInput& component : components)
+    for (core::BodyInput& body : component.bodies) bodies.push_back(&body);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i]->type == "Bool") build_bool(*bodies[i], body_nodes[i], bodies, context);
+  return components;
+}
+
+std::vector<core::DetonationItem> build_detonations(const Node& root, const BuildContext& context) {
+  std::vector<core::DetonationItem> items;
+  for (const Node& detonation : root.children("Detonation")) {
+    for (const Node& node : detonation.children("Item")) {
+      core::DetonationItem item;
+      item.time = node.real("time");
+      item.source = context.at(node);
+      if (node.type() == "plane") {
+        item.kind = core::DetonationItem::Kind::plane;
+        item.normal = node.small_integer("normal");
+        item.location = node.real("location");
+        item.lower = {node.real("left"), node.real("bottom")};
+        item.upper = {node.real("right"), node.real("top")};
+        if (item.upper[0] < item.lower[0])
+          node.complain(context.diagnostics, "right", "expected at least left");
+        if (item.upper[1] < item.lower[1])
+          node.complain(context.diagnostics, "top", "expected at least bottom");
+      } else if (node.type() == "point") {
+        item.position = node.reals("x", "y", "z");
+      }
+      items.push_back(std::move(item));
+    }
+  }
+  return items;
+}
+
+}  // namespace mpm::io

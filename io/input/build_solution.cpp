@@ -1,0 +1,193 @@
+// Integration, contact and output.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "io/input/build.hpp"
+
+namespace mpm::io {
+
+core::FixedLayer build_fixed_layer(const Node& node, const BuildContext& context) {
+  const core::FixedLayer layer{node.small_integer("FixedDirection"), node.small_integer("Normal"),
+                               node.real("Min"), node.real("Max")};
+  if (layer.max < layer.min)
+    node.complain(context.diagnostics, "Max", fmt::format("expected at least Min, {}", layer.min));
+  return layer;
+}
+
+core::ContactInput build_contact(const Node& root) {
+  core::ContactInput contact;
+  const std::optional<Node> node = root.child("Contact");
+  if (!node) return contact;
+  contact.enable = node->boolean("enable");
+  contact.failed_to_component = node->boolean("failure_to_component");
+  contact.automatic_weights = node->boolean("auto_normal_vector_weight");
+  contact.ignore_failed_normals = node->boolean("normal_vector_excluding_failure_particle");
+  contact.distance = static_cast<core::ContactInput::Distance>(node->small_integer("distance_type"));
+  contact.min_distance = node->real("min_distance");
+  contact.limits_time_step = node->boolean("contact_time_step");
+  contact.method = static_cast<core::ContactInput::Method>(node->small_integer("contact_type"));
+  contact.record_force = node->boolean("record_contact_force");
+  return contact;
+}
+
+namespace {
+
+core::Scheme scheme(std::string_view word) {
+  if (word == "USF") return core::Scheme::usf;
+  if (word == "USL") return core::Scheme::usl;
+  return core::Scheme::musl;
+}
+
+core::Transfer transfer(std::string_view word) {
+  if (word == "PIC") return core::Transfer::pic;
+  if (word == "APIC") return core::Transfer::apic;
+  if (word == "TPIC") return core::Transfer::tpic;
+  if (word == "XPIC") return core::Transfer::xpic;
+  return core::Transfer::flip;
+}
+
+core::TimeStepInput build_time_step(const Node& node) {
+  return {node.real("factor"), node.boolean("const"), node.real("specified"),
+          node.boolean("NotConsiderVisForCp")};
+}
+
+core::VolumeInput build_volume(const Node& node, const BuildContext& context) {
+  core::VolumeInput volume;
+  volume.update = static_cast<core::VolumeUpdate>(node.small_integer("update_type"));
+  volume.erode = node.given_real("erode");
+  volume.min = node.given_real("min");
+  volume.max = node.given_real("max");
+  if (volume.min && volume.max && *volume.max <= *volume.min)
+    node.complain(context.diagnostics, "max", fmt::format("expected more than min, {}", *volume.min));
+  return volume;
+}
+
+core::WarnInput build_warn(const Node& node) {
+  const std::vector<std::string> types = node.words("type");
+  const auto watched = [&](std::string_view word) { return std::ranges::find(types, word) != types.end(); };
+  return {watched("ie"), watched("vol"), watched("grid"),
+          static_cast<core::WarnInput::Level>(node.small_integer("level"))};
+}
+
+core::ImplicitInput build_implicit(const Node& node, const BuildContext& context) {
+  core::ImplicitInput implicit;
+  implicit.quasistatic = node.type() == "quasistatic";
+  implicit.newmark_beta = node.real("newmark_beta");
+  implicit.newmark_gamma = node.real("newmark_gamma");
+  implicit.time_step = node.given_real("time_step");
+  implicit.min_step = node.given_real("min_step");
+  implicit.max_step = node.given_real("max_step");
+  implicit.relative_tolerance = node.real("rtol");
+  implicit.absolute_tolerance = node.given_real("atol");
+  implicit.max_newton = node.small_integer("max_newton");
+  implicit.matrix_free = node.word("jacobian") == "matrixfree";
+  if (implicit.min_step && implicit.max_step && *implicit.max_step < *implicit.min_step)
+    node.complain(context.diagnostics, "max_step",
+                  fmt::format("expected at least min_step, {}", *implicit.min_step));
+  return implicit;
+}
+
+core::FemInput build_fem(const Node& node, const BuildContext& context) {
+  core::FemInput fem;
+  fem.couple_with_particles = node.boolean("CoupleFEM_MPM");
+  fem.contact = node.boolean("FEMContact");
+  for (const Node& wall : node.children("RigidWall")) {
+    const int direction = wall.small_integer("RigidnDir");
+    fem.rigid_walls.push_back({std::abs(direction) - 1, direction > 0, wall.real("RigidCoor")});
+  }
+  if (const auto hourglass = node.child("Hourglass"))
+    fem.hourglass = {hourglass->small_integer("HGMethod"), hourglass->real("Qhg")};
+  for (const Node& layer : node.children("GlobalBoundaryCond"))
+    fem.fixed_layers.push_back(build_fixed_layer(layer, context));
+  return fem;
+}
+
+}  // namespace
+
+core::SolutionInput build_solution(const Node& root, const BuildContext& context) {
+  core::SolutionInput solution;
+  const std::optional<Node> node = root.child("Solution");
+  if (!node) return solution;
+  solution.source = context.at(*node);
+  solution.scheme = scheme(node->word("algorithm"));
+  solution.near_boundary_stop = node->boolean("near_boundary_stop");
+  if (node->word("Integration") == "impl") solution.integration = core::Integration::implicit;
+  solution.transfer = transfer(node->word("transfer"));
+  solution.flip_fraction = node->real("flip_fraction");
+  solution.xpic_order = node->small_integer("xpic_order");
+  const auto value_of = [&](std::string_view child, std::string_view attribute) -> std::optional<double> {
+    const std::optional<Node> found = node->child(child);
+    return found ? found->given_real(attribute) : std::nullopt;
+  };
+  solution.end_time = value_of("EndTime", "value").value_or(0);
+  if (const auto step = node->child("TimeStep")) solution.time_step = build_time_step(*step);
+  solution.limit_velocity = value_of("LimitVelocity", "max");
+  if (const auto volume = node->child("Volume")) solution.volume = build_volume(*volume, context);
+  if (const auto warn = node->child("Warn")) solution.warn = build_warn(*warn);
+  solution.energy_fraction = value_of("EnergyFraction", "value");
+  solution.damping = value_of("DynamicRelax", "damping").value_or(0);
+  if (const auto gravity = node->child("Gravity")) solution.gravity = gravity->reals("ax", "ay", "az");
+  if (const auto implicit = node->child("Implicit")) solution.implicit = build_implicit(*implicit, context);
+  if (const auto fem = node->child("FEMSetting")) solution.fem = build_fem(*fem, context);
+  if (const auto threads = node->child("OpenMPSetting")) solution.threads = threads->small_integer("nthread");
+  return solution;
+}
+
+namespace {
+
+core::PostProcessingInput build_post_processing(const Node& node) {
+  using Post = core::PostProcessingInput;
+  Post post;
+  post.time_interval = node.real("time_interval");
+  post.h5part = node.boolean("h5part");
+  post.vtk = static_cast<Post::Vtk>(node.small_integer("vtk_data"));
+  post.tecplot = node.boolean("tecplot");
+  post.cell_result = node.boolean("cellresult");
+  post.grid_data = static_cast<Post::GridData>(node.small_integer("OutGridData"));
+  post.fragments = node.boolean("StaFragSize");
+  post.fragments_time_interval = node.given_real("StaFragTimeInterval");
+  post.variables = node.words("var");
+  return post;
+}
+
+core::TimeHistoryInput build_history(const Node& node, const BuildContext& context) {
+  core::TimeHistoryInput history{node.words("var"), {}, {}, context.at(node)};
+  for (const Node& place : node.children("Particle")) history.particles.push_back(place.reals("x", "y", "z"));
+  for (const Node& place : node.children("Point")) history.points.push_back(place.reals("x", "y", "z"));
+  if (history.particles.empty() && history.points.empty())
+    node.complain(context.diagnostics, "expected at least one <Particle> or <Point>");
+  return history;
+}
+
+std::optional<core::LineInput> build_line(const std::optional<Node>& node) {
+  if (!node) return {};
+  return core::LineInput{node->small_integer("normal"), node->real("x"), node->real("y")};
+}
+
+}  // namespace
+
+core::OutputInput build_output(const Node& root, double end_time, const BuildContext& context) {
+  core::OutputInput output;
+  output.console.print_time = end_time / 100;
+  const std::optional<Node> node = root.child("Output");
+  if (!node) return output;
+  if (const auto console = node->child("Console")) {
+    output.console.print_time = console->given_real("print_time").value_or(end_time / 100);
+    output.console.print_momentum = console->boolean("print_momentum");
+  }
+  if (const auto post = node->child("PostProcessing")) output.post_processing = build_post_processing(*post);
+  for (const Node& history : node->children("TimeHistory"))
+    output.histories.push_back(build_history(history, context));
+  output.grid_line = build_line(node->child("GridLineResults"));
+  output.fem_profile = build_line(node->child("FEMProfileResults"));
+  if (const auto restart = node->child("Restart"))
+    output.restart_interval = restart->given_real("time_interval");
+  if (const auto statistics = node->child("Statistics"))
+    output.statistics = {statistics->boolean("memory"), statistics->boolean("cell_occupy")};
+  if (const auto summary = node->child("Summary")) output.summary = summary->boolean("enable");
+  return output;
+}
+
+}  // namespace mpm::io

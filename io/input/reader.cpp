@@ -1,0 +1,112 @@
+#include "io/input/reader.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "io/input/build.hpp"
+#include "io/input/checker.hpp"
+#include "io/input/document.hpp"
+#include "io/input/point_file.hpp"
+#include "io/input/specification.hpp"
+#include "io/input/text.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file, std::string message) {
+  throw core::InputErrors(core::SourceLocation{file.string(), 0}, {}, std::move(message));
+}
+
+/// What is meant where an attribute stands twice, if the language knows.
+std::string meant_by_repeated(const ElementSpec& spec, std::string_view name) {
+  for (const AttributeSpec& a : spec.attributes)
+    if (a.name == name && !a.twice.empty()) return a.twice;
+  for (const ElementSpec& child : spec.children)
+    if (std::string found = meant_by_repeated(child, name); !found.empty()) return found;
+  return {};
+}
+
+void report(const XmlError& error, const ElementSpec& root, Diagnostics& diagnostics) {
+  std::string message = error.message;
+  if (const std::string meant = meant_by_repeated(root, error.repeated_attribute); !meant.empty())
+    message += fmt::format("; the second is spelled '{}'", meant);
+  diagnostics.add(error.line, {}, std::move(message));
+}
+
+core::Scene build(const Node& root, const BuildContext& context) {
+  core::Scene scene;
+  scene.header = build_header(root);
+  scene.materials = build_materials(root, context);
+  scene.frictions = build_frictions(root, scene.materials, context);
+  scene.work_planes = build_work_planes(root, context);
+  scene.grid = build_grid(root, context);
+  scene.components = build_components(root, scene, context);
+  scene.detonations = build_detonations(root, context);
+  scene.contact = build_contact(root);
+  scene.solution = build_solution(root, context);
+  scene.output = build_output(root, scene.solution.end_time, context);
+  scene.decomposition = build_decomposition(root, context);
+  return scene;
+}
+
+}  // namespace
+
+std::filesystem::path find_input(const std::filesystem::path& job) {
+  std::error_code ignored;
+  std::filesystem::path with_extension = job;
+  with_extension += ".xmp";
+  const bool named_fully = job.extension() == ".xmp";
+  if (!named_fully && std::filesystem::exists(with_extension, ignored)) return with_extension;
+  if (std::filesystem::exists(job, ignored)) return job;
+  if (named_fully) refuse(job, "no such file");
+  refuse(job, fmt::format("no such file, nor {}", with_extension.string()));
+}
+
+std::string read_bytes(const std::filesystem::path& file) {
+  if (const std::string wrong = why_unreadable(file); !wrong.empty()) refuse(file, wrong);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(std::fopen(file.c_str(), "rb"), std::fclose);
+  if (!opened) refuse(file, std::strerror(errno));
+  std::string bytes;
+  constexpr std::size_t piece = 1 << 20;
+  for (std::size_t count = piece; count == piece;) {
+    const std::size_t held = bytes.size();
+    bytes.resize(held + piece);
+    count = std::fread(bytes.data() + held, 1, piece, opened.get());
+    bytes.resize(held + count);
+    if (bytes.size() > largest_document) break;  // parse_scene says so
+  }
+  if (std::ferror(opened.get())) refuse(file, std::strerror(errno));
+  return bytes;
+}
+
+core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file,
+                        const core::Catalogue& catalogue, const ReadOptions& options) {
+  const ElementSpec root = language(catalogue);
+  Diagnostics diagnostics(file.string());
+  std::optional<XmlError> error;
+  const Document document = parse_document(bytes, error);
+  if (error)
+    report(*error, root, diagnostics);
+  else
+    check(document, root, options.accept_later, diagnostics);
+  core::Scene scene;
+  if (!error && document.elements().front().name == root.name)
+    scene = build(Node(document, 0, root, {}), {diagnostics, file.parent_path(), options.check_files});
+  diagnostics.raise_if_any();
+  const std::filesystem::path name = file.extension() == ".xmp" ? file.stem() : file.filename();
+  scene.provenance = {file.string(), name.string(), fnv1a_hex(bytes)};
+  return scene;
+}
+
+core::Scene read_scene(const std::filesystem::path& job, const core::Catalogue& catalogue,
+                       const ReadOptions& options) {
+  const std::filesystem::path file = find_input(job);
+  return parse_scene(read_bytes(file), file, catalogue, options);
+}
+
+}  // namespace mpm::io

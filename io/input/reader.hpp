@@ -1,0 +1,33 @@
+// Reads and checks an input file. Knows no ranks: one rank reads the bytes, all parse the same bytes alike.
+// Wrong input throws core::InputErrors, which holds every complaint about the file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/scene/catalogue.hpp"
+#include "core/scene/scene.hpp"
+
+namespace mpm::io {
+
+struct ReadOptions {
+  bool check_files = true;    ///< look whether the files that the input names can be read
+  bool accept_later = false;  ///< let pass what the language has and the program has not yet
+};
+
+/// The input of a job that is named with or without `.xmp`; throws when there is none.
+std::filesystem::path find_input(const std::filesystem::path& job);
+
+/// The bytes of a file; throws when it cannot be read.
+std::string read_bytes(const std::filesystem::path& file);
+
+/// `file` is for messages, for the job's name and for paths relative to it; it is not opened.
+core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file,
+                        const core::Catalogue& catalogue, const ReadOptions& options = {});
+
+/// find_input, read_bytes and parse_scene.
+core::Scene read_scene(const std::filesystem::path& job, const core::Catalogue& catalogue,
+                       const ReadOptions& options = {});
+
+}  // namespace mpm::io

@@ -1,0 +1,150 @@
+#include "io/input/reference.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "io/input/specification.hpp"
+#include "io/input/text.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '|') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+std::string value_column(const AttributeSpec& a) {
+  if (a.range.words.empty() || a.type != ValueType::text) return expectation(a);
+  std::vector<std::string> words;
+  for (const std::string& word : a.range.words) {
+    const bool later = std::ranges::find(a.later_values, word) != a.later_values.end();
+    words.push_back(fmt::format("`{}`{}", word, later ? " (not yet)" : ""));
+  }
+  return join(words, ", ") + (a.multiple ? ", joined by |" : "");
+}
+
+std::string default_column(const AttributeSpec& a) {
+  if (a.required) return "required";
+  if (!a.default_value) return "";
+  return a.default_value->starts_with('@') ? a.default_value->substr(1)
+                                           : fmt::format("`{}`", *a.default_value);
+}
+
+std::string meaning_column(const AttributeSpec& a) {
+  std::string text = a.meaning;
+  const auto add = [&](std::string more) { text += (text.empty() ? "" : "; ") + std::move(more); };
+  if (!a.also.empty()) add(fmt::format("also spelled `{}`", a.also));
+  if (!a.also_word.first.empty())
+    add(fmt::format("`{}` is accepted for `{}`", a.also_word.first, a.also_word.second));
+  if (a.later)
+    add(a.default_value ? "not yet: only the default" : "not yet");
+  else if (!a.later_values.empty() && a.type != ValueType::text)
+    add("not yet: " + join(a.later_values, ", "));
+  return text;
+}
+
+/// Rows with a column of types where any has some.
+std::string table(const std::vector<const AttributeSpec*>& rows, bool with_types) {
+  if (rows.empty()) return {};
+  const bool types =
+      with_types && std::ranges::any_of(rows, [](const auto* a) { return !a->for_types.empty(); });
+  std::string text =
+      fmt::format("| attribute |{} value | default | unit | meaning |\n|---|{}---|---|---|---|\n",
+                  types ? " types |" : "", types ? "---|" : "");
+  for (const AttributeSpec* a : rows)
+    text +=
+        fmt::format("| `{}` |{} {} | {} | {} | {} |\n", a->name,
+                    types ? fmt::format(" {} |", join(a->for_types, ", ")) : "", escaped(value_column(*a)),
+                    escaped(default_column(*a)), a->unit, escaped(meaning_column(*a)));
+  return text + '\n';
+}
+
+std::string summary_of(const core::Catalogue& catalogue, LawFamily laws, std::string_view type) {
+  const auto& list = laws == LawFamily::strength ? catalogue.strength
+                     : laws == LawFamily::eos    ? catalogue.eos
+                                                 : catalogue.failure;
+  const auto found = std::ranges::find(list, type, &core::TypeInfo::name);
+  return found == list.end() ? "" : std::string(found->summary);
+}
+
+/// Attributes that many types share, then one table for each type with what is its own.
+std::string law_tables(const ElementSpec& element, const core::Catalogue& catalogue) {
+  const AttributeSpec& type_row = element.attributes.front();
+  const std::size_t all = type_row.range.words.size();
+  const auto shared = [&](const AttributeSpec& a) { return a.for_types.empty() || a.for_types.size() >= 4; };
+  std::vector<AttributeSpec> common;
+  for (const AttributeSpec& a : element.attributes) {
+    if (!shared(a)) continue;
+    common.push_back(a);
+    if (a.for_types.size() == all) common.back().for_types = {"all"};
+  }
+  std::vector<const AttributeSpec*> rows;
+  for (const AttributeSpec& a : common) rows.push_back(&a);
+  std::string text = table(rows, true);
+  for (const std::string& type : type_row.range.words) {
+    const bool later = std::ranges::find(type_row.later_values, type) != type_row.later_values.end();
+    const std::string summary = summary_of(catalogue, element.laws, type);
+    text += fmt::format("`type=\"{}\"`{}{}\n\n", type, later ? " (not yet)" : "",
+                        summary.empty() ? "" : ": " + summary);
+    rows.clear();
+    for (const AttributeSpec& a : element.attributes)
+      if (!shared(a) && a.applies_to(type)) rows.push_back(&a);
+    text += table(rows, false);
+  }
+  return text;
+}
+
+std::string occurrence(const ElementSpec& element) {
+  if (element.required) return element.multiple ? "once or more" : "once";
+  return element.multiple ? "any number of times" : "at most once";
+}
+
+std::string section(const ElementSpec& element, const std::string& parents, int depth,
+                    const core::Catalogue& catalogue) {
+  const std::string path = parents.empty() ? element.name : fmt::format("{} / {}", parents, element.name);
+  std::string text = fmt::format("{} {}\n\n{}. Stands {}",
+                                 std::string(static_cast<std::size_t>(std::clamp(depth, 2, 4)), '#'), path,
+                                 element.meaning, occurrence(element));
+  if (!element.for_types.empty()) text += fmt::format(", with type {}", join(element.for_types, ", "));
+  text += element.later ? ". **Not implemented yet.**\n\n" : ".\n\n";
+  for (const TogetherSpec& group : element.together)
+    text +=
+        fmt::format("Given all or none{}: {}.\n\n",
+                    group.for_types.empty() ? "" : fmt::format(", with type {}", join(group.for_types, ", ")),
+                    join(group.names, ", "));
+  if (element.laws != LawFamily::none) {
+    text += law_tables(element, catalogue);
+  } else {
+    std::vector<const AttributeSpec*> rows;
+    for (const AttributeSpec& a : element.attributes) rows.push_back(&a);
+    text += table(rows, true);
+  }
+  for (const ElementSpec& child : element.children)
+    text += section(child, depth == 1 ? std::string() : path, depth + 1, catalogue);
+  return text;
+}
+
+}  // namespace
+
+std::string keyword_reference(const core::Catalogue& catalogue) {
+  std::string text =
+      "# Keyword reference\n\n"
+      "Generated by `mpm_check --reference` from `io/input/Specification.xml` and the laws' parameter "
+      "tables.\n"
+      "Names are case-sensitive. Units are the user's own and consistent; a unit of 1 is a pure number.\n"
+      "Pressure is positive in compression, stress in tension. What is marked \"not yet\" is part of the "
+      "language and is\n"
+      "refused with a message that says so.\n\n" +
+      section(language(catalogue), "", 1, catalogue);
+  text.pop_back();
+  return text;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,27 @@
+#include "io/output/file_error.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace mpm::io {
+
+FileError system_error(const std::string& doing, const std::string& path, int error) {
+  std::string text = fmt::format("cannot {} '{}': {}", doing, path, std::generic_category().message(error));
+  if (error == ENOSPC || error == EDQUOT) {
+    text += "; free some space, or choose another folder with --output-dir, and restart from the last .pe file";
+  } else if (error == EFBIG) {
+    text += "; raise the limit on the size of files (ulimit -f)";
+  }
+  return FileError(text);
+}
+
+void agree(core::Exchange& exchange, const std::string& complaint) {
+  if (!exchange.any(!complaint.empty())) return;
+  for (const std::string& text : exchange.gather(complaint)) {
+    if (!text.empty()) throw FileError(text);
+  }
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,38 @@
+// Errors of files: every rank throws the same one, or none does. The program that catches FileError prints what()
+// and leaves with exit code 5.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "core/step/exchange.hpp"
+
+namespace mpm::io {
+
+/// A file that could not be written or read; the text names the file and what went wrong.
+class FileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// `cannot <doing> <path>: <the system's words for `error`>`, with a remedy where there is one.
+FileError system_error(const std::string& doing, const std::string& path, int error);
+
+/// Throws the lowest rank's complaint on every rank, if any rank has one. Collective.
+void agree(core::Exchange& exchange, const std::string& complaint);
+
+/// Run f() on this rank; if it throws on any, every rank throws a FileError with that rank's text. There must be
+/// nothing collective in f. Collective.
+template <class F>
+void together(core::Exchange& exchange, F f) {
+  std::string complaint;
+  try {
+    f();
+  } catch (const std::exception& e) {
+    complaint = e.what();
+    if (complaint.empty()) complaint = "unknown error";
+  }
+  agree(exchange, complaint);
+}
+
+}  // namespace mpm::io

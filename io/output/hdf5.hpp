@@ -1,0 +1,87 @@
+// Thin owners over HDF5's C interface: handles that close themselves, attributes, rows of datasets. Every return
+// code is checked; a failure is a FileError with the library's innermost message.
+//
+// A disk that fills up inside HDF5 cannot be survived: the library keeps what it could not write and fails at every
+// later call. So space is reserved (File::reserve) before HDF5 is let at a file, and structure is made by one rank
+// alone, data by all into space that is there already.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/step/exchange.hpp"
+#include "io/output/file_error.hpp"
+#include "io/output/provenance.hpp"
+
+namespace mpm::io::hdf5 {
+
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  /// Throws if `id` is not valid; `doing` is what was tried: "open dataset 'x'".
+  Handle(hid_t id, Close close, const std::string& doing);
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept;
+  ~Handle() { reset(); }
+
+  operator hid_t() const { return id_; }
+  /// Closing a file writes what is left, and may fail.
+  void close(const std::string& doing);
+
+ private:
+  void reset() noexcept;
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+void check(herr_t status, const std::string& doing);
+
+enum class Access { read, change, create };
+/// On this rank alone.
+Handle open_file(const std::string& path, Access access, hsize_t user_block = 0);
+/// By all ranks together, for change. Collective.
+Handle open_file_together(const std::string& path, core::Exchange& exchange);
+
+Handle create_group(hid_t parent, const std::string& name);
+Handle open_group(hid_t parent, const std::string& name);
+/// Contiguous, its place in the file fixed at once and not filled. `shape` has one or two entries.
+Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::span<const hsize_t> shape);
+Handle open_dataset(hid_t parent, const std::string& name);
+std::vector<hsize_t> shape_of(hid_t dataset);
+
+/// Whole datasets of one dimension, for data that one rank handles.
+void write_all(hid_t parent, const std::string& name, std::span<const std::uint64_t> values);
+void write_all(hid_t parent, const std::string& name, std::span<const std::int64_t> values);
+void write_all(hid_t parent, const std::string& name, std::span<const double> values);
+void write_all(hid_t parent, const std::string& name, std::string_view bytes);
+std::vector<std::uint64_t> read_all_uint64(hid_t parent, const std::string& name);
+std::vector<std::int64_t> read_all_int64(hid_t parent, const std::string& name);
+std::vector<double> read_all_double(hid_t parent, const std::string& name);
+std::string read_all_bytes(hid_t parent, const std::string& name);
+
+void write_attribute(hid_t object, const std::string& name, const std::string& value);
+void write_attribute(hid_t object, const std::string& name, double value);
+void write_attribute(hid_t object, const std::string& name, std::int64_t value);
+void write_attribute(hid_t object, const ProvenanceLines& lines);
+std::string read_string(hid_t object, const std::string& name);
+double read_double(hid_t object, const std::string& name);
+std::int64_t read_int64(hid_t object, const std::string& name);
+bool has_attribute(hid_t object, const std::string& name);
+
+/// Rows [first, first + count) of a dataset.
+struct Rows {
+  hsize_t first = 0;
+  hsize_t count = 0;
+};
+/// The rows of all stretches, which ascend and do not overlap, between `dataset` and memory where they follow each
+/// other. Writing in a file that all ranks opened together is collective.
+void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values,
+                bool together);
+void read_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, void* values);
+
+}  // namespace mpm::io::hdf5

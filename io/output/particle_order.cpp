@@ -1,0 +1,136 @@
+#include "io/output/particle_order.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
+#include "io/output/hash.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+bool before(const CohortRecord& a, const CohortRecord& b) {
+  return std::tie(a.body, a.brick) < std::tie(b.body, b.brick);
+}
+
+/// Records and places of this rank, in step with each other and in order.
+void collect(const core::Model& model, std::vector<CohortRecord>& records, std::vector<CohortPlace>& places) {
+  struct Entry {
+    CohortRecord record;
+    CohortPlace place;
+  };
+  std::vector<Entry> entries;
+  for (core::Slot s = 0; s < model.grid->owned(); ++s) {
+    const core::Brick& brick = model.grid->brick(s);
+    for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+      const core::Cohort& cohort = brick.cohorts[c];
+      if (cohort.count == 0) continue;
+      entries.push_back({{core::key_of(brick.coord), cohort.body, cohort.count, 0}, {s, static_cast<int>(c), 0}});
+    }
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return before(a.record, b.record); });
+  for (const Entry& e : entries) {
+    records.push_back(e.record);
+    places.push_back(e.place);
+  }
+}
+
+void add_hashes(const core::Model& model, const std::vector<CohortPlace>& places, std::vector<CohortRecord>& records) {
+#pragma omp parallel
+  {
+    std::vector<double> rows;
+#pragma omp for schedule(dynamic, 8)
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const core::Cohort& cohort = model.grid->brick(places[i].slot).cohorts[static_cast<std::size_t>(places[i].cohort)];
+      const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+      rows.clear();
+      append_rows(pool, cohort, rows);
+      records[i].hash = hash_of(records[i], rows.data(), pool.layout().columns());
+    }
+  }
+}
+
+std::vector<CohortRecord> all_records(const std::vector<CohortRecord>& mine, core::Exchange& exchange) {
+  std::string bytes(mine.size() * sizeof(CohortRecord), '\0');
+  if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
+  std::vector<CohortRecord> all;
+  for (const std::string& part : exchange.gather(bytes)) {
+    const std::size_t old = all.size();
+    all.resize(old + part.size() / sizeof(CohortRecord));
+    if (!part.empty()) std::memcpy(all.data() + old, part.data(), part.size());
+  }
+  std::sort(all.begin(), all.end(), before);
+  return all;
+}
+
+}  // namespace
+
+ParticleOrder order_particles(const core::Model& model, core::Exchange& exchange, bool hashes) {
+  ParticleOrder order;
+  std::vector<CohortRecord> records;
+  collect(model, records, order.mine);
+  if (hashes) add_hashes(model, order.mine, records);
+  order.cohorts = all_records(records, exchange);
+  order.particles.resize(model.bodies.size());
+  std::size_t next = 0;  // of mine
+  for (const CohortRecord& r : order.cohorts) {
+    std::int64_t& rows = order.particles[static_cast<std::size_t>(r.body)];
+    if (next < records.size() && records[next].body == r.body && records[next].brick == r.brick) {
+      order.mine[next++].first_row = rows;
+    }
+    rows += static_cast<std::int64_t>(r.particles);
+  }
+  return order;
+}
+
+std::string described(const std::string& name, const core::ColumnSet& columns) {
+  std::string text = name;
+  for (int c = 0; c < core::column_count; ++c) {
+    const auto column = static_cast<core::Column>(c);
+    if (columns.has(column)) text.append(" ").append(core::name_of(column));
+  }
+  return text;
+}
+
+std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::vector<std::string>& bodies) {
+  Hash hash;
+  for (const std::string& b : bodies) hash.add(b);
+  for (const CohortRecord& r : cohorts) {
+    hash.add(r.brick);
+    hash.add(static_cast<std::uint64_t>(r.body));
+    hash.add(r.particles);
+    hash.add(r.hash);
+  }
+  return hash.value();
+}
+
+std::uint64_t state_hash(const core::Model& model, core::Exchange& exchange) {
+  std::vector<std::string> bodies;
+  for (const core::Body& b : model.bodies) bodies.push_back(described(b.name, b.pool->layout().set()));
+  return state_hash(order_particles(model, exchange, true).cohorts, bodies);
+}
+
+void append_rows(const core::BlockPool& pool, const core::Cohort& cohort, std::vector<double>& rows) {
+  const auto columns = static_cast<std::size_t>(pool.layout().columns());
+  std::size_t at = rows.size();
+  rows.resize(at + columns * cohort.count);
+  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+    const double* block = pool.block(cohort.blocks[b]);
+    const std::size_t used = std::min<std::size_t>(core::block_lanes, cohort.count - core::block_lanes * b);
+    for (std::size_t i = 0; i < used; ++i) {
+      for (std::size_t c = 0; c < columns; ++c) rows[at++] = block[core::block_lanes * c + i];
+    }
+  }
+}
+
+std::uint64_t hash_of(const CohortRecord& record, const double* rows, int columns) {
+  Hash hash;
+  hash.add(record.brick);
+  hash.add(static_cast<std::uint64_t>(record.body));
+  hash.add(record.particles);
+  hash.add(rows, static_cast<std::size_t>(columns) * record.particles);
+  return hash.value();
+}
+
+}  // namespace mpm::io

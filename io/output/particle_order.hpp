@@ -1,0 +1,51 @@
+// The order of particles in files that hold all of them: body after body, within a body brick after brick by key,
+// within a brick as stored. It does not depend on ranks or threads.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/model.hpp"
+#include "core/step/exchange.hpp"
+
+namespace mpm::io {
+
+/// The particles of one body in one brick.
+struct CohortRecord {
+  core::BrickKey brick = 0;
+  std::int64_t body = 0;
+  std::uint64_t particles = 0;
+  std::uint64_t hash = 0;  ///< of the particles' columns, row by row; 0 unless asked for
+  bool operator==(const CohortRecord&) const = default;
+};
+
+/// Rows of this rank: a cohort and where its first particle stands among all particles of its body.
+struct CohortPlace {
+  core::Slot slot = 0;
+  int cohort = 0;  ///< index into the brick's cohorts
+  std::int64_t first_row = 0;
+};
+
+struct ParticleOrder {
+  std::vector<CohortRecord> cohorts;    ///< of all ranks, by body, then brick
+  std::vector<CohortPlace> mine;        ///< of this rank, in the same order
+  std::vector<std::int64_t> particles;  ///< per body, of all ranks
+};
+
+/// With `hashes` every record carries its hash. Collective.
+ParticleOrder order_particles(const core::Model& model, core::Exchange& exchange, bool hashes);
+
+/// Hash of the state of all particles: names of bodies and columns, and every record of the order. The same for the
+/// same bits, on any number of ranks. Collective.
+std::uint64_t state_hash(const core::Model& model, core::Exchange& exchange);
+std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::vector<std::string>& bodies);
+/// What state_hash() knows of a body: its name and the names of its columns.
+std::string described(const std::string& name, const core::ColumnSet& columns);
+
+/// The particles of a cohort as rows of doubles, one row per particle, onto the end of `rows`.
+void append_rows(const core::BlockPool& pool, const core::Cohort& cohort, std::vector<double>& rows);
+/// The hash that a record should have, from all its rows of `columns` doubles.
+std::uint64_t hash_of(const CohortRecord& record, const double* rows, int columns);
+
+}  // namespace mpm::io

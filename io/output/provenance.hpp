@@ -1,0 +1,29 @@
+// Where a file comes from: the same facts at the head of everything that a run writes.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/scene/scene.hpp"
+
+namespace mpm::io {
+
+/// Names and values in the order in which they are printed; nothing empty. Values are one line each, UTF-8.
+using ProvenanceLines = std::vector<std::pair<std::string, std::string>>;
+
+/// Program, version, git hash, build, job, input file and its hash, units, and the date of the call (UTC).
+ProvenanceLines provenance_of(const core::Scene& scene);
+
+/// One line per fact, each starting with `prefix`: "# " for text files.
+std::string to_text(const ProvenanceLines& lines, const std::string& prefix);
+
+/// An XML comment with the same lines.
+std::string to_xml_comment(const ProvenanceLines& lines);
+
+std::string xml_escaped(const std::string& text);
+
+/// `name` with all that a file name or a column head cannot hold replaced by '_'; never empty.
+std::string safe_name(const std::string& name);
+
+}  // namespace mpm::io

@@ -1,0 +1,103 @@
+// The words of `var` (manual, table 3.1) and what each means for a particle.
+//
+// To add one: a name in Variable, a row in variable_table and a line in evaluate(). pres is the pressure p of the
+// equation of state, positive in compression and without the artificial viscosity; stresses are the whole Cauchy
+// stress s - (p + q) I. tria is -p over the Mises stress. Numbers of bodies, components and materials count from 0
+// in the order of the input. Shown by tests/io/output/variables_test.cpp.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/model.hpp"
+
+namespace mpm::io {
+
+enum class Variable : int {
+  seqv, epef, pres, density, tria, fail, engk, engi, cp, sigy, damg, body, com, mat, kelv,
+  velocity_0, velocity_1, velocity_2,
+  exx, eyy, ezz,
+  posx, posy, posz,
+  sigma_x, sigma_y, sigma_z, sigma_xy, sigma_yz, sigma_xz,
+  count
+};
+
+struct VariableInfo {
+  std::string_view name;
+  std::string_view dimension;  ///< in the words of core::ColumnInfo, or "energy"
+  std::string_view meaning;
+  bool integer = false;
+};
+
+/// Indexed by Variable.
+inline constexpr std::array<VariableInfo, static_cast<std::size_t>(Variable::count)> variable_table{{
+    {"seqv", "stress", "Mises stress"},
+    {"epef", "1", "effective plastic strain"},
+    {"pres", "stress", "pressure, without artificial viscosity"},
+    {"density", "density", "mass over volume"},
+    {"tria", "1", "stress triaxiality, -pres/seqv; 0 without deviatoric stress"},
+    {"fail", "1", "1 where failed", true},
+    {"engk", "energy", "kinetic energy of the particle"},
+    {"engi", "energy", "internal energy of the particle"},
+    {"cp", "velocity", "sound speed"},
+    {"sigy", "stress", "yield stress"},
+    {"damg", "1", "damage"},
+    {"body", "1", "number of the body", true},
+    {"com", "1", "number of the component", true},
+    {"mat", "1", "number of the material", true},
+    {"kelv", "temperature", "temperature"},
+    {"velocity_0", "velocity", "velocity along x"},
+    {"velocity_1", "velocity", "velocity along y"},
+    {"velocity_2", "velocity", "velocity along z"},
+    {"exx", "1", "accumulated strain xx"},
+    {"eyy", "1", "accumulated strain yy"},
+    {"ezz", "1", "accumulated strain zz"},
+    {"posx", "length", "position x"},
+    {"posy", "length", "position y"},
+    {"posz", "length", "position z"},
+    {"SigmaX", "stress", "stress xx"},
+    {"SigmaY", "stress", "stress yy"},
+    {"SigmaZ", "stress", "stress zz"},
+    {"SigmaXY", "stress", "stress xy"},
+    {"SigmaYZ", "stress", "stress yz"},
+    {"SigmaXZ", "stress", "stress xz"},
+}};
+
+constexpr const VariableInfo& info_of(Variable v) { return variable_table[static_cast<std::size_t>(v)]; }
+
+/// Nothing for a word that table 3.1 does not have.
+std::optional<Variable> variable_of(std::string_view word);
+/// Each once, in the order given. Throws std::logic_error for an unknown word: the input was checked.
+std::vector<Variable> variables_of(const std::vector<std::string>& words);
+
+/// The column beyond ColumnSet::mechanics() that the variable is read from, if any.
+std::optional<core::Column> column_of(Variable v);
+
+/// Columns that bodies carry only because somebody wants to see them: sound speed, yield stress, accumulated
+/// strain. What a law reads back, such as damage, is the law's own to ask for.
+core::ColumnSet shown_only();
+/// Those of shown_only() that these variables need. The others are 0 where a body does not carry them.
+core::ColumnSet columns_for(const std::vector<Variable>& variables);
+/// Columns of every variable that the scene writes or records.
+core::ColumnSet columns_for(const core::OutputInput& output);
+
+/// The variables that a body of this layout cannot give and that are therefore 0 for it.
+std::vector<Variable> absent_variables(const std::vector<Variable>& variables, const core::ColumnLayout& layout);
+
+/// What of a body enters its variables.
+struct BodyFacts {
+  int body = 0;
+  int component = 0;
+  int material = 0;
+  double reference_density = 1;
+};
+BodyFacts facts_of(const core::Model& model, std::size_t body);
+
+/// The variable for the particle in `lane` of a block. Angles and rates do not occur; units are the scene's own.
+double evaluate(Variable v, const core::ColumnLayout& layout, const double* block, int lane,
+                const BodyFacts& facts);
+
+}  // namespace mpm::io

@@ -1,0 +1,46 @@
+// Which rank gets which brick: boxes of the grid, parts of the graph of bricks, or stretches of a curve through
+// them. No communication here, and no result depends on the outcome: only how long the ranks wait for each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid/brick.hpp"
+#include "core/step/exchange.hpp"
+
+namespace mpm::parallel {
+
+/// Nodes that the array of a brick shares with that of its neighbour `offset` away: 25, 5 or 1 without halo.
+int shared_nodes(const core::NodeBlockShape& shape, core::BrickCoord offset);
+
+/// A box of bricks, cut into equal boxes. What lies outside belongs to the nearest one.
+class UniformBoxes {
+ public:
+  UniformBoxes(core::BrickCoord low, std::array<std::int32_t, 3> extent, std::array<int, 3> parts)
+      : low_(low), extent_(extent), parts_(parts) {}
+  /// Rank of the box; boxes are numbered along x first, then y, then z.
+  int owner(core::BrickCoord b) const;
+  const std::array<int, 3>& parts() const { return parts_; }
+
+ private:
+  core::BrickCoord low_;
+  std::array<std::int32_t, 3> extent_;  ///< in bricks
+  std::array<int, 3> parts_;
+};
+
+/// The whole background grid, whether there is something in it or not.
+UniformBoxes boxes_of_grid(const core::GridGeometry& geometry, std::array<int, 3> parts);
+/// The bounding box of these bricks, cut into as many boxes as there are ranks, with the smallest area between them.
+UniformBoxes boxes_of_bricks(std::span<const core::BrickCount> bricks, int ranks);
+
+/// Owner of every brick by METIS: even sums of particles, few nodes shared between ranks. Where METIS leaves one
+/// rank with more than `tolerance` times its share and a curve does better, the curve is taken; always so where
+/// there are fewer bricks than ranks. Bricks in any order, none twice.
+std::vector<std::int32_t> split_graph(std::span<const core::BrickCount> bricks, const core::NodeBlockShape& shape,
+                                      int ranks, double tolerance);
+/// Owner of every brick along Morton's curve, cut into stretches with even sums of particles.
+std::vector<std::int32_t> split_curve(std::span<const core::BrickCount> bricks, int ranks);
+
+}  // namespace mpm::parallel

@@ -1,0 +1,200 @@
+#include "parallel/halo.hpp"
+
+#include <algorithm>
+#include <bitset>
+#include <map>
+#include <stdexcept>
+
+namespace mpm::parallel {
+
+using core::BrickCoord;
+using core::BrickGrid;
+using core::NodeBlockShape;
+using core::Slot;
+
+namespace {
+
+constexpr int tag_halo = 2;
+
+// With more, bricks two apart would share nodes, and the 27 neighbours would not be all.
+constexpr int max_halo = 1;
+constexpr int max_side = core::brick_cells + 1 + 2 * max_halo;
+using NodeSet = std::bitset<max_side * max_side * max_side>;
+
+/// Nodes of a brick's array that the array of its neighbour number n holds too.
+std::array<NodeSet, core::neighbourhood> shared_sets(const NodeBlockShape& shape) {
+  const auto shares = [&](int node, std::int32_t offset) {
+    if (offset < 0) return node <= shape.halo;
+    if (offset > 0) return node >= core::brick_cells - shape.halo;
+    return true;
+  };
+  const int low = -shape.halo, high = shape.side() - shape.halo;
+  std::array<NodeSet, core::neighbourhood> sets;
+  for (int n = 0; n < core::neighbourhood; ++n) {
+    const BrickCoord offset = core::neighbour_offset(n);
+    for (int k = low; k < high; ++k) {
+      for (int j = low; j < high; ++j) {
+        for (int i = low; i < high; ++i) {
+          if (shares(i, offset.x) && shares(j, offset.y) && shares(k, offset.z)) {
+            sets[static_cast<std::size_t>(n)].set(static_cast<std::size_t>(shape.index(i, j, k)));
+          }
+        }
+      }
+    }
+  }
+  return sets;
+}
+
+void append(NodeList& list, Slot slot, const NodeSet& nodes) {
+  const auto begin = static_cast<std::uint32_t>(list.nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes.test(i)) list.nodes.push_back(static_cast<std::uint16_t>(i));
+  }
+  list.pieces.push_back({slot, begin, static_cast<std::uint32_t>(list.nodes.size())});
+}
+
+/// Slots [first, last) in the order of their bricks' keys.
+template <class CoordOf>
+std::vector<Slot> by_key(int first, int last, CoordOf coord_of) {
+  std::vector<Slot> slots;
+  for (Slot s = first; s < last; ++s) slots.push_back(s);
+  std::sort(slots.begin(), slots.end(),
+            [&](Slot a, Slot b) { return core::key_of(coord_of(a)) < core::key_of(coord_of(b)); });
+  return slots;
+}
+
+/// copy(message, node values) for every node of the list, Count doubles each.
+template <int Count, class Values, class Copy>
+void for_each_node(const NodeList& list, Values values, Copy copy) {
+  std::size_t at = 0;
+  for (const NodeList::Piece& piece : list.pieces) {
+    auto* base = values(piece.slot);
+    for (std::uint32_t n = piece.begin; n < piece.end; ++n) {
+      copy(at, base + core::node_doubles * list.nodes[n]);
+      at += Count;
+    }
+  }
+}
+
+template <int Count>
+void pack(const BrickGrid& grid, const NodeList& list, int first, double* message) {
+  for_each_node<Count>(
+      list, [&](Slot s) { return grid.contributions(s) + first; },
+      [&](std::size_t at, const double* node) { std::copy_n(node, Count, message + at); });
+}
+
+template <int Count>
+void unpack(BrickGrid& grid, const NodeList& list, int first, const double* message) {
+  for_each_node<Count>(
+      list, [&](Slot s) { return grid.contributions(s) + first; },
+      [&](std::size_t at, double* node) { std::copy_n(message + at, Count, node); });
+}
+
+/// f with the constant `count`: copies of a length that the compiler knows.
+template <int Count = core::node_doubles, class F>
+void with_count(int count, F f) {
+  if constexpr (Count > 0) {
+    if (count == Count) {
+      f(std::integral_constant<int, Count>());
+    } else {
+      with_count<Count - 1>(count, f);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const Directory& directory) {
+  if (grid.shape().halo > max_halo) throw std::logic_error("a halo of more than one layer of nodes is not exchanged");
+  const auto shared = shared_sets(grid.shape());
+  const auto ghost_of = [&](Slot s) { return grid.ghost(s - grid.owned()); };
+  std::map<int, HaloPartner> partners;
+  std::vector<NodeSet> from_ghost(static_cast<std::size_t>(grid.ghosts()));
+
+  std::map<int, NodeSet> to_rank;
+  for (const Slot s : by_key(0, grid.boundary(), [&](Slot b) { return grid.brick(b).coord; })) {
+    to_rank.clear();
+    for (std::size_t n = 0; n < core::neighbourhood; ++n) {
+      const Slot other = grid.brick(s).neighbour[n];
+      if (other < grid.owned()) continue;
+      to_rank[directory.owner(ghost_of(other))] |= shared[n];
+      from_ghost[static_cast<std::size_t>(other - grid.owned())] |= shared[core::neighbourhood - 1 - n];
+    }
+    for (const auto& [rank, nodes] : to_rank) append(partners[rank].send, s, nodes);
+  }
+  for (const Slot s : by_key(grid.owned(), grid.owned() + grid.ghosts(), ghost_of)) {
+    append(partners[directory.owner(ghost_of(s))].receive, s, from_ghost[static_cast<std::size_t>(s - grid.owned())]);
+  }
+
+  std::vector<HaloPartner> list;
+  for (auto& [rank, partner] : partners) {
+    partner.rank = rank;
+    list.push_back(std::move(partner));
+  }
+  return list;
+}
+
+void Halo::update(const BrickGrid& grid) {
+  if (planned_grid_ == &grid && planned_revision_ == grid.revision()) return;
+  if (under_way_) throw std::logic_error("the set of bricks changed while a halo exchange was under way");
+  planned_grid_ = &grid;
+  planned_revision_ = grid.revision();
+  partners_ = halo_partners(grid, directory_);
+  // Requests point into the buffers and go first.
+  for (auto& r : sends_) r = {};
+  for (auto& r : receives_) r = {};
+  outgoing_.assign(partners_.size(), {});
+  incoming_.assign(partners_.size(), {});
+  for (std::size_t p = 0; p < partners_.size(); ++p) {
+    outgoing_[p].resize(core::node_doubles * partners_[p].send.size());
+    incoming_[p].resize(core::node_doubles * partners_[p].receive.size());
+  }
+  ghosts_are_clear_ = false;
+}
+
+void Halo::set_up_requests(int count) {
+  if (sends(count).size() == partners_.size()) return;
+  const auto doubles = static_cast<std::size_t>(count);
+  for (std::size_t p = 0; p < partners_.size(); ++p) {
+    const HaloPartner& partner = partners_[p];
+    sends(count).add_send(comm_, outgoing_[p].data(), doubles * partner.send.size(), partner.rank, tag_halo);
+    receives(count).add_receive(comm_, incoming_[p].data(), doubles * partner.receive.size(), partner.rank, tag_halo);
+  }
+}
+
+void Halo::begin(BrickGrid& grid, int first, int count) {
+  if (under_way_) throw std::logic_error("a halo exchange was begun before the last one ended");
+  if (first < 0 || count < 1 || first + count > core::node_doubles) {
+    throw std::logic_error("a halo exchange of components that a node does not have");
+  }
+  update(grid);
+  if (!ghosts_are_clear_) {
+    const std::size_t doubles = static_cast<std::size_t>(grid.shape().nodes()) * core::node_doubles;
+    for (int g = 0; g < grid.ghosts(); ++g) std::fill_n(grid.contributions(grid.owned() + g), doubles, 0.0);
+    ghosts_are_clear_ = true;
+  }
+  set_up_requests(count);
+  under_way_ = {first, count};
+  receives(count).start_all();
+  with_count(count, [&](auto constant) {
+    for (std::size_t p = 0; p < partners_.size(); ++p) {
+      pack<constant>(grid, partners_[p].send, first, outgoing_[p].data());
+      sends(count).start(p);
+    }
+  });
+}
+
+void Halo::end(BrickGrid& grid) {
+  if (!under_way_) throw std::logic_error("a halo exchange was ended that had not begun");
+  const auto [first, count] = *under_way_;
+  with_count(count, [&, first = first](auto constant) {
+    for (int p = receives(constant).wait_any(); p >= 0; p = receives(constant).wait_any()) {
+      const auto i = static_cast<std::size_t>(p);
+      unpack<constant>(grid, partners_[i].receive, first, incoming_[i].data());
+    }
+  });
+  sends(count).wait_all();
+  under_way_.reset();
+}
+
+}  // namespace mpm::parallel

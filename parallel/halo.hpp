@@ -1,0 +1,76 @@
+// The exchange of contributions at the nodes that bricks of several ranks share: one message to each neighbouring
+// rank, its place and length settled when the set of bricks changes.
+//
+// For every brick of ours and every neighbouring rank, the nodes that it shares with any brick of that rank travel;
+// the receiver derives the same list from its ghosts. Bricks go by key, the nodes of each by index.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/grid/brick_grid.hpp"
+#include "parallel/directory.hpp"
+#include "parallel/mpi.hpp"
+
+namespace mpm::parallel {
+
+/// Nodes of several bricks in the order in which they stand in a message.
+struct NodeList {
+  struct Piece {
+    core::Slot slot = core::no_slot;
+    std::uint32_t begin = 0, end = 0;  ///< in `nodes`
+  };
+  std::vector<Piece> pieces;
+  std::vector<std::uint16_t> nodes;  ///< index in the brick's array
+
+  std::size_t size() const { return nodes.size(); }
+};
+
+/// What goes to and comes from one neighbouring rank.
+struct HaloPartner {
+  int rank = 0;
+  NodeList send;     ///< from owned slots
+  NodeList receive;  ///< into ghost slots
+};
+
+/// Partners by rank. Two ranks that are each other's partners have the same lists.
+std::vector<HaloPartner> halo_partners(const core::BrickGrid& grid, const Directory& directory);
+
+class Halo {
+ public:
+  Halo(const Communicator& comm, const Directory& directory) : comm_(comm), directory_(directory) {}
+
+  /// The ranks with bricks next to ours, ascending.
+  const std::vector<HaloPartner>& partners(const core::BrickGrid& grid) {
+    update(grid);
+    return partners_;
+  }
+  /// As Exchange::begin_halo and end_halo. Collective.
+  void begin(core::BrickGrid& grid, int first, int count);
+  void end(core::BrickGrid& grid);
+
+ private:
+  void update(const core::BrickGrid& grid);
+  PersistentRequests& receives(int count) { return receives_[static_cast<std::size_t>(count)]; }
+  PersistentRequests& sends(int count) { return sends_[static_cast<std::size_t>(count)]; }
+  void set_up_requests(int count);
+
+  const Communicator& comm_;
+  const Directory& directory_;
+  const core::BrickGrid* planned_grid_ = nullptr;  ///< for which, and for which state of it, the partners are
+  std::uint64_t planned_revision_ = 0;
+  bool ghosts_are_clear_ = false;
+
+  std::vector<HaloPartner> partners_;
+  std::vector<std::vector<double>> outgoing_, incoming_;  ///< [partner][node x count]
+  std::array<PersistentRequests, core::node_doubles + 1> sends_, receives_;  ///< [count], one for each partner
+
+  struct Span {
+    int first = 0, count = 0;
+  };
+  std::optional<Span> under_way_;
+};
+
+}  // namespace mpm::parallel

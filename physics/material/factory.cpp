@@ -1,0 +1,65 @@
+// From the input's names and numbers to a material. Ranges were checked when the file was read; here only what
+// several elements together forbid.
+
+#include "physics/laws.hpp"
+#include "physics/material/material.hpp"
+
+namespace mpm::physics {
+
+namespace {
+
+/// What stands for the pressure where the input gives no equation of state.
+ElasticBulk elastic_bulk(const StrengthModel& strength, const CommonParameters& common,
+                         const core::MaterialInput& input) {
+  const double bulk = std::visit(
+      [&](const auto& law) -> double {
+        if constexpr (requires { law.bulk; }) return law.bulk;
+        return common.young / (3 * (1 - 2 * common.poisson));
+      },
+      strength);
+  if (!(bulk > 0)) {
+    throw core::InputErrors(input.strength.source, "StrengthModel",
+                            input.strength.type + " has no pressure of its own: add an EquationOfState");
+  }
+  return {bulk};
+}
+
+EquationOfState make_eos(const core::MaterialInput& input, const StrengthModel& strength,
+                         const CommonParameters& common) {
+  if (!input.eos) return elastic_bulk(strength, common, input);
+  const bool own_pressure = std::visit(
+      [](const auto& law) { return requires { requires std::decay_t<decltype(law)>::own_pressure; }; }, strength);
+  if (own_pressure) {
+    throw core::InputErrors(input.eos->source, "EquationOfState",
+                            input.strength.type + " computes its pressure itself: remove the EquationOfState");
+  }
+  return make_law<EquationOfState>(*input.eos, input.reference_density);
+}
+
+void refuse_what_is_missing(const core::MaterialInput& input, const CommonParameters& common) {
+  const auto refuse = [&](const char* what) {
+    throw core::InputErrors(input.strength.source, "StrengthModel", std::string(what) + " is not implemented yet");
+  };
+  if (common.temperature_coefficient != 0) refuse("TemperatureCoefficient other than 0");
+  if (common.conductivity != 0) refuse("CoefficientOfThermalConductivity other than 0");
+  if (input.random_failure.enable) refuse("RandomFailure");
+}
+
+}  // namespace
+
+std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput& input) {
+  Material::Laws laws;
+  laws.name = input.name;
+  laws.reference_density = input.reference_density;
+  read_parameters(laws.common, input.strength);
+  refuse_what_is_missing(input, laws.common);
+  laws.strength = make_law<StrengthModel>(input.strength, input.reference_density);
+  laws.eos = make_eos(input, laws.strength, laws.common);
+  if (input.eos) read_parameters(laws.common_eos, *input.eos);
+  for (const core::FailureInput& failure : input.failures) {
+    laws.failures.push_back({make_law<FailureModel>(failure, input.reference_density), failure.erosion});
+  }
+  return std::make_unique<Material>(std::move(laws));
+}
+
+}  // namespace mpm::physics

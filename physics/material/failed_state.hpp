@@ -1,0 +1,34 @@
+// What a failed particle's pressure may be (manual 3.2.1, FailedType): 0 no tension, 1 none at all, 2 tension down to
+// TensileCutoff, and zero beyond.
+#pragma once
+
+#include "core/simd/lanes.hpp"
+#include "physics/eos/point.hpp"
+
+namespace mpm::physics {
+
+struct FailedRules {
+  int type = 0;
+  double tensile_cutoff = 0;  ///< stress, <= 0
+};
+
+template <class T>
+T allowed_pressure(const FailedRules& rules, const T& pressure) {
+  switch (rules.type) {
+    case 1: return 0.0;
+    case 2: return core::select(pressure < rules.tensile_cutoff, 0.0, pressure);
+    default: return core::max(pressure, 0.0);
+  }
+}
+
+/// A failed particle's pressure, where `pressure` is what the equation of state says.
+template <class T, class Eos>
+T broken_pressure(const Eos& eos, const FailedRules& rules, const EosPoint<T>& point, const T& pressure) {
+  if constexpr (requires { eos.broken_pressure(point); }) {
+    return allowed_pressure(rules, eos.broken_pressure(point));
+  } else {
+    return allowed_pressure(rules, pressure);
+  }
+}
+
+}  // namespace mpm::physics

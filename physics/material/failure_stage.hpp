@@ -1,0 +1,51 @@
+// Fourth stage, where the material can fail: every failure model judges the same state, then the worst verdict counts
+// (manual 3.2.3: any one suffices). Verdicts and the column `failed`: 0 intact, 1 failed, 2 to be eroded by the step.
+// A particle that fails loses its deviatoric stress and the pressure that FailedType forbids; the elastic energy of
+// both stays in it as heat. The wave speed keeps the intact value for this one step, which is on the safe side.
+#pragma once
+
+#include <variant>
+
+#include "physics/failure/point.hpp"
+#include "physics/history.hpp"
+#include "physics/material/failed_state.hpp"
+#include "physics/material/vectors.hpp"
+
+namespace mpm::physics {
+
+/// `verdict` becomes at least 1 (2 where the model erodes) where the model says so.
+template <class T, class Model>
+[[gnu::noinline, gnu::flatten]] void judge(const core::Batch& batch, const Model& model, bool erodes, double* verdict) {
+  const core::ColumnLayout& layout = *batch.layout;
+  const History<Model, FailurePoint<T>> history(model, layout);
+  const int pressure_at = layout.offset(core::Column::pressure);
+  const double sentence = erodes ? 2 : 1;
+  for_each_vector<T>(batch, [&](const double* block, int row) {
+    FailurePoint<T> point{load_deviator<T>(block, layout), core::load<T>(block + pressure_at)};
+    history.load(block, point);
+    const T before = core::load<T>(verdict + row);
+    core::store(verdict + row, core::select(model.fails(point), core::max(before, sentence), before));
+  });
+}
+
+template <class T>
+[[gnu::noinline, gnu::flatten]] void apply_failure(core::Batch& batch, const FailedRules& rules, const double* verdict) {
+  using core::Column;
+  const core::ColumnLayout& layout = *batch.layout;
+  const int failed_at = layout.offset(Column::failed), pressure_at = layout.offset(Column::pressure);
+  const int q_at = layout.offset(Column::viscous_pressure);
+  for_each_vector<T>(batch, [&](double* block, int row) {
+    const T sentence = core::load<T>(verdict + row), before = core::load<T>(block + failed_at);
+    if (!core::any(sentence > before)) return;
+    core::store(block + failed_at, core::max(sentence, before));
+    const auto fresh = (sentence > 0.5) & (before < 0.5);
+    batch.events.failed += count<T>(fresh, row, batch.particles);
+    const T kept = core::select(fresh, 0.0, T(1.0));
+    const T p = core::load<T>(block + pressure_at), q = core::load<T>(block + q_at);
+    store_deviator(block, layout, kept * load_deviator<T>(block, layout));
+    core::store(block + pressure_at, core::select(fresh, allowed_pressure(rules, p), p));
+    core::store(block + q_at, kept * q);
+  });
+}
+
+}  // namespace mpm::physics

@@ -1,0 +1,169 @@
+#include "physics/material/material.hpp"
+
+#include "core/simd/math.hpp"
+#include "physics/laws.hpp"
+#include "physics/material/failure_stage.hpp"
+#include "physics/material/kinematics.hpp"
+
+namespace mpm::physics {
+
+using core::Column;
+
+namespace {
+
+/// The law at rest: no strain, no stress. What it says then of stiffness and strength holds at the start.
+template <class T, class Law>
+StrengthPoint<T> rest(const Law& law, StrengthPoint<T> point) {
+  point.dt = 1;
+  point.strain = point.s = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  point.volumetric_strain = 0.0;
+  law.update(point);
+  return point;
+}
+
+/// Energy and pressure of a particle at the point's volume: E0, unless the equation says otherwise.
+template <class T, class Eos>
+EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0) {
+  point.energy = e0;
+  if constexpr (requires { eos.initialise(point); }) eos.initialise(point);
+  core::MaskOf<T> outside{};
+  const EosLine<T> line = limited_line(eos, point, outside);
+  point.pressure = line.a + line.b * point.energy;
+  return line;
+}
+
+/// rho0 c0^2 of the undeformed material.
+double modulus_at_rest(const Material::Laws& laws) {
+  StrengthPoint<double> at_rest{};
+  at_rest.density = laws.reference_density;
+  at_rest.temperature = laws.common.room_temperature;
+  const double shear = std::visit([&](const auto& law) { return rest(law, at_rest).shear_modulus; }, laws.strength);
+  if (laws.common_eos.c0 > 0) return 4.0 / 3.0 * shear + laws.reference_density * laws.common_eos.c0 * laws.common_eos.c0;
+  return std::visit(
+      [&](const auto& eos) {
+        EosPoint<double> point{};
+        point.relative_volume = 1;
+        const EosLine<double> line = start(eos, point, laws.common_eos.e0);
+        return 4.0 / 3.0 * shear + isentropic_modulus(line, 0.0, 1.0, point.pressure, point.energy);
+      },
+      laws.eos);
+}
+
+}  // namespace
+
+Material::Material(Laws laws) : laws_(std::move(laws)) {
+  std::visit(
+      [&](const auto& law) {
+        if constexpr (requires { law.fails_by_damage(); }) {
+          if (law.fails_by_damage()) laws_.failures.push_back({FullDamage{}, false});
+        }
+        if constexpr (requires { law.plastic_work_coefficient; }) heats_ = laws_.common.specific_heat > 0;
+        viscous_ = requires { law.viscosity(); };
+      },
+      laws_.strength);
+  fails_ = !laws_.failures.empty();
+  viscous_ = viscous_ || (fails_ && laws_.common.fail_viscosity > 0);
+  initial_modulus_ = modulus_at_rest(laws_);
+  initial_sound_speed_ = std::sqrt(std::max(initial_modulus_, 0.0) / laws_.reference_density);
+}
+
+core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
+  core::ColumnSet set = std::visit([](const auto& law) { return columns_of(law); }, laws_.strength);
+  set.add(std::visit([](const auto& eos) { return columns_of(eos); }, laws_.eos));
+  for (const FailureEntry& entry : laws_.failures) {
+    set.add(std::visit([](const auto& law) { return columns_of(law); }, entry.model));
+  }
+  if (fails_) set.add(Column::failed);
+  if (heats_) set.add(Column::temperature);
+  if (options.keep_strain || options.volume_update == 4) set.add_range(Column::strain_xx, 6);
+  return set;
+}
+
+StrengthRules Material::strength_rules() const {
+  return {.fail_viscosity = laws_.common.fail_viscosity, .specific_heat = laws_.common.specific_heat};
+}
+
+PressureRules Material::pressure_rules(const core::UpdateOptions& options) const {
+  const CommonParameters& common = laws_.common;
+  return {.reference_density = laws_.reference_density,
+          .bq1 = common.bq1,
+          .bq2 = common.bq2,
+          .initial_modulus = initial_modulus_,
+          .initial_sound_speed = initial_sound_speed_,
+          .constant_sound_speed = common.constant_sound_speed != 0,
+          .viscosity_in_wave_speed = options.viscosity_in_wave_speed,
+          .viscous = viscous_,
+          .failed = {.type = static_cast<int>(common.failed_type), .tensile_cutoff = common.tensile_cutoff}};
+}
+
+template <class T>
+void Material::update_as(core::Batch& batch, const core::UpdateOptions& options) const {
+  alignas(64) core::Row verdict;
+  const PressureRules rules = pressure_rules(options);
+  update_kinematics<T>(batch, options, laws_.reference_density);
+  std::visit([&](const auto& law) { update_strength<T>(batch, law, strength_rules()); }, laws_.strength);
+  std::visit([&](const auto& eos) { update_pressure<T>(batch, eos, rules, fails_ ? verdict : nullptr); }, laws_.eos);
+  if (!fails_) return;
+  for (const FailureEntry& entry : laws_.failures) {
+    std::visit([&](const auto& model) { judge<T>(batch, model, entry.erodes, verdict); }, entry.model);
+  }
+  apply_failure<T>(batch, rules.failed, verdict);
+}
+
+template <class T>
+void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& options) const {
+  const core::ColumnLayout& layout = *batch.layout;
+  PressureRules rules = pressure_rules(options);
+  std::visit(
+      [&](const auto& law, const auto& eos) {
+        const History<std::decay_t<decltype(law)>, StrengthPoint<T>> law_history(law, layout);
+        const History<std::decay_t<decltype(eos)>, EosPoint<T>> eos_history(eos, layout);
+        for_each_vector<T>(batch, [&](double* block, int row) {
+          const auto put = [&](Column c, const T& value) {
+            if (layout.has(c)) core::store(block + layout.offset(c), value);
+          };
+          const auto get = [&](Column c) { return core::load<T>(block + layout.offset(c)); };
+          const T volume = get(Column::volume);
+          const Density<T> now(get(Column::mass), volume, rules.reference_density);
+
+          StrengthPoint<T> point{};
+          law_history.load(block, point);
+          point.density = now.density;
+          point.temperature = laws_.common.room_temperature;
+          point = rest(law, point);
+          law_history.store(block, point);
+          put(Column::temperature, point.temperature);
+          put(Column::yield_stress, point.yield_stress);
+
+          EosPoint<T> bulk{now.compression, now.relative_volume, T(0.0), T(0.0), T(0.0)};
+          eos_history.load(block, bulk);
+          const EosLine<T> line = start(eos, bulk, laws_.common_eos.e0);
+          eos_history.store(block, bulk);
+          put(Column::pressure, bulk.pressure);
+          put(Column::internal_energy, bulk.energy);
+
+          const T modulus = (4.0 / 3.0) * point.shear_modulus +
+                            isentropic_modulus(line, now.compression, now.relative_volume, bulk.pressure, bulk.energy);
+          const T c2 = core::max(modulus, 0.0) * volume * now.inverse_mass;
+          store_speeds(batch, block, row, rules, c2, T(0.0));
+        });
+      },
+      laws_.strength, laws_.eos);
+}
+
+void Material::initialise(core::Batch& batch, const core::UpdateOptions& options) const {
+  initialise_as<core::Real>(batch, options);
+}
+
+void Material::update(core::Batch& batch, const core::UpdateOptions& options) const {
+  update_as<core::Real>(batch, options);
+}
+
+template void Material::update_as<core::Real>(core::Batch&, const core::UpdateOptions&) const;
+template void Material::initialise_as<core::Real>(core::Batch&, const core::UpdateOptions&) const;
+#if MPM_SIMD_LANES != 1
+template void Material::update_as<double>(core::Batch&, const core::UpdateOptions&) const;
+template void Material::initialise_as<double>(core::Batch&, const core::UpdateOptions&) const;
+#endif
+
+}  // namespace mpm::physics

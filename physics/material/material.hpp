@@ -1,0 +1,69 @@
+// A material: strength model, equation of state and failure models composed, as the input states them, behind the
+// interface that the step knows. Each stage is one pass over the batch, and each law is chosen once per batch.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/material/constitutive_model.hpp"
+#include "core/scene/material.hpp"
+#include "physics/eos/list.hpp"
+#include "physics/failure/list.hpp"
+#include "physics/material/common_parameters.hpp"
+#include "physics/material/pressure_stage.hpp"
+#include "physics/material/strength_stage.hpp"
+#include "physics/strength/list.hpp"
+
+namespace mpm::physics {
+
+class Material final : public core::ConstitutiveModel {
+ public:
+  struct FailureEntry {
+    FailureModel model;
+    bool erodes = false;
+  };
+  /// Laws read and prepared; make_material does that from the input.
+  struct Laws {
+    std::string name;
+    double reference_density = 0;
+    CommonParameters common;
+    CommonEosParameters common_eos;
+    StrengthModel strength;
+    EquationOfState eos;
+    std::vector<FailureEntry> failures;
+  };
+  explicit Material(Laws laws);
+
+  const std::string& name() const override { return laws_.name; }
+  core::ColumnSet columns(const core::UpdateOptions& options) const override;
+  double initial_sound_speed() const override { return initial_sound_speed_; }
+  double reference_density() const override { return laws_.reference_density; }
+  double specific_heat() const override { return laws_.common.specific_heat; }
+  void initialise(core::Batch& batch, const core::UpdateOptions& options) const override;
+  void update(core::Batch& batch, const core::UpdateOptions& options) const override;
+
+  /// The same update with another value type: double or a Lanes<L>, for the comparison of instances.
+  template <class T>
+  void update_as(core::Batch& batch, const core::UpdateOptions& options) const;
+  template <class T>
+  void initialise_as(core::Batch& batch, const core::UpdateOptions& options) const;
+
+  const Laws& laws() const { return laws_; }
+
+ private:
+  StrengthRules strength_rules() const;
+  PressureRules pressure_rules(const core::UpdateOptions& options) const;
+
+  Laws laws_;
+  double initial_modulus_ = 0;
+  double initial_sound_speed_ = 0;
+  bool fails_ = false;    ///< carries the column `failed`
+  bool heats_ = false;    ///< carries the column `temperature`
+  bool viscous_ = false;  ///< has shear viscosity
+};
+
+/// Throws core::InputErrors where parameters contradict each other.
+std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput& input);
+
+}  // namespace mpm::physics

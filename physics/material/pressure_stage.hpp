@@ -1,0 +1,155 @@
+// Third stage: artificial viscosity, and energy and pressure solved together (thesis 2-69, 2-82 to 2-92). Per unit
+// initial volume, with h = (V^{n+1} - V^n)/(2 V0) and the stress work w = V^{n+1/2} s^{n+1/2} : de / V0:
+//   E* = E^n - h p^n - h (q^n + q^{n+1}) + w,   p = (a + b E*)/(1 + b h),   E = E* - h p
+// h takes the place of V^{n+1/2} tr(de)/2 (2-88), so that -p dV is the work of the volume that really changes.
+// The sound speed in q is that of the new volume with the old energy and pressure. Then the wave speed of the
+// state reached (2-57) and the speed of the critical step (2-74). Shown by tests/physics/energy_test.cpp.
+#pragma once
+
+#include "physics/eos/point.hpp"
+#include "physics/history.hpp"
+#include "physics/material/failed_state.hpp"
+#include "physics/material/vectors.hpp"
+
+namespace mpm::physics {
+
+struct PressureRules {
+  double reference_density = 0;
+  double bq1 = 0;                      ///< quadratic term of the artificial viscosity
+  double bq2 = 0;                      ///< linear term
+  double initial_modulus = 0;          ///< rho0 c0^2 at rest, the scale of what is negligible
+  double initial_sound_speed = 0;
+  bool constant_sound_speed = false;   ///< for the critical step
+  bool viscosity_in_wave_speed = true;
+  bool viscous = false;                ///< the batch's shear_viscosity is not zero throughout
+  FailedRules failed;
+};
+
+/// Mass and volume of a particle as everything below wants them; one division for all.
+template <class T>
+struct Density {
+  T inverse_mass, density, relative_volume, compression;
+
+  Density(const T& mass, const T& volume, double reference_density) {
+    const T r = 1.0 / (mass * volume);
+    inverse_mass = volume * r;
+    density = mass * (mass * r);
+    relative_volume = reference_density * (volume * inverse_mass);
+    compression = density * (1 / reference_density) - 1.0;
+  }
+};
+
+/// rho dp/drho along an isentrope (2-57).
+template <class T>
+T isentropic_modulus(const EosLine<T>& line, const T& compression, const T& relative_volume, const T& pressure,
+                     const T& energy) {
+  return (1.0 + compression) * (line.da + line.db * energy) + relative_volume * pressure * line.b;
+}
+
+/// The equation's line at the point, with the compression held below the equation's limit where it has one.
+template <class T, class Eos>
+EosLine<T> limited_line(const Eos& eos, EosPoint<T>& point, core::MaskOf<T>& outside) {
+  if constexpr (requires { eos.compression_limit; }) {
+    outside = point.compression > eos.compression_limit;
+    point.compression = core::min(point.compression, eos.compression_limit);
+  }
+  return eos.line(point);
+}
+
+/// The damping speed Q of the artificial viscosity (2-73), from the rate of compression and the sound speed in it.
+template <class T>
+T damping_speed(const PressureRules& rules, double length, const T& rate, const T& c) {
+  return core::select(rate > 0.0, rules.bq2 * c + (rules.bq1 * length) * rate, 0.0);
+}
+
+/// Speeds for the time step (2-74) and, where the layout has that column, for output. `damping` is Q of everything
+/// viscous that counts.
+template <class T>
+void store_speeds(core::Batch& batch, double* block, int row, const PressureRules& rules, const T& c2,
+                  const T& damping) {
+  const double c0 = rules.initial_sound_speed;
+  const T speed2 = rules.constant_sound_speed ? T(c0 * c0) : c2;
+  core::store(batch.critical_speed + row, damping + sqrt(damping * damping + speed2));
+  const int sound_at = batch.layout->offset(core::Column::sound_speed);
+  if (sound_at < 0) return;
+  const T c = sqrt(c2);
+  core::store(batch.sound_speed + row, c);
+  core::store(block + sound_at, c);
+}
+
+/// Updates pressure, viscous_pressure, internal_energy and the equation's state; fills sound_speed and critical_speed.
+/// `verdict` (null where the material cannot fail) becomes 1 where the state has no defined answer, else 0.
+template <class T, class Eos>
+[[gnu::noinline, gnu::flatten]] void update_pressure(core::Batch& batch, const Eos& eos, const PressureRules& rules,
+                                       double* verdict) {
+  using core::Column;
+  using core::max;
+  const core::ColumnLayout& layout = *batch.layout;
+  const History<Eos, EosPoint<T>> history(eos, layout);
+  const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);
+  const int pressure_at = layout.offset(Column::pressure), q_at = layout.offset(Column::viscous_pressure);
+  const int energy_at = layout.offset(Column::internal_energy), failed_at = layout.offset(Column::failed);
+  const double length = batch.cell_size, inverse_dt = 1 / batch.dt, rho0 = rules.reference_density;
+  const double negligible = -1e-12 * rules.initial_modulus;
+
+  for_each_vector<T>(batch, [&](double* block, int row) {
+    const T volume = core::load<T>(block + volume_at), old_volume = core::load<T>(batch.old_volume + row);
+    const Density<T> now(core::load<T>(block + mass_at), volume, rho0);
+    const T tr = core::load<T>(batch.volumetric_strain + row);
+    const T old_p = core::load<T>(block + pressure_at), old_energy = core::load<T>(block + energy_at);
+    const T shear = (4.0 / 3.0) * core::load<T>(batch.shear_modulus + row);
+    const T specific_volume = volume * now.inverse_mass;
+
+    EosPoint<T> point{now.compression, now.relative_volume, tr, old_p, old_energy};
+    history.load(block, point);
+    core::MaskOf<T> outside{};
+    const EosLine<T> line = limited_line(eos, point, outside);
+
+    const T per_v0 = rho0 * now.inverse_mass;
+    const T h = 0.5 * (volume - old_volume) * per_v0;
+    const T response = 1.0 / (1.0 + line.b * h);
+
+    // Artificial viscosity: none in expansion, and none for what has failed.
+    core::MaskOf<T> failed{};
+    if (failed_at >= 0) failed = core::load<T>(block + failed_at) > 0.5;
+    const T rate = core::select(failed, 0.0, max(-inverse_dt * tr, 0.0));
+    const T modulus_before = shear + isentropic_modulus(line, now.compression, now.relative_volume, old_p, old_energy);
+    const T c_before = sqrt(max(modulus_before, 0.0) * specific_volume);
+    const T q = (length * now.density * rate) * (rules.bq1 * length * rate + rules.bq2 * c_before);
+
+    const T work = 0.5 * (volume + old_volume) * per_v0 * core::load<T>(batch.deviatoric_work + row);
+    const T energy_star = old_energy - h * (old_p + core::load<T>(block + q_at) + q) + work;
+    T p = (line.a + line.b * energy_star) * response;
+    if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, p), p);
+    const T energy = energy_star - h * p;
+
+    history.store(block, point);
+    core::store(block + pressure_at, p);
+    core::store(block + q_at, q);
+    core::store(block + energy_at, energy);
+
+    const T modulus = shear + isentropic_modulus(line, now.compression, now.relative_volume, p, energy);
+    const core::MaskOf<T> undefined = outside | (modulus < negligible);
+    const T c2 = core::select(undefined, rules.initial_sound_speed * rules.initial_sound_speed,
+                              max(modulus, 0.0) * specific_volume);
+    T damping = 0.0;
+    if (rules.viscosity_in_wave_speed) {
+      damping = damping_speed(rules, length, rate, rules.constant_sound_speed ? T(rules.initial_sound_speed) : c_before);
+    }
+    if (rules.viscous) {  // 4/3 mu D = rho l Q D
+      damping += (4 / (3 * length)) * specific_volume * core::load<T>(batch.shear_viscosity + row);
+    }
+    store_speeds(batch, block, row, rules, c2, damping);
+    if (verdict != nullptr) core::store(verdict + row, core::select(undefined, 1.0, T(0.0)));
+
+    const core::MaskOf<T> negative = energy < negligible;
+    const core::MaskOf<T> not_finite = !(energy - energy == 0.0);  // every stress has gone into it
+    if (core::any(undefined | negative | not_finite)) {
+      batch.events.undefined_root += count<T>(undefined, row, batch.particles);
+      batch.events.negative_energy += count<T>(negative, row, batch.particles);
+      batch.events.not_finite += count<T>(not_finite, row, batch.particles);
+    }
+  });
+}
+
+}  // namespace mpm::physics

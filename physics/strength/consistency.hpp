@@ -1,0 +1,40 @@
+// The plastic strain increment of a law whose yield stress depends on it through rate, heat or a curved hardening:
+//   f(x) = trial - 3 G x - sigma_y(x) = 0,   0 <= x <= trial/(3 G)
+// Newton's method held in a shrinking bracket, all lanes at once; a lane that has converged is left alone, so its
+// result does not depend on its neighbours. Converged means |f| below 1e-10 of the yield stress.
+#pragma once
+
+#include "core/tensor/tensor.hpp"
+
+namespace mpm::physics {
+
+template <class T>
+struct FlowStress {
+  T value;
+  T slope;  ///< with respect to the plastic strain increment
+};
+
+/// Zero in the lanes where the trial stress does not exceed `threshold`, the yield stress for a vanishing increment.
+template <class T, class Flow>
+T plastic_increment(const T& trial, const T& threshold, double shear, const Flow& flow) {
+  using core::abs;
+  const double stiffness = 3 * shear;
+  const core::MaskOf<T> plastic = trial > threshold;
+  T x = core::select(plastic, (trial - threshold) * (1 / stiffness), 0.0);
+  if (!core::any(plastic)) return x;
+  T low = 0.0, high = trial * (1 / stiffness);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const FlowStress<T> yield = flow(x);
+    const T f = trial - stiffness * x - yield.value;
+    const core::MaskOf<T> open = plastic & (abs(f) > 1e-10 * yield.value + 1e-15 * trial);
+    if (!core::any(open)) break;
+    low = core::select(f > 0.0, x, low);
+    high = core::select(f > 0.0, high, x);
+    const T newton = x + f / (stiffness + yield.slope);
+    const T next = core::select((newton > low) & (newton < high), newton, 0.5 * (low + high));
+    x = core::select(open, next, x);
+  }
+  return x;
+}
+
+}  // namespace mpm::physics

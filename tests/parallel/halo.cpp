@@ -1,0 +1,247 @@
+#include "parallel/halo.hpp"
+
+#include <bit>
+#include <cmath>
+#include <map>
+
+#include <catch2/catch.hpp>
+
+#include "parallel/mpi_exchange.hpp"
+#include "tests/parallel/world.hpp"
+
+using namespace mpm::parallel;
+using namespace mpm::parallel::test;
+using mpm::core::BrickCoord;
+using mpm::core::BrickGrid;
+using mpm::core::node_doubles;
+using mpm::core::Slot;
+
+namespace {
+
+using Node = std::array<std::int32_t, 3>;
+
+/// The node with index `n` of a brick's array, counted from the grid's origin.
+Node node_of(const BrickGrid& grid, BrickCoord b, int n) {
+  const int side = grid.shape().side(), halo = grid.shape().halo;
+  return {4 * b.x + n % side - halo, 4 * b.y + n / side % side - halo, 4 * b.z + n / side / side - halo};
+}
+
+bool holds(const BrickGrid& grid, BrickCoord b, Node node) {
+  const std::array<std::int32_t, 3> first{4 * b.x, 4 * b.y, 4 * b.z};
+  bool inside = true;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int32_t at = node[a] - first[a];
+    inside = inside && at >= -grid.shape().halo && at <= 4 + grid.shape().halo;
+  }
+  return inside;
+}
+
+/// Different for every brick, node, component and round; of magnitudes that make sums depend on their order.
+double contribution(BrickCoord b, int node, int component, int round) {
+  const std::uint64_t h = mix(mix(mix(mix(1, mpm::core::key_of(b)), static_cast<std::uint64_t>(node)),
+                                  static_cast<std::uint64_t>(component)),
+                              static_cast<std::uint64_t>(round));
+  return std::ldexp(static_cast<double>(h >> 11) - 0x1p52, static_cast<int>(h % 40));
+}
+
+void fill(BrickGrid& grid, int round) {
+  for (Slot s = 0; s < grid.owned(); ++s) {
+    double* values = grid.contributions(s);
+    for (int n = 0; n < grid.shape().nodes(); ++n) {
+      for (int c = 0; c < node_doubles; ++c) *values++ = contribution(grid.brick(s).coord, n, c, round);
+    }
+  }
+}
+
+/// What the ghosts' arrays must hold, kept beside the grid and changed by definition only.
+class Expected {
+ public:
+  explicit Expected(const BrickGrid& grid)
+      : grid_(grid), doubles_(static_cast<std::size_t>(grid.shape().nodes()) * node_doubles) {
+    for (int g = 0; g < grid.ghosts(); ++g) values_.emplace_back(doubles_, 0.0);
+    for (int g = 0; g < grid.ghosts(); ++g) {
+      std::vector<int> shared;
+      for (int n = 0; n < grid.shape().nodes(); ++n) {
+        const Node node = node_of(grid, grid.ghost(g), n);
+        if (std::ranges::any_of(grid.bricks(), [&](const auto& b) { return holds(grid, b.coord, node); })) {
+          shared.push_back(n);
+        }
+      }
+      shared_.push_back(std::move(shared));
+    }
+  }
+  void arrive(int first, int count, int round) {
+    for (std::size_t g = 0; g < values_.size(); ++g) {
+      for (const int n : shared_[g]) {
+        for (int c = first; c < first + count; ++c) {
+          values_[g][static_cast<std::size_t>(node_doubles * n + c)] =
+              contribution(grid_.ghost(static_cast<int>(g)), n, c, round);
+        }
+      }
+    }
+  }
+  bool holds_for(const BrickGrid& grid) const {
+    for (int g = 0; g < grid.ghosts(); ++g) {
+      const double* is = grid.contributions(grid.owned() + g);
+      if (!std::equal(is, is + doubles_, values_[static_cast<std::size_t>(g)].begin())) return false;
+    }
+    return true;
+  }
+
+ private:
+  const BrickGrid& grid_;
+  std::size_t doubles_;
+  std::vector<std::vector<double>> values_;
+  std::vector<std::vector<int>> shared_;
+};
+
+/// Bricks with random owners, some ranks without any.
+void set_up(BrickGrid& grid, Directory& directory, const std::vector<BrickCoord>& bricks, int ranks_in_use,
+            std::mt19937_64& random) {
+  directory.clear();
+  std::vector<BrickCoord> owned;
+  for (const BrickCoord b : bricks) {
+    const auto owner = static_cast<std::int32_t>(random() % static_cast<unsigned>(ranks_in_use));
+    directory.assign(b, owner);
+    if (owner == world().rank()) owned.push_back(b);
+  }
+  const auto ghosts = ghosts_of({bricks.begin(), bricks.end()}, directory, world().rank());
+  grid.reset(owned, {ghosts.begin(), ghosts.end()});
+  // Memory as it comes: not zero.
+  const auto doubles = static_cast<std::ptrdiff_t>(grid.shape().nodes()) * node_doubles;
+  for (Slot s = 0; s < grid.owned() + grid.ghosts(); ++s) {
+    std::fill(grid.contributions(s), grid.contributions(s) + doubles, std::nan(""));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no other") {
+  const int halo_width = GENERATE(0, 1);
+  const double share = GENERATE(0.15, 0.6, 1.0);
+  std::mt19937_64 random(static_cast<unsigned>(100 * share) + static_cast<unsigned>(halo_width));
+  BrickGrid grid(unit_grid(400), halo_width);
+  Directory directory;
+  Halo halo(world(), directory);
+  const auto bricks = random_bricks(random, {4, 3, 4}, share);
+  for (int ranks = std::max(1, world().size() - 1); ranks <= world().size(); ++ranks) {
+    set_up(grid, directory, bricks, ranks, random);
+    Expected expected(grid);
+    int round = 0;
+    for (int first = 0; first < node_doubles; ++first) {
+      for (int count = 1; first + count <= node_doubles; ++count) {
+        fill(grid, ++round);
+        expected.arrive(first, count, round);
+        halo.begin(grid, first, count);
+        halo.end(grid);
+        REQUIRE(expected.holds_for(grid));
+      }
+    }
+  }
+}
+
+TEST_CASE("A changed set of bricks is exchanged anew") {
+  std::mt19937_64 random(8);
+  BrickGrid grid(unit_grid(400), 0);
+  Directory directory;
+  Halo halo(world(), directory);
+  for (int round = 0; round < 30; ++round) {
+    set_up(grid, directory, random_bricks(random, {4, 4, 3}, 0.4), 1 + round % world().size(), random);
+    Expected expected(grid);
+    for (int i = 0; i < 3; ++i) {
+      fill(grid, 3 * round + i);
+      expected.arrive(0, 4, 3 * round + i);
+      halo.begin(grid, 0, 4);
+      halo.end(grid);
+      REQUIRE(expected.holds_for(grid));
+    }
+  }
+}
+
+TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
+  const int halo_width = GENERATE(0, 1);
+  std::mt19937_64 random(9);
+  BrickGrid grid(unit_grid(400), halo_width);
+  Directory directory;
+  Halo halo(world(), directory);
+  const auto bricks = random_bricks(random, {4, 4, 4}, 0.7);
+  set_up(grid, directory, bricks, world().size(), random);
+  fill(grid, 0);
+  halo.begin(grid, 0, node_doubles);
+  halo.end(grid);
+
+  const auto sum_at = [&](BrickCoord brick, Node node, auto value_of) {
+    double sum = 0;
+    for (int n = 0; n < mpm::core::neighbourhood; ++n) {
+      const BrickCoord other = brick + mpm::core::neighbour_offset(n);
+      if (holds(grid, other, node)) sum += value_of(other, node);
+    }
+    return std::bit_cast<std::uint64_t>(sum);
+  };
+  const auto index_in = [&](BrickCoord b, Node node) {
+    return grid.shape().index(node[0] - 4 * b.x, node[1] - 4 * b.y, node[2] - 4 * b.z);
+  };
+  // The reference needs no communication: contributions are a known function.
+  const std::set<BrickCoord> all(bricks.begin(), bricks.end());
+  const auto known = [&](BrickCoord b, Node node) {
+    return all.contains(b) ? contribution(b, index_in(b, node), 3, 0) : 0.0;
+  };
+  const auto exchanged = [&](BrickCoord b, Node node) {
+    const Slot s = grid.find(b);
+    return s == mpm::core::no_slot ? 0.0 : grid.contributions(s)[node_doubles * index_in(b, node) + 3];
+  };
+  struct Copy {
+    Node node;
+    std::uint64_t bits;
+  };
+  std::vector<Copy> copies;
+  int wrong = 0;
+  for (const auto& b : grid.bricks()) {
+    for (int n = 0; n < grid.shape().nodes(); ++n) {
+      const Node node = node_of(grid, b.coord, n);
+      copies.push_back({node, sum_at(b.coord, node, exchanged)});
+      if (copies.back().bits != sum_at(b.coord, node, known)) ++wrong;
+    }
+  }
+  CHECK(wrong == 0);
+  std::map<Node, std::uint64_t> seen;
+  int different = 0;
+  for (const Copy& c : world().all_gather(std::span<const Copy>(copies)).items) {
+    if (seen.emplace(c.node, c.bits).first->second != c.bits) ++different;
+  }
+  CHECK(different == 0);
+}
+
+TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
+  MpiExchange exchange(world());
+  BrickGrid grid(unit_grid(400), 1);
+  std::vector<mpm::core::BrickCount> counts;
+  std::mt19937_64 random(10);
+  for (const BrickCoord b : random_bricks(random, {12, 11, 10}, 0.97)) {
+    if (counts.empty() || world().rank() == 0) counts.push_back({b, 8});
+  }
+  mpm::core::DecompositionInput how;
+  how.method = GENERATE(mpm::core::PartitionMethod::metis, mpm::core::PartitionMethod::uniform);
+  exchange.partition(grid, counts, how);
+  Expected expected(grid);
+  for (int round = 0; round < 3; ++round) {
+    fill(grid, round);
+    expected.arrive(0, node_doubles, round);
+    exchange.begin_halo(grid, 0, node_doubles);
+    exchange.end_halo(grid);
+    CHECK(expected.holds_for(grid));
+  }
+}
+
+TEST_CASE("A halo exchange out of order is refused") {
+  Directory directory;
+  BrickGrid grid(unit_grid(400), 0);
+  Halo halo(world(), directory);
+  CHECK_THROWS_AS(halo.end(grid), std::logic_error);
+  CHECK_THROWS_AS(halo.begin(grid, 5, 4), std::logic_error);
+  halo.begin(grid, 0, 1);
+  CHECK_THROWS_AS(halo.begin(grid, 0, 1), std::logic_error);
+  halo.end(grid);
+  BrickGrid wide(unit_grid(400), 2);
+  CHECK_THROWS_AS(halo.begin(wide, 0, 1), std::logic_error);
+}

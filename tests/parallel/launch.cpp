@@ -1,0 +1,87 @@
+#include "parallel/launch.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/scene/errors.hpp"
+#include "tests/parallel/world.hpp"
+
+using namespace mpm::parallel;
+using namespace mpm::parallel::test;
+
+TEST_CASE("Rank 0's bytes reach every rank") {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{5'000'000}}) {
+    std::string bytes(size, 'x');
+    for (std::size_t i = 0; i < size; i += 997) bytes[i] = static_cast<char>(i);
+    CHECK(broadcast(world(), world().rank() == 0 ? bytes : "something else") == bytes);
+  }
+}
+
+TEST_CASE("What rank 0 computes, all ranks have") {
+  int runs = 0;
+  CHECK(on_root_then_all(world(), [&] {
+          ++runs;
+          return std::string("text\0with a zero", 16);
+        }) == std::string("text\0with a zero", 16));
+  CHECK(on_root_then_all(world(), [&] { return 0.1; }) == 0.1);
+  on_root_then_all(world(), [&] { ++runs; });
+  CHECK(runs == (world().rank() == 0 ? 2 : 0));
+}
+
+TEST_CASE("What rank 0 throws, all ranks throw") {
+  using mpm::core::Diagnostic;
+  using mpm::core::InputErrors;
+  const std::vector<Diagnostic> diagnostics{{"case.xmp", 12, "Body", "dp", "0", "a length above 0"},
+                                            {"", 0, "", "", "", "\nsomething\0else"}};
+  try {
+    on_root_then_all(world(), [&]() -> int { throw InputErrors(diagnostics); });
+    CHECK(false);
+  } catch (const InputErrors& e) {
+    CHECK(e.what() == std::string(InputErrors(diagnostics).what()));
+    REQUIRE(e.diagnostics().size() == 2);
+    CHECK(e.diagnostics()[0].line == 12);
+    CHECK(e.diagnostics()[0].attribute == "dp");
+    CHECK(e.diagnostics()[1].message == diagnostics[1].message);
+  }
+
+  struct DiskFull : std::runtime_error {
+    using std::runtime_error::runtime_error;
+  };
+  const auto fails = [] { throw DiskFull("no space left"); };
+  CHECK_THROWS_AS((on_root_then_all<std::logic_error, DiskFull>(world(), fails)), DiskFull);
+  CHECK_THROWS_WITH((on_root_then_all<DiskFull>(world(), fails)), "no space left");
+  CHECK_THROWS_WITH(on_root_then_all(world(), fails), "no space left");
+  CHECK_THROWS_AS(on_root_then_all(world(), fails), std::runtime_error);
+}
+
+TEST_CASE("The lowest rank's complaint is everybody's") {
+  CHECK(first_complaint(world(), "").empty());
+  for (int r = 0; r < world().size(); ++r) {
+    const bool complains = world().rank() >= r;
+    CHECK(first_complaint(world(), complains ? "rank " + std::to_string(world().rank()) : "") ==
+          "rank " + std::to_string(r));
+  }
+}
+
+TEST_CASE("Stretches reach their ranks whole, however the messages are cut") {
+  const auto ranks = static_cast<std::size_t>(world().size());
+  const auto length = [](std::size_t from, std::size_t to) { return (from + 2 * to) % 5 == 0 ? 0 : 1000 * from + 77 * to + 3; };
+  const auto value = [](std::size_t from, std::size_t to, std::size_t i) { return mix(mix(from, to), i); };
+  const auto me = static_cast<std::size_t>(world().rank());
+  std::vector<std::uint64_t> send, expected;
+  std::vector<std::size_t> begin{0};
+  for (std::size_t r = 0; r < ranks; ++r) {
+    for (std::size_t i = 0; i < length(me, r); ++i) send.push_back(value(me, r, i));
+    for (std::size_t i = 0; i < length(r, me); ++i) expected.push_back(value(r, me, i));
+    begin.push_back(send.size());
+  }
+  for (const std::size_t longest : {std::size_t{100}, std::size_t{4096}, std::size_t{1} << 30}) {
+    CHECK(world().all_to_all(std::span<const std::uint64_t>(send), begin, longest) == expected);
+  }
+}
+
+TEST_CASE("A failed call names itself") {
+  int value = 0;
+  CHECK_THROWS_WITH(check(MPI_Bcast(&value, 1, MPI_INT, world().size(), world().handle()), "MPI_Bcast"),
+                    Catch::StartsWith("MPI_Bcast: ") && Catch::Contains("root"));
+  CHECK_THROWS_AS(count_of(std::size_t{1} << 31), std::length_error);
+}
