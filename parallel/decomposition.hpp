@@ -1,5 +1,6 @@
-// Which rank gets which brick: boxes of the grid, parts of the graph of bricks, or stretches of a curve through
-// them. No communication here, and no result depends on the outcome: only how long the ranks wait for each other.
+// Which rank gets which brick: boxes of the grid, parts of the graph of bricks, or stretches of a curve
+// through them. No communication here, and no result depends on the outcome: only how long the ranks wait for
+// each other.
 #pragma once
 
 #include <array>
@@ -32,14 +33,16 @@ class UniformBoxes {
 
 /// The whole background grid, whether there is something in it or not.
 UniformBoxes boxes_of_grid(const core::GridGeometry& geometry, std::array<int, 3> parts);
-/// The bounding box of these bricks, cut into as many boxes as there are ranks, with the smallest area between them.
+/// The bounding box of these bricks, cut into as many boxes as there are ranks, with the smallest area
+/// between them.
 UniformBoxes boxes_of_bricks(std::span<const core::BrickCount> bricks, int ranks);
 
-/// Owner of every brick by METIS: even sums of particles, few nodes shared between ranks. Where METIS leaves one
-/// rank with more than `tolerance` times its share and a curve does better, the curve is taken; always so where
-/// there are fewer bricks than ranks. Bricks in any order, none twice.
-std::vector<std::int32_t> split_graph(std::span<const core::BrickCount> bricks, const core::NodeBlockShape& shape,
-                                      int ranks, double tolerance);
+/// Owner of every brick: of the proposals by METIS (recursive bisection and k-way) and by a curve, the one
+/// with the fewest nodes shared between ranks among those that leave no rank with more than `tolerance` times
+/// its share of the particles; failing that, the most even one. With no more bricks than ranks, the curve's.
+/// No brick twice.
+std::vector<std::int32_t> split_graph(std::span<const core::BrickCount> bricks,
+                                      const core::NodeBlockShape& shape, int ranks, double tolerance);
 /// Owner of every brick along Morton's curve, cut into stretches with even sums of particles.
 std::vector<std::int32_t> split_curve(std::span<const core::BrickCount> bricks, int ranks);
 

@@ -1,4 +1,5 @@
-// Who owns which brick: every rank knows all bricks of the run. 16 bytes an entry, at most three quarters filled.
+// Who owns which brick: every rank knows all bricks of the run. 16 bytes an entry, at most three quarters
+// filled.
 #pragma once
 
 #include <bit>

@@ -9,6 +9,7 @@ namespace mpm::parallel {
 
 using core::BrickCoord;
 using core::BrickGrid;
+using core::NodeArray;
 using core::NodeBlockShape;
 using core::Slot;
 
@@ -63,31 +64,41 @@ std::vector<Slot> by_key(int first, int last, CoordOf coord_of) {
   return slots;
 }
 
-/// copy(message, node values) for every node of the list, Count doubles each.
-template <int Count, class Values, class Copy>
-void for_each_node(const NodeList& list, Values values, Copy copy) {
+/// copy(place in the message, record's components) for every node of the list, Count doubles each.
+template <int Count, class Records, class Copy>
+void for_each_node(const NodeList& list, Records records, int width, Copy copy) {
   std::size_t at = 0;
   for (const NodeList::Piece& piece : list.pieces) {
-    auto* base = values(piece.slot);
+    auto* base = records(piece.slot);
     for (std::uint32_t n = piece.begin; n < piece.end; ++n) {
-      copy(at, base + core::node_doubles * list.nodes[n]);
+      copy(at, base + width * list.nodes[n]);
       at += Count;
     }
   }
 }
 
 template <int Count>
-void pack(const BrickGrid& grid, const NodeList& list, int first, double* message) {
+void pack(const BrickGrid& grid, const NodeList& list, NodeArray of, int first, double* message) {
   for_each_node<Count>(
-      list, [&](Slot s) { return grid.contributions(s) + first; },
+      list, [&](Slot s) { return grid.contributions(of, s) + first; }, core::record_doubles(of),
       [&](std::size_t at, const double* node) { std::copy_n(node, Count, message + at); });
 }
 
 template <int Count>
-void unpack(BrickGrid& grid, const NodeList& list, int first, const double* message) {
+void unpack(BrickGrid& grid, const NodeList& list, NodeArray of, int first, const double* message) {
   for_each_node<Count>(
-      list, [&](Slot s) { return grid.contributions(s) + first; },
+      list, [&](Slot s) { return grid.contributions(of, s) + first; }, core::record_doubles(of),
       [&](std::size_t at, double* node) { std::copy_n(message + at, Count, node); });
+}
+
+/// What no neighbour sends is zero.
+void clear_ghosts(BrickGrid& grid) {
+  for (const NodeArray of : {NodeArray::first, NodeArray::second}) {
+    for (int g = 0; g < grid.ghosts(); ++g) {
+      std::fill_n(grid.contributions(of, grid.owned() + g), grid.shape().nodes() * core::record_doubles(of),
+                  0.0);
+    }
+  }
 }
 
 /// f with the constant `count`: copies of a length that the compiler knows.
@@ -105,7 +116,8 @@ void with_count(int count, F f) {
 }  // namespace
 
 std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const Directory& directory) {
-  if (grid.shape().halo > max_halo) throw std::logic_error("a halo of more than one layer of nodes is not exchanged");
+  if (grid.shape().halo > max_halo)
+    throw std::logic_error("a halo of more than one layer of nodes is not exchanged");
   const auto shared = shared_sets(grid.shape());
   const auto ghost_of = [&](Slot s) { return grid.ghost(s - grid.owned()); };
   std::map<int, HaloPartner> partners;
@@ -123,7 +135,8 @@ std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const Directory& d
     for (const auto& [rank, nodes] : to_rank) append(partners[rank].send, s, nodes);
   }
   for (const Slot s : by_key(grid.owned(), grid.owned() + grid.ghosts(), ghost_of)) {
-    append(partners[directory.owner(ghost_of(s))].receive, s, from_ghost[static_cast<std::size_t>(s - grid.owned())]);
+    append(partners[directory.owner(ghost_of(s))].receive, s,
+           from_ghost[static_cast<std::size_t>(s - grid.owned())]);
   }
 
   std::vector<HaloPartner> list;
@@ -158,27 +171,25 @@ void Halo::set_up_requests(int count) {
   for (std::size_t p = 0; p < partners_.size(); ++p) {
     const HaloPartner& partner = partners_[p];
     sends(count).add_send(comm_, outgoing_[p].data(), doubles * partner.send.size(), partner.rank, tag_halo);
-    receives(count).add_receive(comm_, incoming_[p].data(), doubles * partner.receive.size(), partner.rank, tag_halo);
+    receives(count).add_receive(comm_, incoming_[p].data(), doubles * partner.receive.size(), partner.rank,
+                                tag_halo);
   }
 }
 
-void Halo::begin(BrickGrid& grid, int first, int count) {
+void Halo::begin(BrickGrid& grid, NodeArray of, int first, int count) {
   if (under_way_) throw std::logic_error("a halo exchange was begun before the last one ended");
-  if (first < 0 || count < 1 || first + count > core::node_doubles) {
+  if (first < 0 || count < 1 || first + count > core::record_doubles(of)) {
     throw std::logic_error("a halo exchange of components that a node does not have");
   }
   update(grid);
-  if (!ghosts_are_clear_) {
-    const std::size_t doubles = static_cast<std::size_t>(grid.shape().nodes()) * core::node_doubles;
-    for (int g = 0; g < grid.ghosts(); ++g) std::fill_n(grid.contributions(grid.owned() + g), doubles, 0.0);
-    ghosts_are_clear_ = true;
-  }
+  if (!ghosts_are_clear_) clear_ghosts(grid);
+  ghosts_are_clear_ = true;
   set_up_requests(count);
-  under_way_ = {first, count};
+  under_way_ = {of, first, count};
   receives(count).start_all();
   with_count(count, [&](auto constant) {
     for (std::size_t p = 0; p < partners_.size(); ++p) {
-      pack<constant>(grid, partners_[p].send, first, outgoing_[p].data());
+      pack<constant>(grid, partners_[p].send, of, first, outgoing_[p].data());
       sends(count).start(p);
     }
   });
@@ -186,14 +197,14 @@ void Halo::begin(BrickGrid& grid, int first, int count) {
 
 void Halo::end(BrickGrid& grid) {
   if (!under_way_) throw std::logic_error("a halo exchange was ended that had not begun");
-  const auto [first, count] = *under_way_;
-  with_count(count, [&, first = first](auto constant) {
+  const Part part = *under_way_;
+  with_count(part.count, [&](auto constant) {
     for (int p = receives(constant).wait_any(); p >= 0; p = receives(constant).wait_any()) {
       const auto i = static_cast<std::size_t>(p);
-      unpack<constant>(grid, partners_[i].receive, first, incoming_[i].data());
+      unpack<constant>(grid, partners_[i].receive, part.of, part.first, incoming_[i].data());
     }
   });
-  sends(count).wait_all();
+  sends(part.count).wait_all();
   under_way_.reset();
 }
 

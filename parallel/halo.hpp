@@ -1,8 +1,8 @@
-// The exchange of contributions at the nodes that bricks of several ranks share: one message to each neighbouring
-// rank, its place and length settled when the set of bricks changes.
+// The exchange of contributions at the nodes that bricks of several ranks share: one message to each
+// neighbouring rank, its place and length settled when the set of bricks changes.
 //
-// For every brick of ours and every neighbouring rank, the nodes that it shares with any brick of that rank travel;
-// the receiver derives the same list from its ghosts. Bricks go by key, the nodes of each by index.
+// For every brick of ours and every neighbouring rank, the nodes that it shares with any brick of that rank
+// travel; the receiver derives the same list from its ghosts. Bricks go by key, the nodes of each by index.
 #pragma once
 
 #include <array>
@@ -48,7 +48,7 @@ class Halo {
     return partners_;
   }
   /// As Exchange::begin_halo and end_halo. Collective.
-  void begin(core::BrickGrid& grid, int first, int count);
+  void begin(core::BrickGrid& grid, core::NodeArray of, int first, int count);
   void end(core::BrickGrid& grid);
 
  private:
@@ -65,12 +65,14 @@ class Halo {
 
   std::vector<HaloPartner> partners_;
   std::vector<std::vector<double>> outgoing_, incoming_;  ///< [partner][node x count]
-  std::array<PersistentRequests, core::node_doubles + 1> sends_, receives_;  ///< [count], one for each partner
+  std::array<PersistentRequests, core::node_doubles + 1> sends_,
+      receives_;  ///< [count], one for each partner
 
-  struct Span {
+  struct Part {
+    core::NodeArray of = core::NodeArray::first;
     int first = 0, count = 0;
   };
-  std::optional<Span> under_way_;
+  std::optional<Part> under_way_;
 };
 
 }  // namespace mpm::parallel

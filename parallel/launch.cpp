@@ -44,7 +44,8 @@ std::string take(const std::string& bytes, std::size_t& at) {
 std::string to_bytes(const core::InputErrors& errors) {
   std::string bytes;
   for (const core::Diagnostic& d : errors.diagnostics()) {
-    for (const std::string* text : {&d.file, &d.element, &d.attribute, &d.value, &d.message}) put(bytes, *text);
+    for (const std::string* text : {&d.file, &d.element, &d.attribute, &d.value, &d.message})
+      put(bytes, *text);
     put(bytes, bytes_of(d.line));
   }
   return bytes;
@@ -54,7 +55,8 @@ core::InputErrors errors_from(const std::string& bytes) {
   std::vector<core::Diagnostic> diagnostics;
   for (std::size_t at = 0; at < bytes.size();) {
     core::Diagnostic d;
-    for (std::string* text : {&d.file, &d.element, &d.attribute, &d.value, &d.message}) *text = take(bytes, at);
+    for (std::string* text : {&d.file, &d.element, &d.attribute, &d.value, &d.message})
+      *text = take(bytes, at);
     d.line = value_from<int>(take(bytes, at));
     diagnostics.push_back(std::move(d));
   }

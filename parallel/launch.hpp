@@ -18,8 +18,8 @@ namespace mpm::parallel {
 /// Rank 0's bytes, of any length, on every rank. Collective.
 std::string broadcast(const Communicator& comm, std::string bytes);
 
-/// The text of the lowest rank whose text is not empty, or an empty one. For steps in which some ranks may fail and
-/// all must leave with one message. Collective.
+/// The text of the lowest rank whose text is not empty, or an empty one. For steps in which some ranks may
+/// fail and all must leave with one message. Collective.
 std::string first_complaint(const Communicator& comm, const std::string& mine);
 
 namespace detail {
@@ -69,9 +69,9 @@ template <class... Kept>
 
 }  // namespace detail
 
-/// Run f() on rank 0 and return its result, a std::string, plain data or nothing, on every rank. If it throws, every
-/// rank throws: InputErrors as they are; those of the types `Kept`, each made from its text; anything else as a
-/// std::runtime_error with the same text. Collective.
+/// Run f() on rank 0 and return its result, a std::string, plain data or nothing, on every rank. If it
+/// throws, every rank throws: InputErrors as they are; those of the types `Kept`, each made from its text;
+/// anything else as a std::runtime_error with the same text. Collective.
 template <class... Kept, class F>
 auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&> {
   using Result = std::invoke_result_t<F&>;
@@ -86,9 +86,7 @@ auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&>
       }
     } catch (const core::InputErrors& e) {
       message = detail::is_input_errors + detail::to_bytes(e);
-    } catch (const std::exception& e) {
-      message = detail::letter_of<Kept...>(e) + std::string(e.what());
-    }
+    } catch (const std::exception& e) { message = detail::letter_of<Kept...>(e) + std::string(e.what()); }
   }
   message = broadcast(comm, std::move(message));
   if (message[0] != detail::is_value) detail::rethrow<Kept...>(message[0], message.substr(1));

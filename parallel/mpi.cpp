@@ -121,8 +121,8 @@ void Communicator::gather_bytes(const void* mine, void* all, std::size_t item,
     sizes.push_back(count_of((begin[r + 1] - begin[r]) * item));
     places.push_back(count_of(begin[r] * item));
   }
-  check(MPI_Allgatherv(mine, sizes[static_cast<std::size_t>(rank_)], MPI_BYTE, all, sizes.data(), places.data(),
-                       MPI_BYTE, handle_),
+  check(MPI_Allgatherv(mine, sizes[static_cast<std::size_t>(rank_)], MPI_BYTE, all, sizes.data(),
+                       places.data(), MPI_BYTE, handle_),
         "MPI_Allgatherv");
 }
 
@@ -149,9 +149,8 @@ void Communicator::exchange_bytes(const void* send, std::span<const std::size_t>
   Requests requests;
   for (int i = 1; i < size_; ++i) {
     const int from = (rank_ + size_ - i) % size_;
-    parts(receive_begin, from, [&](std::size_t at, std::size_t n) {
-      requests.receive(*this, in + at, n, from, tag_all_to_all);
-    });
+    parts(receive_begin, from,
+          [&](std::size_t at, std::size_t n) { requests.receive(*this, in + at, n, from, tag_all_to_all); });
   }
   for (int i = 1; i < size_; ++i) {
     const int to = (rank_ + i) % size_;
@@ -159,7 +158,8 @@ void Communicator::exchange_bytes(const void* send, std::span<const std::size_t>
           [&](std::size_t at, std::size_t n) { requests.send(*this, out + at, n, to, tag_all_to_all); });
   }
   const auto self = static_cast<std::size_t>(rank_);
-  std::copy(out + send_begin[self] * item, out + send_begin[self + 1] * item, in + receive_begin[self] * item);
+  std::copy(out + send_begin[self] * item, out + send_begin[self + 1] * item,
+            in + receive_begin[self] * item);
   requests.wait_all();
 }
 
@@ -182,13 +182,15 @@ PersistentRequests::~PersistentRequests() {
   for (MPI_Request& r : requests_) MPI_Request_free(&r);
 }
 
-void PersistentRequests::add_send(const Communicator& comm, const double* data, std::size_t n, int rank, int tag) {
+void PersistentRequests::add_send(const Communicator& comm, const double* data, std::size_t n, int rank,
+                                  int tag) {
   requests_.push_back(MPI_REQUEST_NULL);
   check(MPI_Send_init(data, count_of(n), MPI_DOUBLE, rank, tag, comm.handle(), &requests_.back()),
         "MPI_Send_init");
 }
 
-void PersistentRequests::add_receive(const Communicator& comm, double* data, std::size_t n, int rank, int tag) {
+void PersistentRequests::add_receive(const Communicator& comm, double* data, std::size_t n, int rank,
+                                     int tag) {
   requests_.push_back(MPI_REQUEST_NULL);
   check(MPI_Recv_init(data, count_of(n), MPI_DOUBLE, rank, tag, comm.handle(), &requests_.back()),
         "MPI_Recv_init");

@@ -1,5 +1,6 @@
-// Thin owners over MPI: the library's life, a communicator, persistent messages. Every return code is checked.
-// Sizes are 64-bit on this side; where MPI counts with an int, messages are cut or the call is refused.
+// Thin owners over MPI: the library's life, a communicator, persistent messages. Every return code is
+// checked. Sizes are 64-bit on this side; where MPI counts with an int, messages are cut or the call is
+// refused.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,8 @@
 
 namespace mpm::parallel {
 
-/// A call of MPI that failed, perhaps on this rank alone: the others may be waiting, so the answer is abort().
+/// A call of MPI that failed, perhaps on this rank alone: the others may be waiting, so the answer is
+/// abort().
 class MpiError : public std::runtime_error {
  public:
   MpiError(const char* function, int code);
@@ -28,8 +30,8 @@ int count_of(std::size_t n);
 /// End every rank of the run at once. For bugs, and for errors that the ranks have not agreed on.
 [[noreturn]] void abort(int exit_code);
 
-/// MPI from start to end of main: the first thing in it and the last to go. An exception that passes it ends every
-/// rank, because the other ranks may be waiting for this one.
+/// MPI from start to end of main: the first thing in it and the last to go. An exception that passes it ends
+/// every rank, because the other ranks may be waiting for this one.
 class Environment {
  public:
   /// Starts MPI for calls from the main thread only.
@@ -39,7 +41,8 @@ class Environment {
   Environment& operator=(const Environment&) = delete;
 };
 
-/// What every rank gave, one after the other in the order of ranks; that of rank r is [begin[r], begin[r + 1]).
+/// What every rank gave, one after the other in the order of ranks; that of rank r is [begin[r], begin[r +
+/// 1]).
 template <class T>
 struct Gathered {
   std::vector<T> items;
@@ -87,8 +90,8 @@ class Communicator {
     return all;
   }
 
-  /// Stretch [begin[r], begin[r + 1]) of `send` goes to rank r; what arrives is put in the order of ranks. Messages
-  /// are cut at `longest` bytes. Collective.
+  /// Stretch [begin[r], begin[r + 1]) of `send` goes to rank r; what arrives is put in the order of ranks.
+  /// Messages are cut at `longest` bytes. Collective.
   template <class T>
   std::vector<T> all_to_all(std::span<const T> send, std::span<const std::size_t> begin,
                             std::size_t longest = std::size_t{1} << 30) const {
@@ -105,7 +108,8 @@ class Communicator {
   void gather_bytes(const void* mine, void* all, std::size_t item, std::span<const std::size_t> begin) const;
   std::vector<std::size_t> exchange_begins(std::span<const std::size_t> begin) const;
   void exchange_bytes(const void* send, std::span<const std::size_t> send_begin, void* receive,
-                      std::span<const std::size_t> receive_begin, std::size_t item, std::size_t longest) const;
+                      std::span<const std::size_t> receive_begin, std::size_t item,
+                      std::size_t longest) const;
 
   MPI_Comm handle_ = MPI_COMM_NULL;
   int rank_ = 0;

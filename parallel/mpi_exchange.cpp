@@ -84,7 +84,9 @@ void MpiExchange::sum(std::span<core::ExactSum> values) {
 std::vector<BrickCount> MpiExchange::merged(std::span<const BrickCount> counts) const {
   // Each brick's counts meet on one rank first, so that no rank holds what all ranks found in one brick.
   const auto ranks = static_cast<std::size_t>(size());
-  const auto meeting = [&](const BrickCount& c) { return (core::key_of(c.brick) * 0x9e3779b97f4a7c15u >> 32) % ranks; };
+  const auto meeting = [&](const BrickCount& c) {
+    return (core::key_of(c.brick) * 0x9e3779b97f4a7c15u >> 32) % ranks;
+  };
   std::vector<std::size_t> begin(ranks + 1);
   for (const BrickCount& c : counts) ++begin[meeting(c) + 1];
   for (std::size_t r = 0; r < ranks; ++r) begin[r + 1] += begin[r];
@@ -113,7 +115,8 @@ std::vector<std::int32_t> MpiExchange::owners(const BrickGrid& grid, std::span<c
   boxes_.reset();
   const bool automatic = how.method == core::PartitionMethod::automatic;
   if (how.method == core::PartitionMethod::uniform || (automatic && how.dimensions)) {
-    boxes_ = how.dimensions ? boxes_of_grid(grid.geometry(), *how.dimensions) : boxes_of_bricks(bricks, size());
+    boxes_ =
+        how.dimensions ? boxes_of_grid(grid.geometry(), *how.dimensions) : boxes_of_bricks(bricks, size());
   }
   std::vector<std::int32_t> owner(bricks.size());
   if (boxes_) {
@@ -188,7 +191,9 @@ std::int32_t MpiExchange::owner_of_new(const BrickGrid& grid, BrickCoord b, std:
     shared[i].second += shared_nodes(grid.shape(), n - b);
   });
   if (ranks == 0) return asker;
-  const auto less = [](auto x, auto y) { return x.second != y.second ? x.second < y.second : x.first > y.first; };
+  const auto less = [](auto x, auto y) {
+    return x.second != y.second ? x.second < y.second : x.first > y.first;
+  };
   return std::max_element(shared.begin(), shared.begin() + static_cast<std::ptrdiff_t>(ranks), less)->first;
 }
 
@@ -231,7 +236,8 @@ namespace {
 [[noreturn]] void throw_lost(const Travellers::Head& head, const std::string& why) {
   const auto [x, y, z] = head.to;
   throw std::logic_error("a particle of body " + std::to_string(head.body) + " travels to brick (" +
-                         std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(z) + "), which " + why);
+                         std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(z) +
+                         "), which " + why);
 }
 
 }  // namespace
@@ -252,8 +258,8 @@ void MpiExchange::migrate(const BrickGrid& grid, Travellers& travellers, std::sp
     const auto p = std::lower_bound(partners.begin(), partners.end(), owner,
                                     [](const HaloPartner& h, std::int32_t r) { return h.rank < r; });
     if (owner != rank() && (p == partners.end() || p->rank != owner)) {
-      throw_lost(head, "belongs to rank " + std::to_string(owner) + ", but no brick of that rank is next to one of rank " +
-                           std::to_string(rank()));
+      throw_lost(head, "belongs to rank " + std::to_string(owner) +
+                           ", but no brick of that rank is next to one of rank " + std::to_string(rank()));
     }
     destination.push_back(static_cast<std::uint32_t>(owner == rank() ? self : p - partners.begin()));
   }

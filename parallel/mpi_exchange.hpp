@@ -1,8 +1,9 @@
-// core::Exchange over MPI. Every rank knows the owner of every brick; particles and nodes go to the ranks next to
-// this one only, except in scatter(). Ranks without a brick take part like any other.
+// core::Exchange over MPI. Every rank knows the owner of every brick; particles and nodes go to the ranks
+// next to this one only, except in scatter(). Ranks without a brick take part like any other.
 //
-// A brick that a particle is the first to enter goes to the rank that shares most nodes with it (the lowest of
-// several), or, in a uniform decomposition, to the rank of its box. No result of the run depends on who owns what.
+// A brick that a particle is the first to enter goes to the rank that shares most nodes with it (the lowest
+// of several), or, in a uniform decomposition, to the rank of its box. No result of the run depends on who
+// owns what.
 #pragma once
 
 #include <optional>
@@ -29,7 +30,9 @@ class MpiExchange final : public core::Exchange {
   int size() const override { return comm_.size(); }
 
   /// Collective.
-  void begin_halo(core::BrickGrid& grid, int first, int count) override { halo_.begin(grid, first, count); }
+  void begin_halo(core::BrickGrid& grid, core::NodeArray of, int first, int count) override {
+    halo_.begin(grid, of, first, count);
+  }
   void end_halo(core::BrickGrid& grid) override { halo_.end(grid); }
 
   /// Collective.
@@ -52,8 +55,8 @@ class MpiExchange final : public core::Exchange {
   void retire(core::BrickGrid& grid, std::span<const core::BrickCoord> empty) override;
   bool exists(const core::BrickGrid&, core::BrickCoord b) const override { return directory_.contains(b); }
 
-  /// Throws std::logic_error, on this rank alone, for a traveller whose brick does not exist or is not next to
-  /// one of ours. Collective.
+  /// Throws std::logic_error, on this rank alone, for a traveller whose brick does not exist or is not next
+  /// to one of ours. Collective.
   void migrate(const core::BrickGrid& grid, core::Travellers& travellers,
                std::span<const int> columns_of) override;
 
@@ -61,6 +64,8 @@ class MpiExchange final : public core::Exchange {
   std::vector<std::string> gather(const std::string& mine) override;
   Spread spread(double mine) override;
 
+  /// For libraries that communicate by themselves; see communicator.hpp.
+  const Communicator& communicator() const { return comm_; }
   /// Who owns what; the same on every rank.
   const Directory& directory() const { return directory_; }
 

@@ -15,15 +15,16 @@ static_assert(head_doubles * sizeof(double) == sizeof(Travellers::Head));
 
 std::size_t columns(std::span<const int> columns_of, std::int32_t body) {
   if (body < 0 || static_cast<std::size_t>(body) >= columns_of.size()) {
-    throw std::logic_error("a particle travels whose body number " + std::to_string(body) + " does not exist");
+    throw std::logic_error("a particle travels whose body number " + std::to_string(body) +
+                           " does not exist");
   }
   return static_cast<std::size_t>(columns_of[static_cast<std::size_t>(body)]);
 }
 
 }  // namespace
 
-Parcels pack(const Travellers& travellers, std::span<const std::uint32_t> destination, std::size_t destinations,
-             std::span<const int> columns_of) {
+Parcels pack(const Travellers& travellers, std::span<const std::uint32_t> destination,
+             std::size_t destinations, std::span<const int> columns_of) {
   Parcels parcels;
   parcels.begin.resize(destinations + 1);
   for (std::size_t i = 0; i < travellers.size(); ++i) {

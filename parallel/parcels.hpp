@@ -1,5 +1,5 @@
-// Travellers as they cross ranks: all that go to one rank lie one after the other, each its head, in two doubles,
-// and its columns. What arrives is read in place: the message becomes the travellers' column store.
+// Travellers as they cross ranks: all that go to one rank lie one after the other, each its head, in two
+// doubles, and its columns. What arrives is read in place: the message becomes the travellers' column store.
 #pragma once
 
 #include <cstdint>

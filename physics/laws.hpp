@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 
@@ -23,12 +24,12 @@ constexpr void for_each_law(F f) {
   }(std::type_identity<List>{});
 }
 
-/// The parameters checked against each other and the derived constants filled in.
+/// The parameters checked against each other and the derived constants filled in. `element` is for messages.
 template <class Law>
-void finish(Law& law, const core::LawInput& input, double reference_density) {
+void finish(Law& law, const core::LawInput& input, std::string_view element, double reference_density) {
   if constexpr (requires { law.fault(); }) {
     if (const std::string fault = law.fault(); !fault.empty()) {
-      throw core::InputErrors(input.source, input.type, fault);
+      throw core::InputErrors(input.source, std::string(element), fault);
     }
   }
   if constexpr (requires { law.prepare(reference_density); }) {
@@ -40,18 +41,18 @@ void finish(Law& law, const core::LawInput& input, double reference_density) {
 
 /// The law of the list that the input names, ready for use.
 template <class List>
-List make_law(const core::LawInput& input, double reference_density) {
+List make_law(const core::LawInput& input, std::string_view element, double reference_density) {
   std::optional<List> made;
   for_each_law<List>([&]<class Law>(std::type_identity<Law>) {
     if constexpr (Named<Law>) {
       if (input.type != Law::name) return;
       Law law;
       read_parameters(law, input);
-      finish(law, input, reference_density);
+      finish(law, input, element, reference_density);
       made = law;
     }
   });
-  if (!made) throw core::InputErrors(input.source, input.type, "no law of this name is implemented");
+  if (!made) throw core::InputErrors(input.source, std::string(element), input.type + " is not implemented");
   return *made;
 }
 

@@ -14,7 +14,6 @@ namespace mpm::core {
 namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
-constexpr std::string_view blanks = " \t\r\f\v";
 
 ParsedLine wrong(std::string message) { return {LineKind::wrong, {}, std::move(message)}; }
 
@@ -26,10 +25,15 @@ std::string printable(std::string_view word) {
   return text;
 }
 
-/// Removes the first word of a line and returns it; empty at the end.
+bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool is_comment(char c) { return c == '#' || c == '!'; }
+
+/// Removes the first word of a line and returns it; empty at the end or before a comment.
 std::string_view take_word(std::string_view& rest) {
-  const std::size_t begin = std::min(rest.find_first_not_of(blanks), rest.size());
-  const std::size_t end = std::min(rest.find_first_of(blanks, begin), rest.size());
+  std::size_t begin = 0;
+  while (begin < rest.size() && is_blank(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !is_blank(rest[end]) && !is_comment(rest[end])) ++end;
   const std::string_view word = rest.substr(begin, end - begin);
   rest.remove_prefix(end);
   return word;
@@ -115,7 +119,6 @@ ParsedLine parse_point_line(std::string_view line) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   constexpr std::array names{"mass", "x", "y", "z"};
   if (line.starts_with(byte_order_mark)) line.remove_prefix(byte_order_mark.size());
-  line = line.substr(0, line.find_first_of("#!"));
   ParsedLine parsed;
   std::string_view rest = line;
   for (std::size_t n = 0; n < names.size(); ++n) {

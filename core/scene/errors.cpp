@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace mpm::core {
 
 namespace {
@@ -9,9 +11,11 @@ namespace {
 /// On one line and of readable length, whatever the file held.
 std::string shown(const std::string& value) {
   constexpr std::size_t longest = 120;
-  std::string text;
-  for (const char c : value.substr(0, longest)) text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  return value.size() > longest ? text + "..." : text;
+  std::size_t cut = std::min(value.size(), longest);
+  while (cut < value.size() && cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0) == 0x80) --cut;
+  std::string text = value.substr(0, cut);
+  std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return cut < value.size() ? text + "..." : text;
 }
 
 std::string join(const std::vector<Diagnostic>& diagnostics) {

@@ -19,7 +19,7 @@ namespace mpm::core {
 namespace {
 
 constexpr std::int64_t most_cells = std::int64_t{brick_cells} << 20;  // brick coordinates have 21 bits, one of them spare
-constexpr std::uint64_t units_in_run = 64;                            // of a body, that one rank makes in one go
+constexpr std::uint64_t units_in_run = 16;                            // of a body, that one rank makes in one go
 constexpr std::size_t seeds_in_piece = 1 << 16;                       // seeds that a rank makes between two sends
 constexpr double exact_integers = 9007199254740992.0;                  // identities are kept in doubles, 2^53
 

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "core/simd/denormals.hpp"
+
 namespace mpm::core {
 
 namespace {
@@ -19,6 +21,14 @@ void prefetch(const BlockPool& pool, const Cohort& cohort, std::size_t b, Column
 
 int used_lanes(const Cohort& cohort, std::size_t b) {
   return static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+}
+
+/// For outputs that show it; no law reads it back.
+void keep_sound_speed(Batch& batch) {
+  if (!batch.layout->has(Column::sound_speed)) return;
+  for (int b = 0; b < batch.blocks; ++b) {
+    std::copy_n(batch.sound_speed + block_lanes * b, block_lanes, batch.column(Column::sound_speed, b));
+  }
 }
 
 /// Share of a full cell's mass below which a node's increment is scaled down in USL's strain rate. The nodal
@@ -41,6 +51,8 @@ Passes::Passes(Model& model, Exchange& exchange)
   }
   velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
   erosion_volume_ = solution.volume.erode.value_or(0);
+#pragma omp parallel
+  flush_denormals_to_zero();
   workplaces_.resize(static_cast<std::size_t>(omp_get_max_threads()));
   for (Workplace& w : workplaces_) {
     w.nodes.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
@@ -216,6 +228,7 @@ void Passes::stress_of_brick(Slot s, StrainVelocity which, Workplace& at) {
       batch.events = {};
       body.model->update(batch, model_.options);
       at.found.events += batch.events;
+      keep_sound_speed(batch);
       note_speeds(batch, at.found);
     }
   }

@@ -86,15 +86,16 @@ void Stepper::agree() {
   books.failed += found.events.failed;
   incidents_ = {found.events, migration_.left_now(), migration_.first_left()};
 
-  // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble.
+  // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to stop.
   const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty() || std::isnan(found.fastest);
-  double news[3] = {critical_step(*model_.grid, found.fastest), migration_.wants_new_bricks() ? -1.0 : 0.0,
-                    trouble ? -1.0 : 0.0};
+  double news[4] = {critical_step(*model_.grid, found.fastest), migration_.wants_new_bricks() ? -1.0 : 0.0,
+                    trouble ? -1.0 : 0.0, stop_requested_ ? -1.0 : 0.0};
   exchange_.minimum(news);
   ++clock.step;
   clock.time += clock.dt;
   clock.critical_dt = news[0];
   claim_ = news[1] < 0;
+  stop_agreed_ = news[3] < 0;
 
   std::string what;
   if (news[2] < 0) {

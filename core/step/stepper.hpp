@@ -34,6 +34,11 @@ class Stepper {
 
   const std::vector<Phase>& phases() const { return phases_; }
 
+  /// Ask for the run to stop; any rank may, at any time.
+  void request_stop() { stop_requested_ = true; }
+  /// True, on all ranks after the same step, once some rank has asked.
+  bool stop_agreed() const { return stop_agreed_; }
+
   /// Of the last step, on this rank: for the scene's warnings.
   struct Incidents {
     MaterialEvents events;
@@ -57,6 +62,8 @@ class Stepper {
   std::vector<Phase> phases_;
   Incidents incidents_;
   bool claim_ = false;
+  bool stop_requested_ = false;
+  bool stop_agreed_ = false;
 };
 
 /// Largest stable step of the model's present state, without the scene's factor (thesis 2-51, 2-74): the smallest

@@ -42,7 +42,7 @@ std::string build_file(const Node& node, const BuildContext& context) {
 /// Inline children or a file: one of the two.
 void check_one_source(const Node& node, bool has_children, std::string_view children,
                       const BuildContext& context) {
-  const bool has_file = node.find("file") != nullptr;
+  const bool has_file = !node.word("file").empty();
   if (has_file && has_children)
     node.complain(context.diagnostics, "file",
                   fmt::format("{} are given in the input too; expected one of the two ways", children));

@@ -141,7 +141,7 @@ class DocumentBuilder {
     const std::string_view stray = trim(view(text, text + length));
     if (stray.empty() || open_.empty() || open_.back().has_text) return;
     open_.back().has_text = true;
-    document_.stray_texts_.push_back({open_.back().element, line(), std::string(stray.substr(0, 40))});
+    document_.stray_texts_.push_back({open_.back().element, line(), shortened(stray, 40)});
   }
 
   struct Open {
@@ -211,7 +211,6 @@ int overfull_tag(std::string_view bytes) {
 
 Document parse_document(std::string_view bytes, std::optional<XmlError>& error) {
   error.reset();
-  if (trim(bytes).empty()) error = XmlError{0, "the file is empty", {}};
   if (bytes.size() > largest_document)
     error = XmlError{
         0,
@@ -219,6 +218,8 @@ Document parse_document(std::string_view bytes, std::optional<XmlError>& error) 
                     "of their own (Geometry file=)",
                     bytes.size(), largest_document),
         {}};
+  else if (trim(bytes).empty())
+    error = XmlError{0, "the file is empty", {}};
   if (error) return {};
   if (bytes.starts_with(std::string_view("\0\0", 2)) ||
       bytes.starts_with(std::string_view("\xFF\xFE\0\0", 4)) ||
@@ -232,8 +233,10 @@ Document parse_document(std::string_view bytes, std::optional<XmlError>& error) 
                                                                           xmlFreeParserCtxt);
   if (!parser) throw std::bad_alloc();
   DocumentBuilder builder(parser.get());
-  xmlDocPtr unused = xmlCtxtReadMemory(parser.get(), bytes.data(), static_cast<int>(bytes.size()), nullptr,
-                                       override_encoding(bytes), XML_PARSE_NONET | XML_PARSE_BIG_LINES);
+  // NOENT makes &amp; and its kin plain characters; others cannot be declared without a document type.
+  xmlDocPtr unused =
+      xmlCtxtReadMemory(parser.get(), bytes.data(), static_cast<int>(bytes.size()), nullptr,
+                        override_encoding(bytes), XML_PARSE_NOENT | XML_PARSE_NONET | XML_PARSE_BIG_LINES);
   if (unused) xmlFreeDoc(unused);
   error = builder.error();
   if (!error && !parser->wellFormed) error = XmlError{0, "not well-formed XML", {}};

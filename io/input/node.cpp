@@ -15,7 +15,8 @@ bool is_word(const AttributeSpec& a, std::string_view value) {
 }
 
 std::string expected(const AttributeSpec& a, std::string_view value) {
-  const std::vector<std::string_view> words(a.range.words.begin(), a.range.words.end());
+  std::vector<std::string_view> words;
+  if (a.range.words.size() > 1) words.assign(a.range.words.begin(), a.range.words.end());
   return fmt::format("expected {}{}", expectation(a), did_you_mean(value, words));
 }
 
@@ -30,7 +31,7 @@ std::string complaint_about_one(const AttributeSpec& a, std::string_view value) 
   if (!a.word.empty() && value == a.word) return {};
   switch (a.type) {
     case ValueType::text:
-      if (a.range.words.empty() ? !value.empty() : is_word(a, value)) return {};
+      if (a.range.words.empty() ? !value.empty() || !a.required : is_word(a, value)) return {};
       return expected(a, value);
     case ValueType::boolean: return value == "0" || value == "1" ? std::string() : expected(a, value);
     case ValueType::integer: {
@@ -108,7 +109,8 @@ std::string Node::word(std::string_view attribute) const { return text(attribute
 
 std::vector<std::string> Node::words(std::string_view attribute) const {
   std::vector<std::string> result;
-  for (const std::string_view part : split(text(attribute, true).value_or(""), '|'))
+  const std::string list = word(attribute);
+  for (const std::string_view part : split(list, '|'))
     if (std::ranges::find(result, part) == result.end()) result.emplace_back(part);
   return result;
 }

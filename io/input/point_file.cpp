@@ -92,13 +92,13 @@ bool PointFile::next(core::PointMass& point) {
     for (double& value : values) {
       const std::string_view word = line.substr(0, line.find_first_of(" \t,"));
       const std::optional<double> number = parse_real(word);
-      if (!number) fail(fmt::format("expected four numbers `mass x y z`, found '{}'", word.substr(0, 40)));
+      if (!number) fail(fmt::format("expected four numbers `mass x y z`, found '{}'", shortened(word, 40)));
       value = *number;
       line.remove_prefix(word.size());
       line = line.substr(std::min(line.find_first_not_of(" \t,"), line.size()));
     }
     if (!line.empty())
-      fail(fmt::format("expected four numbers `mass x y z`, found '{}' after them", line.substr(0, 40)));
+      fail(fmt::format("expected four numbers `mass x y z`, found '{}' after them", shortened(line, 40)));
     if (!(values[0] > 0)) fail(fmt::format("the mass {} of a particle is not positive", values[0]));
     point = {values[0], {values[1], values[2], values[3]}};
     return true;

@@ -77,6 +77,12 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
+std::string shortened(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return std::string(text);
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes;
+  return std::string(text.substr(0, bytes)) + "...";
+}
+
 std::string join(const std::vector<std::string>& words, std::string_view separator) {
   return fmt::format("{}", fmt::join(words, separator));
 }
@@ -105,7 +111,7 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
     if (equal_but_for_case(word, candidate)) return candidate;
   if (word.empty() || word.size() >= longest_word) return {};
   std::string_view best;
-  std::size_t fewest = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::size_t fewest = std::max<std::size_t>(1, (word.size() + 1) / 3) + 1;
   for (const std::string_view candidate : candidates) {
     if (candidate.size() >= longest_word) continue;
     const std::size_t count = edits(word, candidate);

@@ -1,6 +1,7 @@
 // Small tools on the text of the input: numbers independent of the locale, lists, and the nearest right word.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,6 +14,9 @@ std::string_view trim(std::string_view text);
 
 /// The parts between `separator`, trimmed; an empty text has none.
 std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// At most `bytes` of a UTF-8 text, whole characters, with ... where something is left out.
+std::string shortened(std::string_view text, std::size_t bytes);
 
 std::string join(const std::vector<std::string>& words, std::string_view separator);
 

@@ -103,7 +103,7 @@ std::pair<Handle, Handle> select(hid_t dataset, std::span<const Rows> stretches)
 
 }  // namespace
 
-Handle::Handle(hid_t id, Close close, const std::string& doing) : id_(id), close_(close) {
+Handle::Handle(hid_t id, Close closer, const std::string& doing) : id_(id), close_(closer) {
   if (id < 0) fail(doing);
 }
 

@@ -24,7 +24,7 @@ class Handle {
  public:
   using Close = herr_t (*)(hid_t);
   /// Throws if `id` is not valid; `doing` is what was tried: "open dataset 'x'".
-  Handle(hid_t id, Close close, const std::string& doing);
+  Handle(hid_t id, Close closer, const std::string& doing);
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&& other) noexcept;
   ~Handle() { reset(); }

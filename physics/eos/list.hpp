@@ -5,10 +5,11 @@
 
 #include "physics/eos/elastic_bulk.hpp"
 #include "physics/eos/gruneisen.hpp"
+#include "physics/eos/polynomial.hpp"
 
 namespace mpm::physics {
 
 /// The first is what a material without EquationOfState has.
-using EquationOfState = std::variant<ElasticBulk, Gruneisen>;
+using EquationOfState = std::variant<ElasticBulk, Gruneisen, Polynomial>;
 
 }  // namespace mpm::physics

@@ -33,7 +33,7 @@ EquationOfState make_eos(const core::MaterialInput& input, const StrengthModel& 
     throw core::InputErrors(input.eos->source, "EquationOfState",
                             input.strength.type + " computes its pressure itself: remove the EquationOfState");
   }
-  return make_law<EquationOfState>(*input.eos, input.reference_density);
+  return make_law<EquationOfState>(*input.eos, "EquationOfState", input.reference_density);
 }
 
 void refuse_what_is_missing(const core::MaterialInput& input, const CommonParameters& common) {
@@ -53,11 +53,12 @@ std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput
   laws.reference_density = input.reference_density;
   read_parameters(laws.common, input.strength);
   refuse_what_is_missing(input, laws.common);
-  laws.strength = make_law<StrengthModel>(input.strength, input.reference_density);
+  laws.strength = make_law<StrengthModel>(input.strength, "StrengthModel", input.reference_density);
   laws.eos = make_eos(input, laws.strength, laws.common);
   if (input.eos) read_parameters(laws.common_eos, *input.eos);
   for (const core::FailureInput& failure : input.failures) {
-    laws.failures.push_back({make_law<FailureModel>(failure, input.reference_density), failure.erosion});
+    laws.failures.push_back(
+        {make_law<FailureModel>(failure, "FailureModel", input.reference_density), failure.erosion});
   }
   return std::make_unique<Material>(std::move(laws));
 }

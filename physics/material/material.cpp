@@ -58,7 +58,7 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
           if (law.fails_by_damage()) laws_.failures.push_back({FullDamage{}, false});
         }
         if constexpr (requires { law.plastic_work_coefficient; }) heats_ = laws_.common.specific_heat > 0;
-        viscous_ = requires { law.viscosity(); };
+        if constexpr (requires { law.is_viscous(); }) viscous_ = law.is_viscous();
       },
       laws_.strength);
   fails_ = !laws_.failures.empty();
@@ -80,7 +80,9 @@ core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
 }
 
 StrengthRules Material::strength_rules() const {
-  return {.fail_viscosity = laws_.common.fail_viscosity, .specific_heat = laws_.common.specific_heat};
+  return {.fail_viscosity = laws_.common.fail_viscosity,
+          .specific_heat = laws_.common.specific_heat,
+          .viscous = viscous_};
 }
 
 PressureRules Material::pressure_rules(const core::UpdateOptions& options) const {

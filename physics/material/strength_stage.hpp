@@ -14,6 +14,7 @@ namespace mpm::physics {
 struct StrengthRules {
   double fail_viscosity = 0;
   double specific_heat = 0;  ///< 0: nothing heats
+  bool viscous = false;      ///< the law or what has failed has shear viscosity
 };
 
 /// Axial vector of the spin increment.
@@ -112,11 +113,7 @@ template <class T, class Law>
     store_deviator(block, layout, point.s);
     core::store(batch.deviatoric_work + row, T(0.5) * contract(before + point.s, point.strain));
     core::store(batch.shear_modulus + row, point.shear_modulus);
-    if constexpr (requires { law.viscosity(); }) {
-      core::store(batch.shear_viscosity + row, point.viscosity);
-    } else if (rules.fail_viscosity > 0) {
-      core::store(batch.shear_viscosity + row, point.viscosity);
-    }
+    if (rules.viscous) core::store(batch.shear_viscosity + row, point.viscosity);
   });
 }
 

@@ -1,7 +1,7 @@
 // The plastic strain increment of a law whose yield stress depends on it through rate, heat or a curved hardening:
 //   f(x) = trial - 3 G x - sigma_y(x) = 0,   0 <= x <= trial/(3 G)
 // Newton's method held in a shrinking bracket, all lanes at once; a lane that has converged is left alone, so its
-// result does not depend on its neighbours. Converged means |f| below 1e-10 of the yield stress.
+// result does not depend on its neighbours. Converged means |f| below 1e-12 of the yield stress.
 #pragma once
 
 #include "core/tensor/tensor.hpp"
@@ -26,7 +26,7 @@ T plastic_increment(const T& trial, const T& threshold, double shear, const Flow
   for (int iteration = 0; iteration < 100; ++iteration) {
     const FlowStress<T> yield = flow(x);
     const T f = trial - stiffness * x - yield.value;
-    const core::MaskOf<T> open = plastic & (abs(f) > 1e-10 * yield.value + 1e-15 * trial);
+    const core::MaskOf<T> open = plastic & (abs(f) > 1e-12 * yield.value + 1e-15 * trial);
     if (!core::any(open)) break;
     low = core::select(f > 0.0, x, low);
     high = core::select(f > 0.0, high, x);

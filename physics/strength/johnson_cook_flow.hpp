@@ -5,10 +5,34 @@
 // A and, at rest, of no strength at all.
 #pragma once
 
+#include <array>
+
 #include "core/simd/math.hpp"
 #include "physics/strength/consistency.hpp"
+#include "physics/strength/plasticity.hpp"
 
 namespace mpm::physics {
+
+struct JohnsonCookPlasticity : MisesPlasticity {  // yield0 is A
+  double b = 0;     ///< stress
+  double n = 0;
+  double c = 0;
+  double epso = 0;  ///< 1/time
+};
+
+template <class Law>
+constexpr auto johnson_cook_parameters() {
+  return join(plastic_parameters<Law>(),
+              std::array<Parameter<Law>, 4>{{
+                  {&Law::b, {.name = "B", .required = true, .min = 0, .dimension = "stress",
+                             .meaning = "hardening constant"}},
+                  {&Law::n, {.name = "n", .required = true, .min = 0, .meaning = "hardening exponent"}},
+                  {&Law::c, {.name = "C", .required = true, .min = 0, .meaning = "strain-rate constant"}},
+                  {&Law::epso, {.name = "epso", .required = true, .min = 0, .min_open = true,
+                                .dimension = "1/time",
+                                .meaning = "reference strain rate: 1/s in the unit of time of the case"}},
+              }});
+}
 
 template <class T>
 FlowStress<T> power_hardening(double a, double b, double n, const T& strain) {

@@ -3,10 +3,17 @@
 
 #include <variant>
 
+#include "physics/strength/cauchy_elastic.hpp"
+#include "physics/strength/ela_plastic.hpp"
+#include "physics/strength/iso_elastic.hpp"
 #include "physics/strength/iso_harden.hpp"
+#include "physics/strength/johnson_cook.hpp"
+#include "physics/strength/null.hpp"
+#include "physics/strength/sim_johnson_cook.hpp"
 
 namespace mpm::physics {
 
-using StrengthModel = std::variant<IsoHarden>;
+using StrengthModel =
+    std::variant<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook, JohnsonCook, Null>;
 
 }  // namespace mpm::physics

@@ -24,6 +24,16 @@ struct MisesPlasticity : IsotropicElasticity {
     point.yield_stress = after;
     point.plastic_work = 0.5 * (before + after) * increment;
   }
+
+  /// The same for an increment found by iteration: `old_stress` is the von Mises stress before the step and
+  /// `threshold` the yield stress for a vanishing increment. Flow starts at the greater of the two: a material
+  /// that flows fast is above its static yield stress already.
+  template <class T>
+  void return_to(StrengthPoint<T>& point, const T& trial, const T& old_stress, const T& threshold,
+                 const T& increment) const {
+    const T after = core::select(increment > 0.0, trial - (3 * shear) * increment, threshold);
+    radial_return(point, trial, core::max(old_stress, threshold), after, increment);
+  }
 };
 
 template <class Law>

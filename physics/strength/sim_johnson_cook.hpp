@@ -6,34 +6,27 @@
 #include <string_view>
 
 #include "physics/strength/johnson_cook_flow.hpp"
-#include "physics/strength/plasticity.hpp"
 
 namespace mpm::physics {
 
-struct SimJohnsonCook : MisesPlasticity {
+struct SimJohnsonCook : JohnsonCookPlasticity {
   static constexpr std::string_view name = "SimJohnsonCook";
   static constexpr std::string_view summary = "Johnson-Cook plasticity without temperature";
   static constexpr std::array state{core::Column::effective_plastic_strain};
 
-  double b = 0, n = 0, c = 0;
-  double epso = 0;  ///< 1/time
-
-  static constexpr auto parameters() {
-    return join(plastic_parameters<SimJohnsonCook>(), johnson_cook_parameters<SimJohnsonCook>());
-  }
+  static constexpr auto parameters() { return johnson_cook_parameters<SimJohnsonCook>(); }
   void prepare() { derive_moduli(); }
 
   template <class T>
   void update(StrengthPoint<T>& point) const {
+    const T before = mises(point.s), strain = point.effective_plastic_strain;
     elastic_step(point);
-    const T trial = mises(point.s), strain = point.effective_plastic_strain;
-    const auto flow = [&](const T& x) {
+    const T trial = mises(point.s);
+    const T threshold = power_hardening(yield0, b, n, strain).value;
+    const T increment = plastic_increment(trial, threshold, shear, [&](const T& x) {
       return power_hardening(yield0, b, n, T(strain + x)) * rate_factor(c, x, epso * point.dt);
-    };
-    const T start = power_hardening(yield0, b, n, strain).value;
-    const T increment = plastic_increment(trial, start, shear, flow);
-    const T reached = core::select(increment > 0.0, trial - (3 * shear) * increment, start);
-    radial_return(point, trial, plastic_start(before, start), reached, increment);
+    });
+    return_to(point, trial, before, threshold, increment);
   }
 };
 

@@ -13,7 +13,8 @@ using namespace mpm::parallel;
 using namespace mpm::parallel::test;
 using mpm::core::BrickCoord;
 using mpm::core::BrickGrid;
-using mpm::core::node_doubles;
+using mpm::core::NodeArray;
+using mpm::core::record_doubles;
 using mpm::core::Slot;
 
 namespace {
@@ -44,11 +45,23 @@ double contribution(BrickCoord b, int node, int component, int round) {
   return std::ldexp(static_cast<double>(h >> 11) - 0x1p52, static_cast<int>(h % 40));
 }
 
+constexpr std::array both_arrays{NodeArray::first, NodeArray::second};
+
+int number_of(NodeArray of) { return of == NodeArray::first ? 0 : 1; }
+
+/// The second array's values are another round's.
+double value_in(NodeArray of, BrickCoord b, int node, int component, int round) {
+  return contribution(b, node, component, 2 * round + number_of(of));
+}
+
 void fill(BrickGrid& grid, int round) {
-  for (Slot s = 0; s < grid.owned(); ++s) {
-    double* values = grid.contributions(s);
-    for (int n = 0; n < grid.shape().nodes(); ++n) {
-      for (int c = 0; c < node_doubles; ++c) *values++ = contribution(grid.brick(s).coord, n, c, round);
+  for (const NodeArray of : both_arrays) {
+    for (Slot s = 0; s < grid.owned(); ++s) {
+      double* values = grid.contributions(of, s);
+      for (int n = 0; n < grid.shape().nodes(); ++n) {
+        for (int c = 0; c < record_doubles(of); ++c)
+          *values++ = value_in(of, grid.brick(s).coord, n, c, round);
+      }
     }
   }
 }
@@ -56,9 +69,7 @@ void fill(BrickGrid& grid, int round) {
 /// What the ghosts' arrays must hold, kept beside the grid and changed by definition only.
 class Expected {
  public:
-  explicit Expected(const BrickGrid& grid)
-      : grid_(grid), doubles_(static_cast<std::size_t>(grid.shape().nodes()) * node_doubles) {
-    for (int g = 0; g < grid.ghosts(); ++g) values_.emplace_back(doubles_, 0.0);
+  explicit Expected(const BrickGrid& grid) : grid_(grid) {
     for (int g = 0; g < grid.ghosts(); ++g) {
       std::vector<int> shared;
       for (int n = 0; n < grid.shape().nodes(); ++n) {
@@ -68,31 +79,41 @@ class Expected {
         }
       }
       shared_.push_back(std::move(shared));
+      for (const NodeArray of : both_arrays) values(of).emplace_back(doubles(of), 0.0);
     }
   }
-  void arrive(int first, int count, int round) {
-    for (std::size_t g = 0; g < values_.size(); ++g) {
+  void arrive(NodeArray of, int first, int count, int round) {
+    for (std::size_t g = 0; g < shared_.size(); ++g) {
       for (const int n : shared_[g]) {
         for (int c = first; c < first + count; ++c) {
-          values_[g][static_cast<std::size_t>(node_doubles * n + c)] =
-              contribution(grid_.ghost(static_cast<int>(g)), n, c, round);
+          values(of)[g][static_cast<std::size_t>(record_doubles(of) * n + c)] =
+              value_in(of, grid_.ghost(static_cast<int>(g)), n, c, round);
         }
       }
     }
   }
-  bool holds_for(const BrickGrid& grid) const {
-    for (int g = 0; g < grid.ghosts(); ++g) {
-      const double* is = grid.contributions(grid.owned() + g);
-      if (!std::equal(is, is + doubles_, values_[static_cast<std::size_t>(g)].begin())) return false;
+  bool is_there() const {
+    for (const NodeArray of : both_arrays) {
+      for (std::size_t g = 0; g < shared_.size(); ++g) {
+        const double* is = grid_.contributions(of, grid_.owned() + static_cast<int>(g));
+        if (!std::equal(is, is + doubles(of), values_[static_cast<std::size_t>(number_of(of))][g].begin()))
+          return false;
+      }
     }
     return true;
   }
 
  private:
+  std::size_t doubles(NodeArray of) const {
+    return static_cast<std::size_t>(grid_.shape().nodes() * record_doubles(of));
+  }
+  std::vector<std::vector<double>>& values(NodeArray of) {
+    return values_[static_cast<std::size_t>(number_of(of))];
+  }
+
   const BrickGrid& grid_;
-  std::size_t doubles_;
-  std::vector<std::vector<double>> values_;
-  std::vector<std::vector<int>> shared_;
+  std::array<std::vector<std::vector<double>>, 2> values_;  ///< [array][ghost]
+  std::vector<std::vector<int>> shared_;                    ///< of each ghost, nodes
 };
 
 /// Bricks with random owners, some ranks without any.
@@ -108,9 +129,10 @@ void set_up(BrickGrid& grid, Directory& directory, const std::vector<BrickCoord>
   const auto ghosts = ghosts_of({bricks.begin(), bricks.end()}, directory, world().rank());
   grid.reset(owned, {ghosts.begin(), ghosts.end()});
   // Memory as it comes: not zero.
-  const auto doubles = static_cast<std::ptrdiff_t>(grid.shape().nodes()) * node_doubles;
-  for (Slot s = 0; s < grid.owned() + grid.ghosts(); ++s) {
-    std::fill(grid.contributions(s), grid.contributions(s) + doubles, std::nan(""));
+  for (const NodeArray of : both_arrays) {
+    for (Slot s = 0; s < grid.owned() + grid.ghosts(); ++s) {
+      std::fill_n(grid.contributions(of, s), grid.shape().nodes() * record_doubles(of), std::nan(""));
+    }
   }
 }
 
@@ -128,13 +150,15 @@ TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no o
     set_up(grid, directory, bricks, ranks, random);
     Expected expected(grid);
     int round = 0;
-    for (int first = 0; first < node_doubles; ++first) {
-      for (int count = 1; first + count <= node_doubles; ++count) {
-        fill(grid, ++round);
-        expected.arrive(first, count, round);
-        halo.begin(grid, first, count);
-        halo.end(grid);
-        REQUIRE(expected.holds_for(grid));
+    for (const NodeArray of : both_arrays) {
+      for (int first = 0; first < record_doubles(of); ++first) {
+        for (int count = 1; first + count <= record_doubles(of); ++count) {
+          fill(grid, ++round);
+          expected.arrive(of, first, count, round);
+          halo.begin(grid, of, first, count);
+          halo.end(grid);
+          REQUIRE(expected.is_there());
+        }
       }
     }
   }
@@ -150,10 +174,11 @@ TEST_CASE("A changed set of bricks is exchanged anew") {
     Expected expected(grid);
     for (int i = 0; i < 3; ++i) {
       fill(grid, 3 * round + i);
-      expected.arrive(0, 4, 3 * round + i);
-      halo.begin(grid, 0, 4);
+      const NodeArray of = both_arrays[static_cast<std::size_t>(i % 2)];
+      expected.arrive(of, 0, 4, 3 * round + i);
+      halo.begin(grid, of, 0, 4);
       halo.end(grid);
-      REQUIRE(expected.holds_for(grid));
+      REQUIRE(expected.is_there());
     }
   }
 }
@@ -167,7 +192,7 @@ TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
   const auto bricks = random_bricks(random, {4, 4, 4}, 0.7);
   set_up(grid, directory, bricks, world().size(), random);
   fill(grid, 0);
-  halo.begin(grid, 0, node_doubles);
+  halo.begin(grid, NodeArray::second, 0, 4);
   halo.end(grid);
 
   const auto sum_at = [&](BrickCoord brick, Node node, auto value_of) {
@@ -184,11 +209,12 @@ TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
   // The reference needs no communication: contributions are a known function.
   const std::set<BrickCoord> all(bricks.begin(), bricks.end());
   const auto known = [&](BrickCoord b, Node node) {
-    return all.contains(b) ? contribution(b, index_in(b, node), 3, 0) : 0.0;
+    return all.contains(b) ? value_in(NodeArray::second, b, index_in(b, node), 3, 0) : 0.0;
   };
   const auto exchanged = [&](BrickCoord b, Node node) {
     const Slot s = grid.find(b);
-    return s == mpm::core::no_slot ? 0.0 : grid.contributions(s)[node_doubles * index_in(b, node) + 3];
+    return s == mpm::core::no_slot ? 0.0
+                                   : grid.contributions(NodeArray::second, s)[4 * index_in(b, node) + 3];
   };
   struct Copy {
     Node node;
@@ -226,10 +252,10 @@ TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
   Expected expected(grid);
   for (int round = 0; round < 3; ++round) {
     fill(grid, round);
-    expected.arrive(0, node_doubles, round);
-    exchange.begin_halo(grid, 0, node_doubles);
+    expected.arrive(NodeArray::first, 0, 8, round);
+    exchange.begin_halo(grid, NodeArray::first, 0, 8);
     exchange.end_halo(grid);
-    CHECK(expected.holds_for(grid));
+    CHECK(expected.is_there());
   }
 }
 
@@ -238,10 +264,11 @@ TEST_CASE("A halo exchange out of order is refused") {
   BrickGrid grid(unit_grid(400), 0);
   Halo halo(world(), directory);
   CHECK_THROWS_AS(halo.end(grid), std::logic_error);
-  CHECK_THROWS_AS(halo.begin(grid, 5, 4), std::logic_error);
-  halo.begin(grid, 0, 1);
-  CHECK_THROWS_AS(halo.begin(grid, 0, 1), std::logic_error);
+  CHECK_THROWS_AS(halo.begin(grid, NodeArray::first, 5, 4), std::logic_error);
+  CHECK_THROWS_AS(halo.begin(grid, NodeArray::second, 1, 4), std::logic_error);
+  halo.begin(grid, NodeArray::second, 0, 1);
+  CHECK_THROWS_AS(halo.begin(grid, NodeArray::second, 0, 1), std::logic_error);
   halo.end(grid);
   BrickGrid wide(unit_grid(400), 2);
-  CHECK_THROWS_AS(halo.begin(wide, 0, 1), std::logic_error);
+  CHECK_THROWS_AS(halo.begin(wide, NodeArray::first, 0, 1), std::logic_error);
 }

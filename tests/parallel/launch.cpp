@@ -64,7 +64,9 @@ TEST_CASE("The lowest rank's complaint is everybody's") {
 
 TEST_CASE("Stretches reach their ranks whole, however the messages are cut") {
   const auto ranks = static_cast<std::size_t>(world().size());
-  const auto length = [](std::size_t from, std::size_t to) { return (from + 2 * to) % 5 == 0 ? 0 : 1000 * from + 77 * to + 3; };
+  const auto length = [](std::size_t from, std::size_t to) {
+    return (from + 2 * to) % 5 == 0 ? 0 : 1000 * from + 77 * to + 3;
+  };
   const auto value = [](std::size_t from, std::size_t to, std::size_t i) { return mix(mix(from, to), i); };
   const auto me = static_cast<std::size_t>(world().rank());
   std::vector<std::uint64_t> send, expected;

@@ -1,5 +1,5 @@
-// One test program on any number of ranks. Rank 0 reports; another rank does so only when one of its checks fails.
-// The ranks of a case wait for each other, so that a failure on one of them ends the whole run.
+// One test program on any number of ranks. Rank 0 reports; another rank does so only when one of its checks
+// fails. The ranks of a case wait for each other, so that a failure on one of them ends the whole run.
 #define CATCH_CONFIG_RUNNER
 #define CATCH_CONFIG_NOSTDOUT
 #include <chrono>
@@ -25,7 +25,8 @@ struct LeaveTogether : Catch::TestEventListenerBase {
   using TestEventListenerBase::TestEventListenerBase;
   void testCaseEnded(const Catch::TestCaseStats& stats) override {
     if (stats.totals.assertions.allOk() || all_ranks->size() == 1) return;
-    if (all_ranks->rank() != 0) std::cerr << "rank " << all_ranks->rank() << ": " << silent().str() << std::flush;
+    if (all_ranks->rank() != 0)
+      std::cerr << "rank " << all_ranks->rank() << ": " << silent().str() << std::flush;
     std::this_thread::sleep_for(std::chrono::seconds(1));  // for the others that fail here to say so
     mpm::parallel::abort(1);
   }

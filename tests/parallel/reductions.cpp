@@ -16,8 +16,8 @@ TEST_CASE("Exact sums over ranks have the bits of the serial sum") {
   std::vector<mpm::core::ExactSum> serial(3), parallel(3);
   for (int i = 0; i < 30000; ++i) {
     // Magnitudes from subnormal to 1e300, so that any rounded sum would depend on the order.
-    const double x = std::ldexp(std::uniform_real_distribution<>(-1, 1)(random),
-                                static_cast<int>(random() % 2050) - 1060);
+    const double x =
+        std::ldexp(std::uniform_real_distribution<>(-1, 1)(random), static_cast<int>(random() % 2050) - 1060);
     serial[static_cast<std::size_t>(i % 3)].add(x);
     if (static_cast<int>(random() % static_cast<unsigned>(world().size())) == world().rank()) {
       parallel[static_cast<std::size_t>(i % 3)].add(x);
@@ -25,7 +25,8 @@ TEST_CASE("Exact sums over ranks have the bits of the serial sum") {
   }
   exchange.sum(std::span(parallel));
   for (std::size_t i = 0; i < serial.size(); ++i) {
-    CHECK(std::bit_cast<std::uint64_t>(parallel[i].value()) == std::bit_cast<std::uint64_t>(serial[i].value()));
+    CHECK(std::bit_cast<std::uint64_t>(parallel[i].value()) ==
+          std::bit_cast<std::uint64_t>(serial[i].value()));
     serial[i].normalise();
     CHECK(std::ranges::equal(parallel[i].raw(), serial[i].raw()));
   }
@@ -82,7 +83,9 @@ TEST_CASE("Any, gather and spread") {
   CHECK_FALSE(exchange.any(false));
   for (int r = 0; r <= last; ++r) CHECK(exchange.any(r == world().rank()));
 
-  const auto line = [](int r) { return r == 1 ? std::string() : std::string(static_cast<std::size_t>(3 * r + 1), 'a'); };
+  const auto line = [](int r) {
+    return r == 1 ? std::string() : std::string(static_cast<std::size_t>(3 * r + 1), 'a');
+  };
   const std::vector<std::string> lines = exchange.gather(line(world().rank()));
   REQUIRE(lines.size() == static_cast<std::size_t>(world().size()));
   for (int r = 0; r <= last; ++r) CHECK(lines[static_cast<std::size_t>(r)] == line(r));

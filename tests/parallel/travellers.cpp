@@ -63,16 +63,19 @@ std::vector<BrickCount> all_of(const std::vector<BrickCoord>& bricks) {
 }
 
 /// `n` particles from our bricks into bricks next to them, or into the same.
-Travellers leave_home(const MpiExchange& exchange, const BrickGrid& grid, std::size_t n, std::uint64_t round) {
+Travellers leave_home(const MpiExchange& exchange, const BrickGrid& grid, std::size_t n,
+                      std::uint64_t round) {
   Travellers travellers;
   if (grid.owned() == 0) return travellers;
   std::mt19937_64 random(1000 * round + static_cast<unsigned>(world().rank()));
   while (travellers.size() < n) {
-    const auto home = grid.brick(static_cast<mpm::core::Slot>(random() % static_cast<unsigned>(grid.owned()))).coord;
+    const auto home =
+        grid.brick(static_cast<mpm::core::Slot>(random() % static_cast<unsigned>(grid.owned()))).coord;
     const BrickCoord to = home + mpm::core::neighbour_offset(static_cast<int>(random() % 27));
     if (!exchange.exists(grid, to)) continue;
     const auto body = static_cast<int>(random() % 3);
-    const std::uint64_t identity = (round << 40) + (static_cast<std::uint64_t>(world().rank()) << 24) + travellers.size();
+    const std::uint64_t identity =
+        (round << 40) + (static_cast<std::uint64_t>(world().rank()) << 24) + travellers.size();
     const std::vector<double> columns = make_columns(to, body, identity);
     travellers.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
   }
@@ -111,7 +114,8 @@ TEST_CASE("Travellers in messages of more than ten megabytes") {
       const BrickCoord to = exchange.exists(grid, up) ? up : b.coord;
       for (std::uint64_t i = 0; i < 60000; ++i) {
         const int body = static_cast<int>(i % 3);
-        const auto columns = make_columns(to, body, (round << 40) + (mpm::core::key_of(b.coord) >> 42 << 24) + i);
+        const auto columns =
+            make_columns(to, body, (round << 40) + (mpm::core::key_of(b.coord) >> 42 << 24) + i);
         travellers.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
       }
     }

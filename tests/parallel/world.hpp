@@ -1,4 +1,5 @@
-// What the parallel tests share. Every case is run by all ranks together, with the same random numbers on each.
+// What the parallel tests share. Every case is run by all ranks together, with the same random numbers on
+// each.
 #pragma once
 
 #include <algorithm>
@@ -33,8 +34,10 @@ inline std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
   return h ^ (h >> 33);
 }
 
-/// A set of bricks in which every brick of the box 0 <= component < extent is present with the probability `share`.
-inline std::vector<core::BrickCoord> random_bricks(std::mt19937_64& random, core::BrickCoord extent, double share) {
+/// A set of bricks in which every brick of the box 0 <= component < extent is present with the probability
+/// `share`.
+inline std::vector<core::BrickCoord> random_bricks(std::mt19937_64& random, core::BrickCoord extent,
+                                                   double share) {
   std::vector<core::BrickCoord> bricks;
   for (std::int32_t z = 0; z < extent.z; ++z) {
     for (std::int32_t y = 0; y < extent.y; ++y) {
@@ -51,8 +54,8 @@ inline bool adjacent(core::BrickCoord a, core::BrickCoord b) {
 }
 
 /// By definition: the bricks of others that are next to one of `rank`'s.
-inline std::set<core::BrickCoord> ghosts_of(const std::set<core::BrickCoord>& bricks, const Directory& directory,
-                                            int rank) {
+inline std::set<core::BrickCoord> ghosts_of(const std::set<core::BrickCoord>& bricks,
+                                            const Directory& directory, int rank) {
   std::set<core::BrickCoord> ghosts;
   for (const core::BrickCoord a : bricks) {
     if (directory.owner(a) != rank) continue;

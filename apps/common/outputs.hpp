@@ -1,0 +1,77 @@
+// Everything that a run writes while it goes on, each at its own interval of simulated time. What a scene does not
+// ask for is not created.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/model.hpp"
+#include "core/step/exchange.hpp"
+#include "core/step/totals.hpp"
+#include "io/output/h5part.hpp"
+#include "io/output/history_file.hpp"
+#include "io/output/log.hpp"
+#include "io/output/status_file.hpp"
+#include "io/output/vtu.hpp"
+
+namespace mpm::apps {
+
+/// Something that happens every so much simulated time, after the first step that reaches the mark.
+class Interval {
+ public:
+  Interval() = default;
+  Interval(double every, double now) : every_(every), marks_(passed(now)) {}
+  bool due(double now) const { return every_ > 0 && passed(now) > marks_; }
+  void done(double now) { marks_ = passed(now); }
+
+ private:
+  /// Marks up to `now`; a time that misses one by round-off has passed it.
+  double passed(double now) const;
+  double every_ = 0;
+  double marks_ = 0;
+};
+
+/// Where a continued run's files are to be taken up.
+struct Continuation {
+  std::vector<std::uint64_t> tracked;  ///< particles that the histories follow
+};
+
+class Outputs {
+ public:
+  Outputs(const std::string& folder, const core::Model& model, core::Exchange& exchange,
+          const std::optional<Continuation>& from, io::Log& log);
+
+  /// After a step, or before the first one: whatever is due. Collective.
+  void after_step(const core::Model& model, core::Exchange& exchange);
+  /// The state's row in .sta and on the console, and what it was made from. Collective.
+  const core::Totals& report(const core::Model& model, core::Exchange& exchange);
+  bool report_due(const core::Model& model) const { return report_.due(model.clock.time); }
+  /// At the end, the state if it is not yet in the files; everything to the disk. Collective.
+  void finish(const core::Model& model, core::Exchange& exchange);
+
+  const core::Totals& last_totals() const { return totals_; }
+  std::int64_t status_rows() const { return status_.rows_added(); }
+  std::vector<std::uint64_t> tracked() const;
+  double seconds() const { return seconds_; }
+  /// Files for the eye, to be named at the end.
+  std::vector<std::string> pictures() const;
+
+ private:
+  void write_pictures(const core::Model& model, core::Exchange& exchange);
+
+  std::string stem_;
+  io::Log& log_;
+  io::StatusFile status_;
+  std::optional<io::HistoryFile> history_;
+  std::optional<io::H5PartWriter> h5part_;
+  std::optional<io::VtuWriter> vtu_;
+  Interval report_, pictures_;
+  core::Totals totals_;
+  std::int64_t picture_step_ = -1, report_step_ = -1;
+  double seconds_ = 0;
+  double start_time_ = 0;
+  double wall_start_ = 0;
+  bool momentum_ = false;
+};
+
+}  // namespace mpm::apps

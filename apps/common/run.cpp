@@ -1,0 +1,235 @@
+#include "apps/common/run.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include "apps/common/case.hpp"
+#include "apps/common/outputs.hpp"
+#include "apps/common/stop.hpp"
+#include "apps/common/watch.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/simd/denormals.hpp"
+#include "core/step/stepper.hpp"
+#include "io/output/file_error.hpp"
+#include "io/output/memory_use.hpp"
+#include "io/output/provenance.hpp"
+#include "io/output/summary.hpp"
+#include "io/restart/restart.hpp"
+#include "parallel/mpi_exchange.hpp"
+
+namespace mpm::apps {
+
+namespace {
+
+/// Threads per rank: the scene's word, else the environment's, else one; so many ranks on few cores stay quick.
+int choose_threads(const core::Scene& scene) {
+  const bool environment = std::getenv("OMP_NUM_THREADS") != nullptr;
+  const int threads = scene.solution.threads.value_or(environment ? omp_get_max_threads() : 1);
+  omp_set_num_threads(threads);
+  return threads;
+}
+
+std::string bytes_in_words(double bytes) {
+  return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3)
+                     : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
+}
+
+/// What the scene pays for, in the words of a dry run and of the log's head.
+void describe(const core::Model& model, const core::Stepper& stepper, core::Exchange& exchange, int threads, io::Log& log) {
+  const core::GridGeometry& g = model.grid->geometry();
+  std::int64_t counts[2] = {static_cast<std::int64_t>(model.local_particles()), model.grid->owned()};
+  const auto particles = exchange.spread(static_cast<double>(counts[0]));
+  double state = 0;
+  for (const core::Body& b : model.bodies) {
+    state += static_cast<double>(b.pool->blocks_in_use()) * b.pool->layout().block_doubles() * sizeof(double);
+  }
+  const auto memory = exchange.spread(state + static_cast<double>(model.grid->node_bytes()));
+  exchange.sum(std::span<std::int64_t>(counts));
+  log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use", g.cells[0],
+          g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
+  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0], exchange.size(), threads,
+          particles.min, particles.max);
+  log.say("memory     {} for state and nodes on the fullest rank", bytes_in_words(memory.max));
+  const int common = core::ColumnSet::mechanics().size();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const core::Body& body = model.bodies[b];
+    const core::ColumnLayout& layout = body.pool->layout();
+    std::string more;
+    for (int c = common; c < core::column_count; ++c) {
+      if (layout.has(static_cast<core::Column>(c))) more += fmt::format(" {}", core::name_of(static_cast<core::Column>(c)));
+    }
+    log.say("body       \"{}\" of \"{}\": {} bytes a particle{}{}", body.name, body.model->name(), layout.bytes_per_particle(),
+            more.empty() ? "" : ", beyond the mechanics", more);
+  }
+  std::string phases;
+  for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
+  log.say("step       {}", phases);
+  log.say("time step  critical {:.6g}, to {:.6g} at the end", model.clock.critical_dt, model.scene->solution.end_time);
+}
+
+/// One run in its stages; the members are in the order in which they come to life.
+class Run {
+ public:
+  Run(const RunOptions& options, const parallel::Communicator& world) : options_(options), exchange_(world), case_(load_case(options, world)) {
+    core::flush_denormals_to_zero();
+    threads_ = choose_threads(*case_.scene);
+    prepare_folder();
+    const std::string stem = options.output_dir + "/" + case_.scene->provenance.job_name;
+    log_.emplace(stem + ".out", case_.restart.has_value() && !options.dry_run, true, exchange_);
+    for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
+    model_ = core::prepare_model(case_.scene, make_materials(*case_.scene), io::columns_for(case_.scene->output));
+    if (case_.restart) {
+      const io::RestartNews news = io::read_restart(*case_.restart, model_, exchange_);
+      continuation_ = Continuation{news.tracked};
+      log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step, model_.clock.time);
+    } else {
+      core::discretise(model_, exchange_);
+      core::start_clock(model_, exchange_);
+    }
+    stepper_.emplace(model_, exchange_);
+    describe(model_, *stepper_, exchange_, threads_, *log_);
+    setup_seconds_ = clock_.seconds();
+  }
+
+  ExitCode go() {
+    if (options_.dry_run) {
+      log_->flush(exchange_);
+      return done;
+    }
+    watch_signals();
+    outputs_.emplace(options_.output_dir, model_, exchange_, continuation_, *log_);
+    watch_.emplace(*case_.scene);
+    restart_ = Interval(case_.scene->output.restart_interval.value_or(0), model_.clock.time);
+    const double loop_start = clock_.seconds();
+    ExitCode code = done;
+    std::string status = "completed", reason;
+    try {
+      reason = loop();
+      if (!reason.empty()) {
+        status = "stopped";
+        code = status_rows_reached() ? done : stopped_early;
+      }
+    } catch (const core::NumericalFailure& failure) {
+      status = "failed";
+      reason = failure.what();
+      code = numerical_failure;
+    }
+    const double loop_seconds = clock_.seconds() - loop_start;
+    if (code == stopped_early) save();
+    conclude(status, reason, loop_seconds);
+    return code;
+  }
+
+ private:
+  void prepare_folder() {
+    io::together(exchange_, [&] {
+      if (exchange_.rank() == 0) std::filesystem::create_directories(options_.output_dir);
+    });
+  }
+
+  bool status_rows_reached() const {
+    return options_.status_rows && outputs_->status_rows() >= *options_.status_rows;
+  }
+
+  /// Runs to the end, or until something asks to stop: why, in words.
+  std::string loop() {
+    if (!continuation_) {
+      outputs_->after_step(model_, exchange_);
+      watch_->after_report(model_, outputs_->report(model_, exchange_));
+    }
+    const double end = case_.scene->solution.end_time;
+    while (model_.clock.time < end * (1 - 1e-12)) {
+      if (noted_signal() != 0 || (options_.max_wall_time && clock_.seconds() > *options_.max_wall_time)) {
+        stepper_->request_stop();
+      }
+      stepper_->step();
+      particle_steps_ += static_cast<double>(model_.local_particles());
+      watch_->after_step(model_, stepper_->incidents(), exchange_, *log_);
+      outputs_->after_step(model_, exchange_);
+      if (outputs_->report_due(model_)) watch_->after_report(model_, outputs_->report(model_, exchange_));
+      if (restart_.due(model_.clock.time)) {
+        save();
+        restart_.done(model_.clock.time);
+      }
+      if (stepper_->stop_agreed()) return noted_signal() != 0 ? fmt::format("signal {}", noted_signal()) : "asked to stop: signal or --max-wall-time";
+      if (status_rows_reached()) return fmt::format("{} rows in the .sta file", outputs_->status_rows());
+      if (watch_->near_boundary(model_, exchange_)) return "a particle is next to an open boundary of the grid";
+    }
+    return {};
+  }
+
+  void save() {
+    const std::string path = io::restart_path(options_.output_dir, *case_.scene, model_.clock.step);
+    io::write_restart(path, case_.bytes, model_, {outputs_->tracked()}, exchange_);
+    log_->say("restart    {} at step {}, time {:.6g}", path, model_.clock.step, model_.clock.time);
+    last_restart_ = path;
+  }
+
+  void conclude(const std::string& status, const std::string& reason, double loop_seconds) {
+    // The state of a failed run is worth a look, but it is not a result: files other than the books leave it out.
+    if (status != "failed") outputs_->finish(model_, exchange_);
+    io::RunReport report;
+    report.status = status;
+    report.reason = reason;
+    report.threads = threads_;
+    report.seconds_total = clock_.seconds();
+    report.seconds_setup = setup_seconds_;
+    report.seconds_loop = loop_seconds;
+    report.seconds_output = outputs_->seconds();
+    for (const core::Phase& p : stepper_->phases()) report.phases.emplace_back(p.name, exchange_.spread(p.seconds));
+    report.particle_steps = exchange_.spread(particle_steps_).mean * exchange_.size();
+    const core::Totals totals = core::compute_totals(model_, exchange_);
+    log_->say("\n{}", io::timing_table(report));
+    if (totals.left_grid > 0 || totals.eroded > 0) {
+      log_->say("{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal energy {:.6g} went with them",
+                totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic, totals.removed_internal);
+    }
+    if (case_.scene->output.summary) {
+      io::write_summary(options_.output_dir + "/" + case_.scene->provenance.job_name + ".summary.json", model_, totals, report, exchange_);
+    }
+    if (status == "failed") {
+      log_->say("FAILED     {}", reason);
+      if (!last_restart_.empty()) log_->say("           the last good state is in {}", last_restart_);
+      if (exchange_.rank() == 0) std::fprintf(stderr, "%s\n", reason.c_str());
+    } else if (status == "stopped") {
+      log_->say("stopped    {}", reason);
+    } else {
+      log_->say("completed  in {:.2f} s", report.seconds_total);
+    }
+    for (const std::string& file : outputs_->pictures()) log_->say("open       {}", file);
+    log_->flush(exchange_);
+  }
+
+  RunOptions options_;
+  WallClock clock_;
+  parallel::MpiExchange exchange_;
+  Case case_;
+  int threads_ = 1;
+  std::optional<io::Log> log_;
+  core::Model model_;
+  std::optional<Continuation> continuation_;
+  std::optional<core::Stepper> stepper_;
+  std::optional<Outputs> outputs_;
+  std::optional<Watch> watch_;
+  Interval restart_;
+  std::string last_restart_;
+  double setup_seconds_ = 0;
+  double particle_steps_ = 0;
+};
+
+}  // namespace
+
+ExitCode run(const RunOptions& options, const parallel::Communicator& world) {
+  if (options.to_h5part) return convert_restart(options, world);
+  return Run(options, world).go();
+}
+
+}  // namespace mpm::apps

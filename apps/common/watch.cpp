@@ -1,0 +1,61 @@
+#include "apps/common/watch.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mpm::apps {
+
+void Watch::after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Exchange& exchange,
+                       io::Log& log) {
+  if (!warn_.negative_internal_energy && !warn_.negative_volume && !warn_.outside_grid) return;
+  std::int64_t counts[3] = {warn_.negative_internal_energy ? mine.events.negative_energy : 0,
+                            warn_.negative_volume ? mine.events.negative_volume : 0,
+                            warn_.outside_grid ? mine.left_grid : 0};
+  exchange.sum(std::span<std::int64_t>(counts));
+  static constexpr const char* words[3] = {"with internal energy below zero", "whose volume would have vanished",
+                                           "left the grid"};
+  for (int i = 0; i < 3; ++i) {
+    if (counts[i] == 0) continue;
+    std::string text = fmt::format("step {}, time {:.6g}: {} particle(s) {}", model.clock.step, model.clock.time, counts[i], words[i]);
+    if (i == 2) {
+      for (const std::string& line : exchange.gather(mine.first_left)) {
+        if (line.empty()) continue;
+        text += "; the first: " + line;
+        break;
+      }
+    }
+    if (warn_.level == core::WarnInput::Level::stop) throw core::NumericalFailure(text);
+    if (warn_.level == core::WarnInput::Level::per_particle && warned_[i]) continue;
+    warned_[i] = true;
+    log.warn("{}", text);
+  }
+}
+
+void Watch::after_report(const core::Model& model, const core::Totals& totals) const {
+  if (!scene_.solution.energy_fraction) return;
+  const double drift = core::energy_balance(totals, model.initial_energy).relative_drift;
+  if (std::abs(drift) <= *scene_.solution.energy_fraction) return;
+  throw core::NumericalFailure(fmt::format("step {}, time {:.6g}: the total energy is off by {:.3g} of itself, more than EnergyFraction {:.3g}",
+                                           model.clock.step, model.clock.time, drift, *scene_.solution.energy_fraction));
+}
+
+bool Watch::near_boundary(const core::Model& model, core::Exchange& exchange) const {
+  if (!scene_.solution.near_boundary_stop) return false;
+  const core::GridGeometry& g = model.grid->geometry();
+  bool near = false;
+  core::for_each_block(model, [&](int, const core::ColumnLayout& layout, const double* block, int used) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double* x = block + layout.offset(core::next(core::Column::position_x, axis));
+      for (int i = 0; i < used; ++i) {
+        const std::int64_t cell = g.cell_index(x[i], axis);
+        near = near || (cell == 0 && g.boundary[2 * a] == core::Boundary::free) ||
+               (cell == g.cells[a] - 1 && g.boundary[2 * a + 1] == core::Boundary::free);
+      }
+    }
+  });
+  return exchange.any(near);
+}
+
+}  // namespace mpm::apps

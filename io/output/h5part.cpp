@@ -1,0 +1,219 @@
+#include "io/output/h5part.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "io/output/file.hpp"
+#include "io/output/hdf5.hpp"
+#include "io/output/row_batches.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+using Field = H5PartWriter::Field;
+using Kind = Field::Kind;
+
+constexpr std::size_t particles_at_once = std::size_t{1} << 19;
+/// Generous: what a group, an attribute and a dataset add to the file beside their values.
+constexpr std::uint64_t bytes_per_group = 16384;
+constexpr std::uint64_t bytes_per_field = 2048;
+
+std::vector<Field> fields_for(const std::vector<Variable>& variables) {
+  std::vector<Field> fields{{"x", Kind::real, Variable::posx},
+                            {"y", Kind::real, Variable::posy},
+                            {"z", Kind::real, Variable::posz},
+                            {"velocity_0", Kind::real, Variable::velocity_0},
+                            {"velocity_1", Kind::real, Variable::velocity_1},
+                            {"velocity_2", Kind::real, Variable::velocity_2},
+                            {"id", Kind::identity, Variable::count},
+                            {"body", Kind::integer, Variable::body}};
+  for (const Variable v : variables) {
+    const VariableInfo& info = info_of(v);
+    const auto same = [&](const Field& f) { return f.name == info.name; };
+    if (std::any_of(fields.begin(), fields.end(), same)) continue;
+    fields.push_back({std::string(info.name), info.integer ? Kind::integer : Kind::real, v});
+  }
+  return fields;
+}
+
+struct Types {
+  hid_t file, memory;
+  std::size_t bytes;
+};
+
+Types types_of(Kind kind, bool double_precision) {
+  switch (kind) {
+    case Kind::identity: return {H5T_STD_I64LE, H5T_NATIVE_INT64, 8};
+    case Kind::integer: return {H5T_STD_I32LE, H5T_NATIVE_INT32, 4};
+    case Kind::real: break;
+  }
+  if (double_precision) return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 8};
+  return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, 4};
+}
+
+std::string group_name(int n) { return fmt::format("Step#{}", n); }
+
+std::vector<BodyFacts> facts_of_all(const core::Model& model) {
+  std::vector<BodyFacts> facts;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) facts.push_back(facts_of(model, b));
+  return facts;
+}
+
+template <class T>
+void fill(const core::Model& model, const RowBatch& batch, const Field& field, const std::vector<BodyFacts>& facts,
+          std::vector<std::byte>& memory) {
+  T* out = reinterpret_cast<T*>(memory.data());
+  for_each_block(model, batch, [&](std::size_t body, const core::ColumnLayout& layout, const double* block, int used,
+                                   std::size_t first) {
+    const double* identity = block + layout.offset(core::Column::identity);
+    for (int i = 0; i < used; ++i) {
+      const double value =
+          field.kind == Kind::identity ? identity[i] : evaluate(field.variable, layout, block, i, facts[body]);
+      out[first + static_cast<std::size_t>(i)] = static_cast<T>(value);
+    }
+  });
+}
+
+void fill(const core::Model& model, const RowBatch& batch, const Field& field, bool double_precision,
+          const std::vector<BodyFacts>& facts, std::vector<std::byte>& memory) {
+  memory.resize(batch.particles * types_of(field.kind, double_precision).bytes);
+  switch (field.kind) {
+    case Kind::identity: fill<std::int64_t>(model, batch, field, facts, memory); break;
+    case Kind::integer: fill<std::int32_t>(model, batch, field, facts, memory); break;
+    case Kind::real:
+      if (double_precision) {
+        fill<double>(model, batch, field, facts, memory);
+      } else {
+        fill<float>(model, batch, field, facts, memory);
+      }
+  }
+}
+
+}  // namespace
+
+H5PartWriter::H5PartWriter(Settings settings, const core::Model& model, core::Exchange& exchange)
+    : settings_(std::move(settings)), fields_(fields_for(settings_.variables)) {
+  std::int64_t times = 0;
+  together(exchange, [&] {
+    if (exchange.rank() != 0) return;
+    if (settings_.continue_from && std::filesystem::exists(settings_.path)) {
+      try {
+        times = open_existing(*settings_.continue_from);
+        return;
+      } catch (const FileError& e) {
+        const std::string aside = settings_.path + ".damaged";
+        notice_ = fmt::format("{}; it is now '{}', and a new file begins", e.what(), aside);
+        rename_file(settings_.path, aside);
+      }
+    }
+    create(*model.scene);
+  });
+  exchange.sum(std::span(&times, 1));
+  times_ = static_cast<int>(times);
+}
+
+int H5PartWriter::open_existing(double last) {
+  hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
+  const auto exists = [&](int n) { return H5Lexists(file, group_name(n).c_str(), H5P_DEFAULT) > 0; };
+  int kept = 0;
+  while (exists(kept) && hdf5::read_double(hdf5::open_group(file, group_name(kept)), "TimeValue") <= last) ++kept;
+  for (int n = kept; exists(n); ++n) {
+    hdf5::check(H5Ldelete(file, group_name(n).c_str(), H5P_DEFAULT), "drop a later time of '" + settings_.path + "'");
+  }
+  file.close("write '" + settings_.path + "'");
+  return kept;
+}
+
+void H5PartWriter::create(const core::Scene& scene) {
+  const std::string part = part_name(settings_.path);
+  File(part, File::Mode::write_anew).reserve(bytes_per_group);
+  hdf5::Handle file = hdf5::open_file(part, hdf5::Access::create);
+  hdf5::write_attribute(file, provenance_of(scene));
+  file.close("write '" + part + "'");
+  rename_file(part, settings_.path);
+}
+
+void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
+  std::uint64_t need = bytes_per_group;
+  for (const Field& f : fields_) {
+    need += bytes_per_field + static_cast<std::uint64_t>(particles) * types_of(f.kind, settings_.double_precision).bytes;
+  }
+  {
+    File space(settings_.path, File::Mode::change);
+    space.reserve(space.size() + need);
+  }
+  hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
+  {
+    const hdf5::Handle group = hdf5::create_group(file, group_name(times_));
+    hdf5::write_attribute(group, "TimeValue", clock.time);
+    hdf5::write_attribute(group, "step", clock.step);
+    const auto rows = static_cast<hsize_t>(particles);
+    for (const Field& f : fields_) {
+      hdf5::create_dataset(group, f.name, types_of(f.kind, settings_.double_precision).file, std::span(&rows, 1));
+    }
+  }
+  file.close("write '" + settings_.path + "'");
+}
+
+void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchange,
+                                const std::vector<RowBatch>& batches) {
+  hdf5::Handle file = hdf5::open_file_together(settings_.path, exchange);
+  {
+    const std::vector<BodyFacts> facts = facts_of_all(model);
+    const hdf5::Handle group = hdf5::open_group(file, group_name(times_));
+    std::vector<std::byte> memory;
+    for (const Field& field : fields_) {
+      const hdf5::Handle dataset = hdf5::open_dataset(group, field.name);
+      for (const RowBatch& batch : batches) {
+        fill(model, batch, field, settings_.double_precision, facts, memory);
+        hdf5::write_rows(dataset, types_of(field.kind, settings_.double_precision).memory, batch.rows, memory.data(),
+                         exchange.size() > 1);
+      }
+    }
+  }
+  file.close("write '" + settings_.path + "'");
+}
+
+void H5PartWriter::forget_step() noexcept {
+  try {
+    hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
+    H5Ldelete(file, group_name(times_).c_str(), H5P_DEFAULT);
+    file.close("write '" + settings_.path + "'");
+  } catch (const FileError&) {
+    // The error under way says more.
+  }
+}
+
+void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
+  const ParticleOrder order = order_particles(model, exchange, false);
+  std::vector<std::int64_t> first_row(model.bodies.size(), left_out);
+  std::int64_t particles = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (model.bodies[b].no_output) continue;
+    first_row[b] = particles;
+    particles += order.particles[b];
+  }
+  const std::vector<RowBatch> batches = cut_into_batches(model, order, first_row, particles_at_once, exchange);
+
+  together(exchange, [&] {
+    if (exchange.rank() == 0) add_step(model.clock, particles);
+  });
+  std::string complaint;
+  try {
+    write_fields(model, exchange, batches);
+  } catch (const FileError& e) {
+    complaint = e.what();
+  }
+  try {
+    agree(exchange, complaint);
+  } catch (const FileError&) {
+    if (exchange.rank() == 0) forget_step();
+    throw;
+  }
+  ++times_;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,275 @@
+#include "io/output/history_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/step/totals.hpp"
+#include "io/output/provenance.hpp"
+
+namespace mpm::io {
+
+using core::Column;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int width = 24;
+
+// A target's record: found (0, or infinity on ranks that know nothing of it), the brick it is in, its variables. The
+// minimum over the ranks is what the one rank that knows has said.
+constexpr std::size_t place_entry = 1;
+constexpr std::size_t first_value = 4;
+
+/// How far from where it was last a particle is looked for.
+enum Reach { same_brick, neighbour_bricks, everywhere };
+
+core::Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+struct Lane {
+  const core::BlockPool* pool = nullptr;
+  const double* block = nullptr;
+  int lane = 0;
+  int body = 0;
+};
+
+double value_of(const Lane& at, Column c) { return at.block[at.pool->layout().offset(c) + at.lane]; }
+
+core::Vec3<double> position_of(const Lane& at) {
+  return {value_of(at, Column::position_x), value_of(at, Column::position_y), value_of(at, Column::position_z)};
+}
+
+/// f(lane) for every particle of a brick, until it returns false.
+template <class F>
+bool over_particles(const core::Model& model, const core::Brick& brick, F f) {
+  for (const core::Cohort& cohort : brick.cohorts) {
+    const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    for (std::uint32_t i = 0; i < cohort.count; ++i) {
+      const Lane lane{&pool, pool.block(cohort.blocks[i / core::block_lanes]), static_cast<int>(i % core::block_lanes),
+                      cohort.body};
+      if (!f(lane)) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<Lane> find_in(const core::Model& model, const core::Brick& brick, std::uint64_t identity) {
+  const auto wanted = static_cast<double>(identity);
+  std::optional<Lane> found;
+  over_particles(model, brick, [&](const Lane& at) {
+    if (value_of(at, Column::identity) != wanted) return true;
+    found = at;
+    return false;
+  });
+  return found;
+}
+
+/// Slots of ours where a particle last seen in brick `b` may be.
+std::vector<core::Slot> candidates(const core::BrickGrid& grid, const std::optional<core::BrickCoord>& b, int reach) {
+  std::vector<core::Slot> slots;
+  if (reach == everywhere) {
+    for (core::Slot s = 0; s < grid.owned(); ++s) slots.push_back(s);
+  } else if (b) {
+    for (int n = 0; n < core::neighbourhood; ++n) {
+      if (reach == same_brick && n != core::self_index) continue;
+      const core::Slot s = grid.find(*b + core::neighbour_offset(n));
+      if (s != core::no_slot && s < grid.owned()) slots.push_back(s);
+    }
+  }
+  return slots;
+}
+
+double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b) {
+  const core::Vec3<double> d = a - b;
+  return dot(d, d);
+}
+
+}  // namespace
+
+HistoryFile::HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
+                         core::Exchange& exchange)
+    : targets_(targets_of(*model.scene)) {
+  std::size_t particles = 0;
+  for (Target& t : targets_) {
+    t.first = record_;
+    record_ += first_value + t.variables.size();
+    particles += t.particle;
+  }
+  if (continuation && continuation->tracked.size() == particles) {
+    std::size_t next = 0;
+    for (Target& t : targets_) {
+      if (t.particle) t.identity = continuation->tracked[next++];
+    }
+  } else {
+    choose_particles(model, exchange);
+  }
+  bool append = false;
+  together(exchange, [&] {
+    if (exchange.rank() == 0 && continuation) append = cut_table(path, head(), continuation->step);
+  });
+  file_.emplace(path, append, exchange);
+  if (!append) file_->add(to_text(provenance_of(*model.scene), "# ") + legend() + head() + '\n');
+  file_->flush(exchange);
+}
+
+std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scene) {
+  std::vector<Target> targets;
+  for (const core::TimeHistoryInput& history : scene.output.histories) {
+    const std::vector<Variable> variables = variables_of(history.variables);
+    for (const auto& p : history.particles) targets.push_back({to_vec(p), true, variables, 0, no_identity, {}});
+    for (const auto& p : history.points) targets.push_back({to_vec(p), false, variables, 0, no_identity, {}});
+  }
+  return targets;
+}
+
+void HistoryFile::choose_particles(const core::Model& model, core::Exchange& exchange) {
+  std::vector<double> nearest(targets_.size(), infinity), identity(targets_.size(), infinity);
+  for (const core::Brick& brick : model.grid->bricks()) {
+    over_particles(model, brick, [&](const Lane& at) {
+      for (std::size_t i = 0; i < targets_.size(); ++i) {
+        const double d = squared_distance(position_of(at), targets_[i].point);
+        if (d > nearest[i]) continue;
+        const double id = value_of(at, Column::identity);
+        identity[i] = d < nearest[i] ? id : std::fmin(id, identity[i]);
+        nearest[i] = d;
+      }
+      return true;
+    });
+  }
+  const std::vector<double> mine = nearest;
+  exchange.minimum(nearest);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (mine[i] != nearest[i]) identity[i] = infinity;
+  }
+  exchange.minimum(identity);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (targets_[i].particle && identity[i] < infinity) targets_[i].identity = static_cast<std::uint64_t>(identity[i]);
+  }
+}
+
+std::string HistoryFile::head() const {
+  std::string head = fmt::format("#{:>{}}", "step", width - 1);
+  const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
+  for (const char* name : {"time", "kinetic", "internal"}) add(name);
+  int particles = 0, points = 0;
+  for (const Target& t : targets_) {
+    const int n = t.particle ? ++particles : ++points;
+    for (const Variable v : t.variables) {
+      add(fmt::format("{}[{}{}]", info_of(v).name, t.particle ? "particle" : "point", n));
+    }
+  }
+  return head;
+}
+
+std::string HistoryFile::legend() const {
+  std::string text;
+  int particles = 0, points = 0;
+  for (const Target& t : targets_) {
+    const std::string where = fmt::format("({:.9g}, {:.9g}, {:.9g})", t.point.x, t.point.y, t.point.z);
+    if (!t.particle) {
+      text += fmt::format("# point{}: the cell around {}\n", ++points, where);
+    } else if (t.identity == no_identity) {
+      text += fmt::format("# particle{}: none, for {}\n", ++particles, where);
+    } else {
+      text += fmt::format("# particle{}: identity {}, nearest to {}\n", ++particles, t.identity, where);
+    }
+  }
+  return text;
+}
+
+void HistoryFile::look_up(const core::Model& model, int reach, std::vector<double>& values) const {
+  for (const Target& t : targets_) {
+    double* record = &values[t.first];
+    if (!t.particle || t.identity == no_identity || *record == 0) continue;
+    for (const core::Slot s : candidates(*model.grid, t.last, reach)) {
+      const auto found = find_in(model, model.grid->brick(s), t.identity);
+      if (!found) continue;
+      const core::BrickCoord b = model.grid->brick(s).coord;
+      record[0] = 0;
+      record[place_entry] = b.x;
+      record[place_entry + 1] = b.y;
+      record[place_entry + 2] = b.z;
+      const BodyFacts facts = facts_of(model, static_cast<std::size_t>(found->body));
+      for (std::size_t v = 0; v < t.variables.size(); ++v) {
+        record[first_value + v] = evaluate(t.variables[v], found->pool->layout(), found->block, found->lane, facts);
+      }
+      break;
+    }
+  }
+}
+
+void HistoryFile::average(const core::Model& model, const Target& t, std::vector<double>& values) const {
+  const core::GridGeometry& geometry = model.grid->geometry();
+  if (!geometry.contains(t.point)) return;
+  const core::Slot s = model.grid->find(geometry.brick_at(t.point));
+  if (s == core::no_slot || s >= model.grid->owned()) return;
+  std::array<std::int64_t, 3> cell{};
+  for (int a = 0; a < 3; ++a) cell[static_cast<std::size_t>(a)] = geometry.cell_index(t.point[a], a);
+
+  double weights = 0;
+  std::vector<double> sums(t.variables.size());
+  over_particles(model, model.grid->brick(s), [&](const Lane& at) {
+    const core::Vec3<double> x = position_of(at);
+    double w = value_of(at, Column::mass);
+    for (int a = 0; a < 3; ++a) {
+      if (geometry.cell_index(x[a], a) != cell[static_cast<std::size_t>(a)]) return true;
+      w *= std::fmax(0.0, 1 - std::abs(x[a] - t.point[a]) * geometry.inverse_cell[a]);
+    }
+    weights += w;
+    const BodyFacts facts = facts_of(model, static_cast<std::size_t>(at.body));
+    for (std::size_t v = 0; v < sums.size(); ++v) {
+      sums[v] += w * evaluate(t.variables[v], at.pool->layout(), at.block, at.lane, facts);
+    }
+    return true;
+  });
+  if (!(weights > 0)) return;
+  values[t.first] = 0;
+  for (std::size_t v = 0; v < sums.size(); ++v) values[t.first + first_value + v] = sums[v] / weights;
+}
+
+void HistoryFile::add(const core::Model& model, core::Exchange& exchange) {
+  const core::Energies energies = core::compute_energies(model, exchange);
+  std::vector<double> values(record_, infinity);
+  for (const Target& t : targets_) {
+    if (!t.particle) average(model, t, values);
+  }
+  const auto missing = [&] {
+    return std::any_of(targets_.begin(), targets_.end(), [&](const Target& t) {
+      return t.particle && t.identity != no_identity && values[t.first] != 0;
+    });
+  };
+  for (int reach = same_brick; reach <= everywhere && (reach == same_brick || missing()); ++reach) {
+    look_up(model, reach, values);
+    exchange.minimum(values);
+  }
+
+  std::string row = fmt::format("{:>{}}", model.clock.step, width);
+  const auto put = [&](double value) { row += fmt::format(" {:>{}.16e}", value, width); };
+  for (const double value : {model.clock.time, energies.kinetic, energies.internal}) put(value);
+  for (Target& t : targets_) {
+    const double* record = &values[t.first];
+    const bool found = record[0] == 0;
+    const double otherwise = t.particle ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+    for (std::size_t v = 0; v < t.variables.size(); ++v) put(found ? record[first_value + v] : otherwise);
+    if (!t.particle) continue;
+    if (!found) {
+      t.identity = no_identity;  // eroded, or left the grid
+      continue;
+    }
+    const double* b = record + place_entry;
+    t.last = {static_cast<std::int32_t>(b[0]), static_cast<std::int32_t>(b[1]), static_cast<std::int32_t>(b[2])};
+  }
+  file_->add(row + '\n');
+}
+
+std::vector<std::uint64_t> HistoryFile::tracked() const {
+  std::vector<std::uint64_t> identities;
+  for (const Target& t : targets_) {
+    if (t.particle) identities.push_back(t.identity);
+  }
+  return identities;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,64 @@
+// Job_curv.dat: one row per step with the total energies and the histories that the scene asks for.
+//
+// A `Particle` history follows the particle that is nearest to its point when the history starts (of several, the
+// one with the lowest identity) wherever it goes; not-a-number once it is gone. A `Point` history is the average
+// over the particles in the cell around the point, weighted by mass and by the cell's trilinear function of their
+// distance from the point; 0 while the cell is empty. The same bits on any ranks. Shown by
+// tests/io/output/history_file_test.cpp.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model.hpp"
+#include "core/step/exchange.hpp"
+#include "io/output/text_file.hpp"
+#include "io/output/variables.hpp"
+
+namespace mpm::io {
+
+/// What identities no particle has.
+inline constexpr std::uint64_t no_identity = ~std::uint64_t{0};
+
+class HistoryFile {
+ public:
+  struct Continuation {
+    std::int64_t step = 0;               ///< rows up to this one are kept
+    std::vector<std::uint64_t> tracked;  ///< tracked() of the run that goes on
+  };
+  /// Throws FileError. Collective.
+  HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
+              core::Exchange& exchange);
+
+  /// The row of the present state; it waits in memory. Collective.
+  void add(const core::Model& model, core::Exchange& exchange);
+  /// Throws FileError. Collective.
+  void flush(core::Exchange& exchange) { file_->flush(exchange); }
+
+  /// Identities of the particles that are followed, for restart files. The same on all ranks.
+  std::vector<std::uint64_t> tracked() const;
+
+ private:
+  struct Target {
+    core::Vec3<double> point{};
+    bool particle = false;  ///< follows a particle; otherwise stays at the point
+    std::vector<Variable> variables;
+    std::size_t first = 0;  ///< of its record in the values exchanged
+    // Of a particle: who it is, and where it was last.
+    std::uint64_t identity = no_identity;
+    std::optional<core::BrickCoord> last;
+  };
+  static std::vector<Target> targets_of(const core::Scene& scene);
+  void choose_particles(const core::Model& model, core::Exchange& exchange);
+  std::string head() const;
+  std::string legend() const;
+  void look_up(const core::Model& model, int reach, std::vector<double>& values) const;
+  void average(const core::Model& model, const Target& target, std::vector<double>& values) const;
+
+  std::vector<Target> targets_;
+  std::size_t record_ = 0;  ///< doubles exchanged per row
+  std::optional<TextFile> file_;
+};
+
+}  // namespace mpm::io

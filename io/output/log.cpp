@@ -1,0 +1,18 @@
+#include "io/output/log.hpp"
+
+#include <cstdio>
+
+namespace mpm::io {
+
+Log::Log(const std::string& path, bool append, bool console, core::Exchange& exchange)
+    : file_(path, append, exchange), speaks_(exchange.rank() == 0), console_(console) {}
+
+void Log::put(const std::string& text, To to) {
+  file_.add(text + '\n');
+  file_.write_out();  // a killed run leaves what it has said
+  if (to == To::file || !console_) return;
+  fmt::print("{}\n", text);
+  std::fflush(stdout);
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,44 @@
+// Job.out: what the run says, in the file and on the console; said by rank 0 alone.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+#include "io/output/text_file.hpp"
+
+namespace mpm::io {
+
+class Log {
+ public:
+  enum class To { both, file };
+  /// Throws FileError. Collective.
+  Log(const std::string& path, bool append, bool console, core::Exchange& exchange);
+
+  /// One line, or several. Any rank may call it; only rank 0 is heard.
+  template <class... Arguments>
+  void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    if (speaks_) put(fmt::format(format, std::forward<Arguments>(arguments)...), To::both);
+  }
+  /// As say(), but not on the console.
+  template <class... Arguments>
+  void note(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    if (speaks_) put(fmt::format(format, std::forward<Arguments>(arguments)...), To::file);
+  }
+  template <class... Arguments>
+  void warn(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    if (speaks_) put("warning: " + fmt::format(format, std::forward<Arguments>(arguments)...), To::both);
+  }
+
+  /// Throws FileError if something could not be written. Collective.
+  void flush(core::Exchange& exchange) { file_.flush(exchange); }
+
+ private:
+  void put(const std::string& text, To to);
+  TextFile file_;
+  bool speaks_;
+  bool console_;
+};
+
+}  // namespace mpm::io

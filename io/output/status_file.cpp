@@ -1,0 +1,107 @@
+#include "io/output/status_file.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "io/output/memory_use.hpp"
+#include "io/output/provenance.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+constexpr int width = 24;
+
+/// The quantities that .sta lists for a body or a material.
+constexpr const char* group_columns[] = {"px", "py", "pz", "kinetic", "internal", "vx", "vy", "vz"};
+
+std::string head_of(const core::Model& model) {
+  std::string head = fmt::format("#{:>{}}", "step", width - 1);
+  const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
+  for (const char* name : {"time", "dt", "kinetic", "internal", "external_work", "total", "relative_drift", "px", "py",
+                           "pz"}) {
+    add(name);
+  }
+  const auto add_group = [&](const std::string& kind, const std::string& name) {
+    for (const char* column : group_columns) add(fmt::format("{}[{}:{}]", column, kind, safe_name(name)));
+  };
+  for (const core::Body& b : model.bodies) add_group("body", b.name);
+  for (const auto& m : model.materials) add_group("material", m->name());
+  if (model.scene->output.statistics.memory) {
+    add("memory_max");
+    add("memory_sum");
+  }
+  if (model.scene->output.statistics.cell_occupancy) add("cell_occupancy");
+  return head;
+}
+
+core::Quantities material_sum(const core::Model& model, const core::Totals& totals, std::size_t material) {
+  core::Quantities sum;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (static_cast<std::size_t>(model.bodies[b].material) != material) continue;
+    sum.mass += totals.bodies[b].mass;
+    sum.kinetic += totals.bodies[b].kinetic;
+    sum.internal += totals.bodies[b].internal;
+    sum.momentum = sum.momentum + totals.bodies[b].momentum;
+  }
+  return sum;
+}
+
+double total_cells(const core::Model& model) {
+  const auto& cells = model.grid->geometry().cells;
+  return static_cast<double>(cells[0]) * static_cast<double>(cells[1]) * static_cast<double>(cells[2]);
+}
+
+/// The file, continued if it can be.
+TextFile open_table(const std::string& path, const core::Model& model, const std::string& head,
+                    std::optional<std::int64_t> continue_from, core::Exchange& exchange) {
+  bool append = false;
+  together(exchange, [&] {
+    if (exchange.rank() == 0 && continue_from) append = cut_table(path, head, *continue_from);
+  });
+  TextFile file(path, append, exchange);
+  if (!append) file.add(to_text(provenance_of(*model.scene), "# ") + head + '\n');
+  return file;
+}
+
+}  // namespace
+
+StatusFile::StatusFile(const std::string& path, const core::Model& model, std::optional<std::int64_t> continue_from,
+                       core::Exchange& exchange)
+    : file_(open_table(path, model, head_of(model), continue_from, exchange)),
+      memory_(model.scene->output.statistics.memory),
+      occupancy_(model.scene->output.statistics.cell_occupancy) {
+  file_.flush(exchange);
+}
+
+void StatusFile::add(const core::Model& model, const core::Totals& totals, core::Exchange& exchange) {
+  const core::Clock& clock = model.clock;
+  const core::EnergyBalance balance = core::energy_balance(totals, model.initial_energy);
+  std::string row = fmt::format("{:>{}}", clock.step, width);
+  const auto add = [&](double value) { row += fmt::format(" {:>{}.16e}", value, width); };
+  const auto add_group = [&](const core::Quantities& q) {
+    for (int a = 0; a < 3; ++a) add(q.momentum[a]);
+    add(q.kinetic);
+    add(q.internal);
+    for (int a = 0; a < 3; ++a) add(q.mass > 0 ? q.momentum[a] / q.mass : 0);
+  };
+  for (const double value : {clock.time, clock.dt, totals.kinetic, totals.internal, totals.external_work, balance.total,
+                             balance.relative_drift}) {
+    add(value);
+  }
+  for (int a = 0; a < 3; ++a) add(totals.momentum[a]);
+  for (const core::BodyTotals& b : totals.bodies) add_group(b);
+  for (std::size_t m = 0; m < model.materials.size(); ++m) add_group(material_sum(model, totals, m));
+  if (memory_) {
+    const MemoryUse use = peak_memory(exchange);
+    add(static_cast<double>(use.largest));
+    add(static_cast<double>(use.sum));
+  }
+  if (occupancy_) add(static_cast<double>(core::occupied_cells(model, exchange)) / total_cells(model));
+  file_.add(row + '\n');
+  file_.flush(exchange);
+  ++rows_;
+}
+
+}  // namespace mpm::io

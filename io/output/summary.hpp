@@ -1,0 +1,43 @@
+// Job.summary.json: how the run ended and what it reached, for programs to read; and the table of where the time
+// went, for the log.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/model.hpp"
+#include "core/step/totals.hpp"
+#include "io/output/memory_use.hpp"
+
+namespace mpm::io {
+
+/// What the program knows of its own run. Seconds are of the wall clock.
+struct RunReport {
+  std::string status;  ///< "completed", "stopped" or "failed"
+  std::string reason;
+  int threads = 1;     ///< per rank
+  double seconds_total = 0;
+  double seconds_setup = 0;
+  double seconds_loop = 0;
+  double seconds_output = 0;
+  /// Per phase of the step, in its order: over the ranks.
+  std::vector<std::pair<std::string, core::Exchange::Spread>> phases;
+  /// Sum over the steps of this run of the particles in each.
+  double particle_steps = 0;
+  double dissipated_by_contact = 0;  ///< energy
+};
+
+/// The text of the file; of a phase the mean over the ranks. Numbers that do not exist are null.
+std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report, int ranks,
+                         const MemoryUse& memory);
+
+/// Writes it as a whole, or leaves what was there. Throws FileError. Collective.
+void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,
+                   const RunReport& report, core::Exchange& exchange);
+
+/// Seconds per phase over the ranks, shares of the loop and imbalance (max over mean, less one), one line each.
+std::string timing_table(const RunReport& report);
+
+}  // namespace mpm::io

@@ -1,0 +1,51 @@
+// Job_vtu/: one unstructured grid of vertices per time, in pieces, one from each rank that has particles, held
+// together by a .pvtu; or one such set per body. Job.pvd lists all times and is replaced as a whole.
+//
+// Arrays are appended raw, little-endian, 32-bit reals unless asked. Point data: velocity (vector), id, body and the
+// variables asked for; velocity_0..2 are in the vector. Shown by tests/io/output/vtu_test.cpp.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model.hpp"
+#include "core/step/exchange.hpp"
+#include "io/output/variables.hpp"
+
+namespace mpm::io {
+
+class VtuWriter {
+ public:
+  struct Settings {
+    std::string folder;  ///< where Job.pvd and the folder Job_vtu go
+    std::string job;
+    bool per_body = false;
+    std::vector<Variable> variables;
+    bool double_precision = false;
+    /// Keep what an existing Job.pvd lists up to this time; start its list anew without.
+    std::optional<double> continue_from;
+  };
+  /// Throws FileError. Collective.
+  VtuWriter(Settings settings, const core::Model& model, core::Exchange& exchange);
+
+  /// One more time. Throws FileError; what Job.pvd lists stays readable. Collective.
+  void write(const core::Model& model, core::Exchange& exchange);
+
+ private:
+  struct Entry {
+    double time = 0;
+    int part = 0;  ///< number of the body, or 0
+    std::string name;
+    std::string file;  ///< relative to the folder of Job.pvd
+  };
+  void read_collection(double last);
+  void write_collection(const core::Scene& scene) const;
+  void write_set(const std::string& stem, const std::string& name, const std::vector<std::size_t>& bodies,
+                 const core::Model& model, core::Exchange& exchange, int part);
+
+  Settings settings_;
+  std::vector<Entry> entries_;  ///< on rank 0
+};
+
+}  // namespace mpm::io

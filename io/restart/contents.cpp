@@ -1,0 +1,347 @@
+#include "io/restart/contents.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "io/output/file.hpp"
+#include "io/output/provenance.hpp"
+
+namespace mpm::io {
+
+using core::Books;
+
+namespace {
+
+struct SumName {
+  const char* name;
+  core::ExactSum Books::*sum;
+};
+constexpr SumName sum_names[] = {{"external_work", &Books::external_work},
+                                 {"removed_mass", &Books::removed_mass},
+                                 {"removed_kinetic", &Books::removed_kinetic},
+                                 {"removed_internal", &Books::removed_internal}};
+
+struct CountName {
+  const char* name;
+  std::int64_t Books::*count;
+};
+constexpr CountName count_names[] = {{"left_grid", &Books::left_grid},
+                                     {"eroded", &Books::eroded},
+                                     {"failed", &Books::failed},
+                                     {"velocity_limited", &Books::velocity_limited}};
+
+struct EventName {
+  const char* name;
+  long core::MaterialEvents::*count;
+};
+constexpr EventName event_names[] = {{"events_failed", &core::MaterialEvents::failed},
+                                     {"events_negative_energy", &core::MaterialEvents::negative_energy},
+                                     {"events_negative_volume", &core::MaterialEvents::negative_volume},
+                                     {"events_volume_limited", &core::MaterialEvents::volume_limited},
+                                     {"events_not_finite", &core::MaterialEvents::not_finite},
+                                     {"events_undefined_root", &core::MaterialEvents::undefined_root}};
+
+struct TextName {
+  const char* name;
+  std::string core::HeaderInput::*text;
+};
+constexpr TextName header_names[] = {{"name", &core::HeaderInput::name},
+                                     {"heading", &core::HeaderInput::heading},
+                                     {"description", &core::HeaderInput::description},
+                                     {"time_unit", &core::HeaderInput::time_unit},
+                                     {"length_unit", &core::HeaderInput::length_unit},
+                                     {"mass_unit", &core::HeaderInput::mass_unit}};
+
+std::vector<core::Column> columns_of(const core::ColumnSet& set) {
+  std::vector<core::Column> columns;
+  for (int c = 0; c < core::column_count; ++c) {
+    if (set.has(static_cast<core::Column>(c))) columns.push_back(static_cast<core::Column>(c));
+  }
+  return columns;
+}
+
+std::string names_of(const std::vector<core::Column>& columns) {
+  std::string text;
+  for (const core::Column c : columns) text.append(text.empty() ? "" : " ").append(core::name_of(c));
+  return text;
+}
+
+std::vector<core::Column> columns_named(const std::string& text) {
+  std::vector<core::Column> columns;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const auto found = std::find_if(core::column_table.begin(), core::column_table.end(),
+                                    [&](const core::ColumnInfo& info) { return info.name == word; });
+    if (found == core::column_table.end()) throw FileError("there is no column '" + word + "' in this program");
+    columns.push_back(static_cast<core::Column>(found - core::column_table.begin()));
+  }
+  return columns;
+}
+
+std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) { return i < values.size() ? values[i] : 0; }
+
+Books summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::Exchange& exchange) {
+  Books books = model.books;
+  std::vector<core::ExactSum> sums;
+  for (const auto& [name, sum] : sum_names) sums.push_back(books.*sum);
+  std::vector<std::int64_t> counts;
+  for (const auto& [name, count] : count_names) counts.push_back(books.*count);
+  for (const auto& [name, count] : event_names) counts.push_back(books.events.*count);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    counts.push_back(entry(books.body_eroded, b));
+    counts.push_back(entry(books.body_left, b));
+  }
+  exchange.sum(std::span(sums));
+  exchange.sum(std::span(counts));
+  std::size_t s = 0, n = 0;
+  for (const auto& [name, sum] : sum_names) {
+    sums[s].normalise();
+    books.*sum = sums[s++];
+  }
+  for (const auto& [name, count] : count_names) books.*count = counts[n++];
+  for (const auto& [name, count] : event_names) books.events.*count = static_cast<long>(counts[n++]);
+  for (BodyRecord& b : bodies) {
+    b.eroded = counts[n++];
+    b.left = counts[n++];
+  }
+  return books;
+}
+
+void write_cohorts(hid_t file, const std::vector<CohortRecord>& cohorts) {
+  const std::array<hsize_t, 2> shape{cohorts.size(), 4};
+  const hdf5::Handle table = hdf5::create_dataset(file, "cohorts", H5T_STD_U64LE, shape);
+  if (cohorts.empty()) return;
+  static_assert(sizeof(CohortRecord) == 4 * sizeof(std::uint64_t));
+  hdf5::check(H5Dwrite(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()), "write the cohorts");
+}
+
+std::vector<CohortRecord> read_cohorts(hid_t file) {
+  const hdf5::Handle table = hdf5::open_dataset(file, "cohorts");
+  const std::vector<hsize_t> shape = hdf5::shape_of(table);
+  if (shape.size() != 2 || shape[1] != 4) throw FileError("the table of cohorts has another shape");
+  std::vector<CohortRecord> cohorts(shape[0]);
+  if (cohorts.empty()) return cohorts;
+  hdf5::check(H5Dread(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()), "read the cohorts");
+  return cohorts;
+}
+
+void write_books(hid_t file, const Books& books) {
+  const hdf5::Handle group = hdf5::create_group(file, "books");
+  for (const auto& [name, sum] : sum_names) hdf5::write_all(group, name, (books.*sum).raw());
+  for (const auto& [name, count] : count_names) hdf5::write_attribute(group, name, books.*count);
+  for (const auto& [name, count] : event_names) hdf5::write_attribute(group, name, std::int64_t{books.events.*count});
+}
+
+Books read_books(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "books");
+  Books books;
+  for (const auto& [name, sum] : sum_names) {
+    const std::vector<std::int64_t> limbs = hdf5::read_all_int64(group, name);
+    const auto raw = (books.*sum).raw();
+    if (limbs.size() != raw.size()) throw FileError("an exact sum has another number of limbs");
+    std::copy(limbs.begin(), limbs.end(), raw.begin());
+  }
+  for (const auto& [name, count] : count_names) books.*count = hdf5::read_int64(group, name);
+  for (const auto& [name, count] : event_names) books.events.*count = static_cast<long>(hdf5::read_int64(group, name));
+  return books;
+}
+
+void write_body(hid_t group, const BodyRecord& b) {
+  hdf5::write_attribute(group, "name", b.name);
+  hdf5::write_attribute(group, "component", b.component);
+  hdf5::write_attribute(group, "material", b.material);
+  hdf5::write_attribute(group, "component_number", std::int64_t{b.component_number});
+  hdf5::write_attribute(group, "material_number", std::int64_t{b.material_number});
+  hdf5::write_attribute(group, "reference_density", b.reference_density);
+  hdf5::write_attribute(group, "no_output", std::int64_t{b.no_output});
+  hdf5::write_attribute(group, "columns", names_of(b.columns));
+  hdf5::write_attribute(group, "particles", b.particles);
+  hdf5::write_attribute(group, "eroded", b.eroded);
+  hdf5::write_attribute(group, "left", b.left);
+}
+
+BodyRecord read_body(hid_t group) {
+  BodyRecord b;
+  b.name = hdf5::read_string(group, "name");
+  b.component = hdf5::read_string(group, "component");
+  b.material = hdf5::read_string(group, "material");
+  b.component_number = static_cast<int>(hdf5::read_int64(group, "component_number"));
+  b.material_number = static_cast<int>(hdf5::read_int64(group, "material_number"));
+  b.reference_density = hdf5::read_double(group, "reference_density");
+  b.no_output = hdf5::read_int64(group, "no_output") != 0;
+  b.columns = columns_named(hdf5::read_string(group, "columns"));
+  b.particles = hdf5::read_int64(group, "particles");
+  b.eroded = hdf5::read_int64(group, "eroded");
+  b.left = hdf5::read_int64(group, "left");
+  return b;
+}
+
+void write_grid(hid_t file, const core::GridGeometry& grid) {
+  const hdf5::Handle group = hdf5::create_group(file, "grid");
+  hdf5::write_all(group, "origin", std::array{grid.origin.x, grid.origin.y, grid.origin.z});
+  hdf5::write_all(group, "cell", std::array{grid.cell.x, grid.cell.y, grid.cell.z});
+  hdf5::write_all(group, "cells", std::span<const std::int64_t>(grid.cells));
+}
+
+core::GridGeometry read_grid(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "grid");
+  const std::vector<double> origin = hdf5::read_all_double(group, "origin"), cell = hdf5::read_all_double(group, "cell");
+  const std::vector<std::int64_t> cells = hdf5::read_all_int64(group, "cells");
+  if (origin.size() != 3 || cell.size() != 3 || cells.size() != 3) throw FileError("the grid is not of three dimensions");
+  core::GridGeometry grid;
+  for (int a = 0; a < 3; ++a) {
+    const auto i = static_cast<std::size_t>(a);
+    grid.origin[a] = origin[i];
+    grid.cell[a] = cell[i];
+    grid.inverse_cell[a] = 1 / cell[i];
+    grid.cells[i] = cells[i];
+  }
+  return grid;
+}
+
+void write_run(hid_t file, const RestartContents& c) {
+  hdf5::write_attribute(file, "step", c.clock.step);
+  hdf5::write_attribute(file, "time", c.clock.time);
+  hdf5::write_attribute(file, "dt", c.clock.dt);
+  hdf5::write_attribute(file, "critical_dt", c.clock.critical_dt);
+  hdf5::write_attribute(file, "first_critical_dt", c.clock.first_critical_dt);
+  hdf5::write_attribute(file, "initial_energy", c.initial_energy);
+  hdf5::write_attribute(file, "next_identity", static_cast<std::int64_t>(c.next_identity));
+}
+
+void read_run(hid_t file, RestartContents& c) {
+  c.clock.step = hdf5::read_int64(file, "step");
+  c.clock.time = hdf5::read_double(file, "time");
+  c.clock.dt = hdf5::read_double(file, "dt");
+  c.clock.critical_dt = hdf5::read_double(file, "critical_dt");
+  c.clock.first_critical_dt = hdf5::read_double(file, "first_critical_dt");
+  c.initial_energy = hdf5::read_double(file, "initial_energy");
+  c.next_identity = static_cast<std::uint64_t>(hdf5::read_int64(file, "next_identity"));
+}
+
+void write_extra(hid_t file, const RestartExtra& extra) {
+  const hdf5::Handle group = hdf5::create_group(file, "extra");
+  std::string names;
+  std::vector<double> values;
+  for (const auto& [name, value] : extra.numbers) {
+    names += name + '\n';
+    values.push_back(value);
+  }
+  hdf5::write_all(group, "tracked", std::span<const std::uint64_t>(extra.tracked));
+  hdf5::write_all(group, "names", std::string_view(names));
+  hdf5::write_all(group, "values", std::span<const double>(values));
+}
+
+RestartExtra read_extra(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "extra");
+  RestartExtra extra;
+  extra.tracked = hdf5::read_all_uint64(group, "tracked");
+  const std::vector<double> values = hdf5::read_all_double(group, "values");
+  std::istringstream names(hdf5::read_all_bytes(group, "names"));
+  std::size_t i = 0;
+  for (std::string name; i < values.size() && std::getline(names, name);) extra.numbers[name] = values[i++];
+  return extra;
+}
+
+/// The rows that the cohorts promise must be those that the bodies have.
+void check_counts(const RestartContents& c) {
+  std::vector<std::int64_t> particles(c.bodies.size());
+  for (const CohortRecord& r : c.cohorts) {
+    if (r.body < 0 || static_cast<std::size_t>(r.body) >= c.bodies.size()) throw FileError("a cohort has no body");
+    particles[static_cast<std::size_t>(r.body)] += static_cast<std::int64_t>(r.particles);
+  }
+  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+    if (particles[b] != c.bodies[b].particles) throw FileError("the cohorts of body '" + c.bodies[b].name + "' do not add up");
+  }
+}
+
+}  // namespace
+
+RestartContents contents_of(const core::Model& model, const RestartExtra& extra, const ParticleOrder& order,
+                            core::Exchange& exchange) {
+  const core::Scene& scene = *model.scene;
+  RestartContents c;
+  c.provenance = scene.provenance;
+  c.header = scene.header;
+  c.grid = model.grid->geometry();
+  c.clock = model.clock;
+  c.initial_energy = model.initial_energy;
+  c.next_identity = model.next_identity;
+  c.cohorts = order.cohorts;
+  c.extra = extra;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const core::Body& b = model.bodies[i];
+    c.bodies.push_back({b.name, scene.components[static_cast<std::size_t>(b.component)].name,
+                        scene.materials[static_cast<std::size_t>(b.material)].name, b.component, b.material,
+                        b.model->reference_density(), b.no_output, columns_of(b.pool->layout().set()),
+                        order.particles[i], 0, 0});
+  }
+  c.books = summed(model, c.bodies, exchange);
+  return c;
+}
+
+std::string rows_name(std::size_t body) { return fmt::format("bodies/{}/particles", body); }
+
+std::uint64_t expected_bytes(const RestartContents& c) {
+  std::uint64_t bytes = 262144 + c.extra.scene_text.size() + sizeof(CohortRecord) * c.cohorts.size() +
+                        8 * c.extra.tracked.size() + 256 * c.extra.numbers.size();
+  for (const BodyRecord& b : c.bodies) bytes += 16384 + 8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
+  return bytes;
+}
+
+std::vector<Extent> write_contents(const std::string& path, const RestartContents& c, const core::Scene& scene) {
+  hdf5::Handle file = hdf5::open_file(path, hdf5::Access::create, guard_bytes(c.bodies.size()));
+  std::vector<Extent> rows;
+  {
+    hdf5::write_attribute(file, provenance_of(scene));
+    write_run(file, c);
+    const hdf5::Handle text = hdf5::create_group(file, "scene");
+    hdf5::write_attribute(text, "path", c.provenance.path);
+    hdf5::write_attribute(text, "job", c.provenance.job_name);
+    hdf5::write_attribute(text, "hash", c.provenance.hash);
+    for (const auto& [name, member] : header_names) hdf5::write_attribute(text, name, c.header.*member);
+    hdf5::write_all(text, "text", std::string_view(c.extra.scene_text));
+    write_grid(file, c.grid);
+    write_books(file, c.books);
+    write_cohorts(file, c.cohorts);
+    write_extra(file, c.extra);
+    const hdf5::Handle bodies = hdf5::create_group(file, "bodies");
+    hdf5::write_attribute(bodies, "bodies", static_cast<std::int64_t>(c.bodies.size()));
+    for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+      const hdf5::Handle group = hdf5::create_group(bodies, std::to_string(b));
+      write_body(group, c.bodies[b]);
+      const std::array<hsize_t, 2> shape{static_cast<hsize_t>(c.bodies[b].particles), c.bodies[b].columns.size()};
+      const hdf5::Handle data = hdf5::create_dataset(group, "particles", H5T_IEEE_F64LE, shape);
+      if (shape[0] > 0) rows.push_back({H5Dget_offset(data), 8 * shape[0] * shape[1]});
+    }
+  }
+  file.close("write '" + path + "'");
+  return rows;
+}
+
+RestartContents read_contents(const std::string& path) {
+  RestartContents c;
+  try {
+    const hdf5::Handle file = hdf5::open_file(path, hdf5::Access::read);
+    read_run(file, c);
+    const hdf5::Handle text = hdf5::open_group(file, "scene");
+    c.provenance = {hdf5::read_string(text, "path"), hdf5::read_string(text, "job"), hdf5::read_string(text, "hash")};
+    for (const auto& [name, member] : header_names) c.header.*member = hdf5::read_string(text, name);
+    c.grid = read_grid(file);
+    c.books = read_books(file);
+    c.cohorts = read_cohorts(file);
+    c.extra = read_extra(file);
+    c.extra.scene_text = hdf5::read_all_bytes(text, "text");
+    const hdf5::Handle bodies = hdf5::open_group(file, "bodies");
+    const std::int64_t n = hdf5::read_int64(bodies, "bodies");
+    for (std::int64_t b = 0; b < n; ++b) c.bodies.push_back(read_body(hdf5::open_group(bodies, std::to_string(b))));
+    check_counts(c);
+  } catch (const FileError& e) {
+    throw FileError(fmt::format("cannot read the restart file '{}': {}", path, e.what()));
+  }
+  return c;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,66 @@
+// What a restart file holds, apart from the particles' rows: read and written by one rank.
+//
+//   /                attributes: provenance, clock, initial energy, next identity
+//   /scene           attributes path, job; dataset `text`: the bytes of the .xmp
+//   /grid            datasets origin, cell, cells
+//   /books           exact sums as limbs (datasets), counts (attributes)
+//   /cohorts         n x 4: brick key, body, particles, checksum of their rows
+//   /bodies/<n>      attributes; dataset `particles`: particles x columns, in the order of /cohorts
+//   /extra           datasets tracked, names (lines) and values of the program's own numbers
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model.hpp"
+#include "io/output/hdf5.hpp"
+#include "io/output/particle_order.hpp"
+#include "io/restart/guard.hpp"
+#include "io/restart/restart.hpp"
+
+namespace mpm::io {
+
+struct BodyRecord {
+  std::string name;
+  std::string component;  ///< name
+  std::string material;   ///< name
+  int component_number = 0;
+  int material_number = 0;
+  double reference_density = 0;  ///< of the material
+  bool no_output = false;
+  std::vector<core::Column> columns;  ///< of a row, in order
+  std::int64_t particles = 0;
+  std::int64_t eroded = 0;
+  std::int64_t left = 0;
+};
+
+struct RestartContents {
+  core::Provenance provenance;
+  core::HeaderInput header;
+  core::GridGeometry grid;  ///< without boundaries and mass cutoff
+  core::Clock clock;
+  core::Books books;  ///< of all ranks; counts per body are in `bodies`
+  double initial_energy = 0;
+  std::uint64_t next_identity = 0;
+  std::vector<BodyRecord> bodies;
+  std::vector<CohortRecord> cohorts;
+  RestartExtra extra;
+};
+
+/// What `model` and the sums of its books over the ranks make up. Collective.
+RestartContents contents_of(const core::Model& model, const RestartExtra& extra, const ParticleOrder& order,
+                            core::Exchange& exchange);
+
+/// Make the file, with room for the particles' rows. Returns where they go. On this rank alone.
+std::vector<Extent> write_contents(const std::string& path, const RestartContents& contents, const core::Scene& scene);
+
+/// Throws FileError. On this rank alone.
+RestartContents read_contents(const std::string& path);
+
+/// The dataset of a body's rows, below the file.
+std::string rows_name(std::size_t body);
+
+/// Room that the file needs, generously.
+std::uint64_t expected_bytes(const RestartContents& contents);
+
+}  // namespace mpm::io

@@ -1,0 +1,461 @@
+// One wrong input per rule, with all the complaints that it must bring.
+
+#include <catch2/catch.hpp>
+
+#include "tests/io/input/support.hpp"
+
+namespace {
+
+using namespace mpm;
+
+struct Wrong {
+  std::string_view from;  ///< piece of the right input
+  std::string_view to;    ///< what stands there instead
+  std::vector<std::string> messages;
+};
+
+void check_table(const std::vector<Wrong>& table) {
+  for (const Wrong& wrong : table) {
+    INFO(wrong.from << "  ->  " << wrong.to);
+    CHECK(test::complaints(test::replaced(test::bar, wrong.from, wrong.to)) == wrong.messages);
+  }
+}
+
+TEST_CASE("the unchanged input is right") {
+  CHECK(test::complaints(test::bar) == std::vector<std::string>{"ok"});
+}
+
+TEST_CASE("names and occurrences") {
+  check_table({
+      {"<Solution>",
+       "<Sollution/><Solution>",
+       {"line 25: <Sollution>: no such element in <PeneBlast>; did you mean 'Solution'?"}},
+      {"<Solution>",
+       "<solution/><Solution>",
+       {"line 25: <solution>: no such element in <PeneBlast>; did you mean 'Solution'?"}},
+      {"<Solution>",
+       "<Gravity ax='0' ay='0' az='1'/><Solution>",
+       {"line 25: <Gravity>: stands in <Solution>, not in <PeneBlast>"}},
+      {"<Solution>",
+       "<Contact enable='0'/><Contact enable='0'/><Solution>",
+       {"line 25: <Contact>: stands once in <PeneBlast>; the first is on line 25"}},
+      {"<Solution><EndTime value=\"0.08\"/></Solution>",
+       "",
+       {"line 2: <PeneBlast>: element <Solution> is missing"}},
+      {"<EndTime value=\"0.08\"/>", "", {"line 25: <Solution>: element <EndTime> is missing"}},
+      {"<ReferenceDensity value=\"8.93e-3\"/>",
+       "",
+       {"line 4: <Material>: element <ReferenceDensity> is missing"}},
+      {"<ZMax value",
+       "<XMax value",
+       {"line 18: <Cell>: element <ZMax> is missing",
+        "line 21: <XMax>: stands once in <Cell>; the first is on line 19"}},
+      {"<Solution>",
+       "<Solution colour=\"red\">",
+       {"line 25: <Solution colour=\"red\">: no such attribute; expected algorithm, near_boundary_stop, "
+        "Integration, transfer, flip_fraction, xpic_order"}},
+      {"dp=\"0.38\"",
+       "Dp=\"0.38\"",
+       {"line 13: <Geometry Dp=\"0.38\">: no such attribute; expected dp, x0, y0, z0, lx, ly, lz; did you "
+        "mean "
+        "'dp'?"}},
+      {"dp=\"0.38\"",
+       "",
+       {"line 13: <Geometry>: attribute 'dp' is missing: a number greater than 0 (distance of neighbouring "
+        "particles; element size for BlockForFEM)"}},
+      {"dp=\"0.38\"",
+       "dp=\"0.38\" Outer_Radius=\"1\"",
+       {"line 13: <Geometry Outer_Radius=\"1\">: not with type Block, only with Sphere"}},
+      {"dp=\"0.38\"",
+       "dp=\"0.38\"\n\n colour='red'",
+       {"line 15: <Geometry colour=\"red\">: no such attribute; expected dp, x0, y0, z0, lx, ly, lz"}},
+      {"lz=\"19\"/>",
+       "lz=\"19\"><Point mass='1' x='0' y='0' z='0'/></Geometry>",
+       {"line 13: <Point>: not with type Block",
+        "line 13: <Point mass=\"1\">: not with type Block, only with Point"}},
+      {"<FailureModel type",
+       "<FailureModel xmlns=\"a\" type",
+       {"line 8: <FailureModel xmlns=\"\">: no such attribute; expected type, Erosion"}},
+      {"<Solution>", "<Solution>text", {"line 25: <Solution>: no text may stand here: 'text'"}},
+      {"<Solution>", "<Solution><![CDATA[text]]>", {"line 25: <Solution>: no text may stand here: 'text'"}},
+      {"version=\"1.0\">", "version=\"2.0\">", {"line 2: <PeneBlast version=\"2.0\">: expected '1.0'"}},
+      {"<Header>", "<HarmExcit/><Header>", {"line 3: <HarmExcit>: stands in <Body>, not in <PeneBlast>"}},
+  });
+  CHECK(test::complaints("<peneblast/>") ==
+        std::vector<std::string>{"line 1: <peneblast>: the root of an input file is <PeneBlast>"});
+}
+
+TEST_CASE("spellings of the manual that are refused") {
+  const std::string later = "known, but not implemented yet; remove the element";
+  check_table({
+      {"<EndTime", "<FESMSetting/><EndTime", {"line 25: <FESMSetting>: the right spelling is 'FEMSetting'"}},
+      {"</PeneBlast>",
+       "<Output><PostProcessing time_interval='1' h5art='1'/></Output></PeneBlast>",
+       {"line 26: <PostProcessing h5art=\"1\">: the right spelling is 'h5part'"}},
+      {"</PeneBlast>",
+       "<Output><PostProcessing time_internal='1'/></Output></PeneBlast>",
+       {"line 26: <PostProcessing time_internal=\"1\">: the right spelling is 'time_interval'"}},
+      {"</PeneBlast>",
+       "<Output><Restart time_internal='1'/></Output></PeneBlast>",
+       {"line 26: <Restart time_internal=\"1\">: the right spelling is 'time_interval'"}},
+      {"</Cell>",
+       "<MovingGrid y_min='0' y_min='1'/></Cell>",
+       {"line 23: not well-formed XML: Attribute y_min redefined; the second is spelled 'y_max'"}},
+      {"</Cell>",
+       "<MovingGrid z_min='0' z_min='1'/></Cell>",
+       {"line 23: not well-formed XML: Attribute z_min redefined; the second is spelled 'z_max'"}},
+      {"<XMin value=\"0\"",
+       "<XMin value=\"0\" value=\"1\"",
+       {"line 19: not well-formed XML: Attribute value redefined"}},
+  });
+}
+
+TEST_CASE("values") {
+  check_table({
+      {"value=\"8.93e-3\"",
+       "value=\"-8.93e-3\"",
+       {"line 5: <ReferenceDensity value=\"-8.93e-3\">: expected a number greater than 0"}},
+      {"value=\"8.93e-3\"",
+       "value=\"nan\"",
+       {"line 5: <ReferenceDensity value=\"nan\">: expected a number greater than 0, written like 1.5e-3"}},
+      {"value=\"8.93e-3\"",
+       "value=\"1e999\"",
+       {"line 5: <ReferenceDensity value=\"1e999\">: expected a number greater than 0, written like 1.5e-3"}},
+      {"vz=\"-190\"",
+       "vz=\"-1d3\"",
+       {"line 14: <InitialVelocity vz=\"-1d3\">: expected a number, written like 1.5e-3"}},
+      {"vz=\"-190\"",
+       "vz=\"\"",
+       {"line 14: <InitialVelocity vz=\"\">: expected a number, written like 1.5e-3"}},
+      {"dp=\"0.38\"", "dp=\"0\"", {"line 13: <Geometry dp=\"0\">: expected a number greater than 0"}},
+      {"boundary=\"2\"", "boundary=\"5\"", {"line 19: <XMin boundary=\"5\">: expected one of 0, 1, 2, 3, 4"}},
+      {"boundary=\"2\"",
+       "boundary=\"two\"",
+       {"line 19: <XMin boundary=\"two\">: expected one of 0, 1, 2, 3, 4"}},
+      {"<Solution>",
+       "<Solution near_boundary_stop=\"yes\">",
+       {"line 25: <Solution near_boundary_stop=\"yes\">: expected 0 or 1"}},
+      {"<Solution>",
+       "<Solution algorithm=\"musl\">",
+       {"line 25: <Solution algorithm=\"musl\">: expected one of MUSL, USL, USF; did you mean 'MUSL'?"}},
+      {"<EndTime",
+       "<TimeStep factor=\"1.1\"/><EndTime",
+       {"line 25: <TimeStep factor=\"1.1\">: expected a number in (0, 1]"}},
+      {"<EndTime",
+       "<TimeStep factor=\"0\"/><EndTime",
+       {"line 25: <TimeStep factor=\"0\">: expected a number in (0, 1]"}},
+      {"<EndTime",
+       "<OpenMPSetting nthread=\"0\"/><EndTime",
+       {"line 25: <OpenMPSetting nthread=\"0\">: expected a whole number greater than 0"}},
+      {"<EndTime",
+       "<OpenMPSetting nthread=\"99999999999\"/><EndTime",
+       {"line 25: <OpenMPSetting nthread=\"99999999999\">: expected a whole number greater than 0"}},
+      {"value=\"0.08\"", "value=\"0\"", {"line 25: <EndTime value=\"0\">: expected a number greater than 0"}},
+      {"<EndTime",
+       "<Warn type=\"ie|vole\"/><EndTime",
+       {"line 25: <Warn type=\"ie|vole\">: 'vole': expected one or more of ie, vol, grid, joined by |; did "
+        "you "
+        "mean 'vol'?"}},
+      {"<EndTime",
+       "<Warn type=\"\"/><EndTime",
+       {"line 25: <Warn type=\"\">: expected one or more of ie, vol, grid, joined by |"}},
+      {"<EndTime",
+       "<Warn type=\"ie||vol\"/><EndTime",
+       {"line 25: <Warn type=\"ie||vol\">: '': expected one or more of ie, vol, grid, joined by |"}},
+      {"</PeneBlast>",
+       "<Output><Restart time_interval=\"0\"/></Output></PeneBlast>",
+       {"line 26: <Restart time_interval=\"0\">: expected a number greater than 0"}},
+      {"name=\"rod\"", "name=\" \"", {"line 12: <Body name=\" \">: expected a text"}},
+      {"<EndTime",
+       "<Volume update_type=\"5\"/><EndTime",
+       {"line 25: <Volume update_type=\"5\">: expected one of 0, 1, 2, 3, 4"}},
+  });
+}
+
+TEST_CASE("laws are checked by their own tables") {
+  check_table({
+      {"type=\"IsoHarden\"",
+       "type=\"isoHarden\"",
+       {"line 6: <StrengthModel type=\"isoHarden\">: expected one of IsoElastic, CauchyElastic, Elastic_1D, "
+        "ElaPlastic, IsoHarden, LinHarElaPlastic_1D, JohnsonCook, SimJohnsonCook, Null, HighExpBurn, "
+        "HolmquistJohnsonCook, MooneyRivlin, Rigid, RHT, JH2, DruckerPrager, DFFoam, Gurson, Homemade; did "
+        "you "
+        "mean 'IsoHarden'?"}},
+      {"Poisson=\".35\"",
+       "Poisson=\".5\"",
+       {"line 6: <StrengthModel Poisson=\".5\">: expected a number in (0, 0.5)"}},
+      {"Poisson=\".35\"",
+       "",
+       {"line 6: <StrengthModel>: attribute 'Poisson' is missing: a number in (0, 0.5)"}},
+      {"Poisson=\".35\"",
+       "Poisson=\".35\" FailedType=\"1.5\"",
+       {"line 6: <StrengthModel FailedType=\"1.5\">: expected a whole number in [0, 2]"}},
+      {"Poisson=\".35\"",
+       "Poisson=\".35\" melt=\"1000\"",
+       {"line 6: <StrengthModel melt=\"1000\">: not with type IsoHarden, only with JohnsonCook"}},
+      {"Poisson=\".35\"",
+       "Poisson=\".35\" SpecHeat=\"1\"",
+       {"line 6: <StrengthModel SpecHeat=\"1\">: known, but not implemented yet; remove the attribute"}},
+      {"Poisson=\".35\"",
+       "Poisson=\".35\" CoefficientOfThermalConductivity=\"1\"",
+       {"line 6: <StrengthModel CoefficientOfThermalConductivity=\"1\">: known, but not implemented yet; "
+        "remove "
+        "the attribute or set it to its default, 0"}},
+      {"Poisson=\".35\"", "Poisson=\".35\" CoefficientOfThermalConductivity=\"0.0\"", {"ok"}},
+      {"type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
+       "type=\"JohnsonCook\" Young=\"1\" Poisson=\".3\" D1=\"1\"",
+       {"line 6: <StrengthModel>: D1, D2 are given all or none; missing: D2"}},
+      {"type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
+       "type=\"Homemade\"",
+       {"line 6: <StrengthModel>: attribute 'strength' is missing: a number greater than 0"}},
+      {"type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
+       "type=\"Rigid\"",
+       {"line 6: <StrengthModel type=\"Rigid\">: known, but not implemented yet; use one of IsoHarden, "
+        "JohnsonCook, Null, Homemade"}},
+      {"<FailureModel type=\"none\"/>",
+       "<FailureModel type=\"Pmin\" pmin=\"3\"/>",
+       {"line 8: <FailureModel pmin=\"3\">: expected a number less than 0"}},
+      {"<FailureModel type=\"none\"/>",
+       "<FailureModel type=\"PriStress\"/>",
+       {"line 8: <FailureModel type=\"PriStress\">: known, but not implemented yet; use one of none, Pmin",
+        "line 8: <FailureModel>: attribute 'PriStressMax' is missing: a number of at least 0 (largest "
+        "principal "
+        "stress; 0: off)",
+        "line 8: <FailureModel>: attribute 'PriStressMin' is missing: a number of at most 0 (smallest "
+        "principal "
+        "stress; 0: off)",
+        "line 8: <FailureModel>: attribute 'ShearStressMax' is missing: a number of at least 0 (largest "
+        "shear "
+        "stress; 0: off)"}},
+  });
+  std::string eleven;
+  for (int i = 0; i < 11; ++i) eleven += "<FailureModel type='Pmin' pmin='-1'/>";
+  check_table({{"<FailureModel type=\"none\"/>",
+                eleven,
+                {"line 8: <FailureModel>: a material has at most 10 failure models"}}});
+}
+
+TEST_CASE("known, but not implemented yet") {
+  const std::string remove = "known, but not implemented yet; remove the element";
+  const std::string zero = "known, but not implemented yet; remove the attribute or set it to its default, 0";
+  check_table({
+      {"<Solution>",
+       "<Contact enable=\"1\"/><Solution>",
+       {"line 25: <Contact enable=\"1\">: known, but not implemented yet; set it to 0"}},
+      {"<Solution>", "<Contact enable=\"0\"/><Solution>", {"ok"}},
+      {"<Grid>", "<Grid gimp=\"1\">", {"line 17: <Grid gimp=\"1\">: " + zero}},
+      {"<Grid>", "<Grid gimp=\"0\" shape=\"linear\">", {"ok"}},
+      {"<Grid>",
+       "<Grid shape=\"CPDI\">",
+       {"line 17: <Grid shape=\"CPDI\">: known, but not implemented yet; remove the attribute or set it to "
+        "its "
+        "default, linear"}},
+      {"boundary=\"2\"",
+       "boundary=\"3\"",
+       {"line 19: <XMin boundary=\"3\">: known, but not implemented yet; use one of 0, 1, 2, 4"}},
+      {"<DCell", "<MovingGrid enable='1'/><DCell", {"line 22: <MovingGrid enable=\"1\">: " + zero}},
+      {"<DCell", "<MovingGrid enable='0' x_min='0'/><DCell", {"ok"}},
+      {"</Material>",
+       "<RandomFailure enable='1'/></Material>",
+       {"line 9: <RandomFailure enable=\"1\">: " + zero}},
+      {"</Material>", "<RandomFailure enable='0' FailDistribution='2'/></Material>", {"ok"}},
+      {"<Solution>",
+       "<Solution Integration=\"impl\">",
+       {"line 25: <Solution Integration=\"impl\">: known, but not implemented yet; remove the attribute or "
+        "set it "
+        "to its default, expl"}},
+      {"<Solution>", "<Solution flip_fraction=\"1.0\" xpic_order=\"2\">", {"ok"}},
+      {"<Solution>",
+       "<Solution flip_fraction=\"0.9\">",
+       {"line 25: <Solution flip_fraction=\"0.9\">: known, but not implemented yet; remove the attribute or "
+        "set it "
+        "to its default, 1"}},
+      {"<EndTime", "<FEMSetting/><EndTime", {"line 25: <FEMSetting>: " + remove}},
+      {"<EndTime", "<Implicit/><EndTime", {"line 25: <Implicit>: " + remove}},
+      {"</PeneBlast>",
+       "<Output><PostProcessing time_interval='1' tecplot='1'/></Output></PeneBlast>",
+       {"line 26: <PostProcessing tecplot=\"1\">: " + zero}},
+      {"</PeneBlast>",
+       "<Output><GridLineResults normal='0' x='0' y='0'/></Output></PeneBlast>",
+       {"line 26: <GridLineResults>: " + remove}},
+      {"</PeneBlast>",
+       "<DomainDecomposition imbalance_tolerance='1.1'/></PeneBlast>",
+       {"line 26: <DomainDecomposition imbalance_tolerance=\"1.1\">: known, but not implemented yet; remove "
+        "the "
+        "attribute or set it to its default, 1.05"}},
+      {"</PeneBlast>", "<DomainDecomposition rebalance_interval='auto'/></PeneBlast>", {"ok"}},
+      {"<InitialVelocity",
+       "<ConstrainRigidPosition value='1'/><InitialVelocity",
+       {"line 14: <ConstrainRigidPosition value=\"1\">: known, but not implemented yet; set it to 0"}},
+  });
+}
+
+TEST_CASE("names that refer to others") {
+  check_table({
+      {"material=\"cu\"",
+       "material=\"Cu\"",
+       {"line 12: <Body material=\"Cu\">: there is no material of this name; did you mean 'cu'?"}},
+      {"material=\"cu\"",
+       "material=\"copper\"",
+       {"line 12: <Body material=\"copper\">: there is no material of this name"}},
+      {"workPlane=\"plane\"",
+       "workPlane=\"plain\"",
+       {"line 12: <Body workPlane=\"plain\">: there is no work plane of this name; did you mean 'plane'?"}},
+      {"</Component>",
+       "<Body name='rod' material='cu' type='Block'><Geometry dp='1' x0='0' y0='0' z0='0' lx='1' "
+       "ly='1' lz='1'/></Body></Component>",
+       {"line 16: <Body name=\"rod\">: another body has this name already, on line 12"}},
+      {"<WorkPlane",
+       "<WorkPlane name='plane'/><WorkPlane",
+       {"line 10: <WorkPlane name=\"plane\">: another work plane has this name already, on line 10"}},
+      {"<WorkPlane",
+       "<Friction><Coefficient value='0.1' mat1='cu' mat2='c'/></Friction><WorkPlane",
+       {"line 10: <Coefficient mat2=\"c\">: there is no material of this name; did you mean 'cu'?"}},
+      {"<WorkPlane",
+       "<Friction><Coefficient value='0.1' mat1='cu' mat2='cu'/><Coefficient value='0.2' mat1='cu' "
+       "mat2='cu'/></Friction><WorkPlane",
+       {"line 10: <Coefficient>: the friction of this pair of materials is given twice"}},
+  });
+}
+
+TEST_CASE("bodies and work planes") {
+  const std::string_view block =
+      "type=\"Block\" workPlane=\"plane\">\n      <Geometry dp=\"0.38\" x0=\"0\" y0=\"0\" "
+      "z0=\"0\" lx=\"3.8\" ly=\"3.8\" lz=\"19\"/>";
+  check_table({
+      {"r0z=\"0.38\"",
+       "a31=\"1\"",
+       {"line 10: <WorkPlane>: the axes (ex, ey, ez) and (a11, a21, a31) must be orthogonal; the angle "
+        "between them "
+        "is 45 degrees"}},
+      {"r0z=\"0.38\"",
+       "ez=\"0\"",
+       {"line 10: <WorkPlane>: the axes (ex, ey, ez) and (a11, a21, a31) must not be zero"}},
+      {"dp=\"0.38\"",
+       "dp=\"1e-9\"",
+       {"line 13: <Geometry dp=\"1e-9\">: this makes about 2.74e+29 particles, more than any machine holds "
+        "(2^48); "
+        "expected a larger distance of particles"}},
+      {"x0=\"0\"",
+       "x0=\"100\"",
+       {"line 12: <Body name=\"rod\">: the body lies outside the grid: its x from 100 to 103.8, the grid's "
+        "from 0 to "
+        "11.4"}},
+      {block,
+       "type=\"Sphere\"><Geometry dp='1' x0='5' y0='5' z0='5' Outer_Radius='2' Inner_Radius='2'/>",
+       {"line 12: <Geometry Outer_Radius=\"2\">: expected more than Inner_Radius, 2"}},
+      {block,
+       "type=\"Sphere\"><Geometry dp='1' x0='5' y0='5' z0='5' Outer_Radius='2' half='1'/>",
+       {"line 12: <Geometry half=\"1\">: needs angle=\"90\", not 360"}},
+      {block,
+       "type=\"Sphere\"><Geometry dp='1' x0='5' y0='5' z0='5' Outer_Radius='2' angle='0'/>",
+       {"line 12: <Geometry angle=\"0\">: expected a number in (0, 360]"}},
+      {block,
+       "type=\"Cylinder\"><Geometry dp_bottom='1' dp_top='1' x0='5' y0='5' z0='5' Bottom_Outer_Radius='0' "
+       "Top_Outer_Radius='0' height='1'/>",
+       {"line 12: <Geometry Bottom_Outer_Radius=\"0\">: expected more than Bottom_Inner_Radius, 0",
+        "line 12: <Geometry Top_Outer_Radius=\"0\">: expected more than Top_Inner_Radius, 0"}},
+      {block,
+       "type=\"Point\"><Geometry/>",
+       {"line 12: <Geometry>: expected <Point> elements, or file=\"...\""}},
+      {block,
+       "type=\"Point\"><Geometry file='nowhere.txt'/>",
+       {"line 12: <Geometry file=\"nowhere.txt\">: nowhere.txt: no such file"}},
+      {block,
+       "type=\"Point\"><Geometry file='/'/>",
+       {"line 12: <Geometry file=\"/\">: /: this is a folder, not a file"}},
+      {block,
+       "type=\"Point\"><Geometry><Point mass='0' x='0' y='0' z='0'/></Geometry>",
+       {"line 12: <Point mass=\"0\">: expected a number greater than 0"}},
+      {block, "type=\"Point\">", {"line 12: <Body>: element <Geometry> is missing"}},
+      {block,
+       "type=\"Torus\"><Geometry what='1'/>",
+       {"line 12: <Body type=\"Torus\">: expected one of Point, Block, Sphere, Cylinder, Ogive, Bool, "
+        "PointForBar, "
+        "LineForBar, NettyForBar, PointForMembrane, RectangularForMembrane, CylinderForMembrane, "
+        "PointForFEM, "
+        "BlockForFEM",
+        "line 12: <Geometry what=\"1\">: no such attribute; the element has none"}},
+  });
+}
+
+TEST_CASE("the grid") {
+  check_table({
+      {"<XMax value=\"11.4\"",
+       "<XMax value=\"0\"",
+       {"line 19: <XMax value=\"0\">: expected more than XMin, 0"}},
+      {"dx=\"0.76\"",
+       "dx=\"1e-12\"",
+       {"line 22: <DCell dx=\"1e-12\">: this makes 1.14e+13 cells along the axis; at most 2^31 are "
+        "possible"}},
+      {"dx=\"0.76\"",
+       "dx=\"20\"",
+       {"line 22: <DCell dx=\"20\">: a cell is larger than the grid, which is 11.4 long"}},
+      {"dx=\"0.76\" dy=\"0.76\" dz=\"0.76\"",
+       "dx=\"1e-8\" dy=\"1e-8\" dz=\"1e-7\"",
+       {"line 18: <Cell>: 3.46e+26 cells cannot be numbered; expected fewer than 2^62"}},
+      {"<XMax value=\"11.4\" boundary=\"0\"",
+       "<XMax value=\"11.5\" boundary=\"1\"",
+       {"line 19: <XMax value=\"11.5\">: a wall must lie on a face of cells: 15.131578947368421 cells of "
+        "0.76 do not "
+        "fit between 0 and 11.5; expected 11.4 or 12.16"}},
+      {"<XMax value=\"11.4\"", "<XMax value=\"11.5\"", {"ok"}},
+      {"<Cell type=\"regular\">",
+       "<Cell type=\"irregular\">",
+       {"line 18: <Cell type=\"irregular\">: expected one of regular, nonuniform; did you mean 'regular'?"}},
+  });
+}
+
+TEST_CASE("solution and output") {
+  check_table({
+      {"<EndTime",
+       "<Volume min=\"2\" max=\"1\"/><EndTime",
+       {"line 25: <Volume max=\"1\">: expected more than min, 2"}},
+      {"</PeneBlast>",
+       "<Output><TimeHistory var='pres'/></Output></PeneBlast>",
+       {"line 26: <TimeHistory>: expected at least one <Particle> or <Point>"}},
+      {"</PeneBlast>",
+       "<Output><TimeHistory var='press'><Point x='0' y='0' z='0'/></TimeHistory></Output></PeneBlast>",
+       {"line 26: <TimeHistory var=\"press\">: expected one or more of seqv, epef, pres, density, tria, "
+        "fail, engk, "
+        "engi, cp, sigy, damg, body, com, mat, kelv, velocity_0, velocity_1, velocity_2, exx, eyy, ezz, "
+        "posx, posy, "
+        "posz, SigmaX, SigmaY, SigmaZ, SigmaXY, SigmaYZ, SigmaXZ, joined by |; did you mean 'pres'?"}},
+      {"</PeneBlast>",
+       "<DomainDecomposition dimension0='2'/></PeneBlast>",
+       {"line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 are given all or none; missing: "
+        "dimension1, dimension2"}},
+  });
+}
+
+TEST_CASE("all complaints come at once, in the order of the lines") {
+  std::string text = test::replaced(test::bar, "dz=\"0.76\"", "dz=\"-1\"");
+  text = test::replaced(text, "value=\"8.93e-3\"", "value=\"0\"");
+  text = test::replaced(text, "material=\"cu\"", "material=\"ag\"");
+  text = test::replaced(text, "<Solution>", "<Solution speed=\"high\">");
+  CHECK(test::complaints(text) ==
+        std::vector<std::string>{
+            "line 5: <ReferenceDensity value=\"0\">: expected a number greater than 0",
+            "line 12: <Body material=\"ag\">: there is no material of this name",
+            "line 22: <DCell dz=\"-1\">: expected a number greater than 0",
+            "line 25: <Solution speed=\"high\">: no such attribute; expected algorithm, near_boundary_stop, "
+            "Integration, transfer, flip_fraction, xpic_order"});
+}
+
+TEST_CASE("the text of a complaint") {
+  const core::Diagnostic full{"a.xmp", 3, "Grid", "gimp", "2", "expected 0 or 1"};
+  CHECK(to_text(full) == "a.xmp:3: <Grid gimp=\"2\">: expected 0 or 1");
+  CHECK(to_text(core::Diagnostic{"a.xmp", 0, "", "", "", "no such file"}) == "a.xmp: no such file");
+  CHECK(to_text(core::Diagnostic{"a", 1, "E", "b", "x\ny" + std::string(200, 'z'), "m"}) ==
+        "a:1: <E b=\"x y" + std::string(117, 'z') + "...\">: m");
+}
+
+TEST_CASE("a flood of complaints is cut, and says so") {
+  std::string flood;
+  for (int i = 0; i < 5000; ++i) flood += "<Wrong/>";
+  const auto found = test::complaints(test::replaced(test::bar, "<Solution>", flood + "<Solution>"));
+  CHECK(found.size() == 1001);
+  CHECK(found.back() == "and 4000 more");
+}
+
+}  // namespace

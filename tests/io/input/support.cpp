@@ -1,0 +1,113 @@
+#include "tests/io/input/support.hpp"
+
+#include <fstream>
+
+#include <catch2/catch.hpp>
+#include <unistd.h>
+
+namespace mpm::test {
+
+namespace {
+
+core::ParameterInfo optional(std::string_view name, double value) {
+  core::ParameterInfo info;
+  info.name = name;
+  info.default_value = value;
+  return info;
+}
+
+core::ParameterInfo positive(std::string_view name) {
+  core::ParameterInfo info;
+  info.name = name;
+  info.required = true;
+  info.min = 0;
+  info.min_open = true;
+  return info;
+}
+
+core::ParameterInfo group(std::string_view name) {
+  core::ParameterInfo info = optional(name, core::no_default);
+  info.group = "damage";
+  return info;
+}
+
+core::Catalogue make_catalogue() {
+  core::ParameterInfo conductivity = optional("CoefficientOfThermalConductivity", 0);
+  conductivity.implemented = false;
+  core::ParameterInfo poisson = positive("Poisson");
+  poisson.max = 0.5;
+  poisson.max_open = true;
+  core::ParameterInfo failed_type = optional("FailedType", 0);
+  failed_type.integer = true;
+  failed_type.min = 0;
+  failed_type.max = 2;
+  core::ParameterInfo pmin = positive("pmin");
+  pmin.min = -core::unbounded;
+  pmin.max = 0;
+  pmin.max_open = true;
+  core::Catalogue c;
+  c.common_strength = {optional("bq1", 1.5), optional("Young", core::no_default), failed_type, conductivity};
+  c.common_eos = {optional("C0", core::no_default), optional("E0", 0)};
+  c.strength = {{"IsoHarden",
+                 "linear hardening",
+                 {positive("Young"), poisson, positive("Yield0"), positive("TangMod")},
+                 true},
+                {"JohnsonCook", "", {positive("Young"), poisson, group("D1"), group("D2")}, true},
+                {"Null", "fluid", {optional("mu", 0)}, true},
+                {"RHT", "", {}, false},
+                {"Homemade", "a law that only the catalogue knows", {positive("strength")}, true}};
+  c.eos = {{"Gruneisen", "shock", {positive("C0"), positive("S1"), positive("gamma0")}, true}};
+  c.failure = {{"Pmin", "", {pmin}, true}};
+  return c;
+}
+
+}  // namespace
+
+const core::Catalogue& small_catalogue() {
+  static const core::Catalogue catalogue = make_catalogue();
+  return catalogue;
+}
+
+std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != text.npos);
+  std::string result(text);
+  return result.replace(at, from.size(), to);
+}
+
+core::Scene parse(std::string_view text, const io::ReadOptions& options) {
+  return io::parse_scene(text, "case.xmp", small_catalogue(), options);
+}
+
+std::vector<std::string> complaints(std::string_view text, const io::ReadOptions& options) {
+  try {
+    parse(text, options);
+  } catch (const core::InputErrors& errors) {
+    std::vector<std::string> result;
+    for (core::Diagnostic d : errors.diagnostics()) {
+      CHECK(d.file == "case.xmp");
+      d.file.clear();
+      result.push_back(to_text(d));
+    }
+    return result;
+  }
+  return {"ok"};
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "mpm_test_XXXXXX").string();
+  REQUIRE(mkdtemp(pattern.data()) != nullptr);
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::filesystem::path TemporaryFolder::write(std::string_view name, std::string_view bytes) const {
+  std::ofstream(path_ / name, std::ios::binary) << bytes;
+  return path_ / name;
+}
+
+}  // namespace mpm::test

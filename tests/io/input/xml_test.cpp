@@ -1,0 +1,97 @@
+// Malformed and hostile XML: one clear message, quickly.
+
+#include <chrono>
+
+#include <catch2/catch.hpp>
+#include <sys/mman.h>
+
+#include "io/input/document.hpp"
+#include "tests/io/input/support.hpp"
+
+namespace {
+
+using namespace mpm;
+
+/// Generous for a loaded machine, and far below what an attack would take.
+constexpr std::chrono::seconds quickly{20};
+
+std::string first_complaint(std::string_view text) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string found = test::complaints(text).front();
+  CHECK(std::chrono::steady_clock::now() - begin < quickly);
+  return found;
+}
+
+const std::string no_doctype =
+    "a document type (DOCTYPE) is not accepted: the input language has no entities";
+
+TEST_CASE("malformed XML") {
+  CHECK(first_complaint("<PeneBlast version=\"1.0\">\n<Grid>\n</PeneBlast>") ==
+        "line 3: not well-formed XML: Opening and ending tag mismatch: Grid line 2 and PeneBlast");
+  CHECK(first_complaint("<PeneBlast version=1.0/>") ==
+        "line 1: not well-formed XML: AttValue: \" or ' expected");
+  CHECK(first_complaint("<?xml verison=\"1.0\"?><PeneBlast/>").starts_with("line 1: not well-formed XML: "));
+  CHECK(first_complaint("<PeneBlast a=\"<\"/>").starts_with("line 1: not well-formed XML: "));
+  CHECK(first_complaint("<PeneBlast/><PeneBlast/>").starts_with("line 1: not well-formed XML: "));
+  CHECK(first_complaint("<PeneBlast>&unknown;</PeneBlast>").starts_with("line 1: not well-formed XML: "));
+  CHECK(first_complaint(std::string("<PeneBlast>\0</PeneBlast>", 24))
+            .starts_with("line 1: not well-formed XML: "));
+  for (const std::size_t length : {10, 100, 500, 1000})
+    CHECK(first_complaint(test::bar.substr(0, length)).find("not well-formed XML: ") != std::string::npos);
+}
+
+TEST_CASE("entities") {
+  std::string bomb = "<?xml version=\"1.0\"?>\n<!DOCTYPE PeneBlast [<!ENTITY e0 \"ha\">";
+  for (int i = 1; i < 40; ++i)
+    bomb += "<!ENTITY e" + std::to_string(i) + " \"&e" + std::to_string(i - 1) + ";&e" +
+            std::to_string(i - 1) + ";\">";
+  CHECK(first_complaint(bomb + "]><PeneBlast version=\"&e39;\"/>") == "line 2: " + no_doctype);
+  CHECK(first_complaint("<!DOCTYPE P [<!ENTITY x SYSTEM \"file:///etc/passwd\">]><P>&x;</P>") ==
+        "line 1: " + no_doctype);
+  CHECK(first_complaint("<!DOCTYPE P [<!ENTITY % x SYSTEM \"http://localhost:1/a.dtd\"> %x;]><P/>") ==
+        "line 1: " + no_doctype);
+  CHECK(first_complaint("<!DOCTYPE P SYSTEM \"http://localhost:1/a.dtd\"><P/>") == "line 1: " + no_doctype);
+}
+
+TEST_CASE("depth, breadth and length") {
+  std::string deep, broad = "<PeneBlast version=\"1.0\" ";
+  for (int i = 0; i < 1000000; ++i) deep += "<a>";
+  CHECK(first_complaint(deep).find("not well-formed XML: Excessive depth") != std::string::npos);
+  for (int i = 0; i < 1000000; ++i) broad += " a" + std::to_string(i) + "='1'";
+  CHECK(first_complaint(broad + "/>") == "line 1: more than 2000 attributes on one element");
+  std::string wide("\xFF\xFE");
+  for (const char c : broad) wide += {c, '\0'};
+  CHECK(first_complaint(wide) == "line 1: more than 2000 attributes on one element");
+  std::string comment = "<!--" + std::string(100000, '=') + "-->";  // not attributes
+  CHECK(first_complaint(test::replaced(test::bar, "<Header>", comment + "<Header>")) == "ok");
+  const std::string value(9000000, 'x');
+  CHECK(first_complaint(test::replaced(test::bar, "name=\"rod\"", "name=\"" + value + "\"")) == "ok");
+  CHECK(first_complaint(test::replaced(test::bar, "type=\"Block\"", "type=\"" + value + "\"")).size() < 500);
+}
+
+TEST_CASE("many particles in the input itself") {
+  std::string points;
+  constexpr int count = 200000;
+  for (int i = 0; i < count; ++i) points += "<Point mass='1' x='1' y='2' z='3'/>\n";
+  std::string text = test::replaced(test::bar, "type=\"Block\"", "type=\"Point\"");
+  text = test::replaced(text,
+                        "<Geometry dp=\"0.38\" x0=\"0\" y0=\"0\" z0=\"0\" lx=\"3.8\" ly=\"3.8\" lz=\"19\"/>",
+                        "<Geometry>" + points + "</Geometry>");
+  const auto begin = std::chrono::steady_clock::now();
+  const core::Scene scene = test::parse(text);
+  CHECK(std::chrono::steady_clock::now() - begin < quickly);
+  CHECK(std::get<core::PointGeometry>(scene.components[0].bodies[0].geometry).points.size() == count);
+}
+
+TEST_CASE("too many bytes") {
+  constexpr std::size_t size = io::largest_document + 1;
+  void* const unused = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  REQUIRE(unused != MAP_FAILED);
+  std::optional<io::XmlError> error;
+  io::parse_document({static_cast<const char*>(unused), size}, error);
+  munmap(unused, size);
+  REQUIRE(error.has_value());
+  CHECK(error->message.find("put particles into a file of their own") != std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,193 @@
+#include "tests/physics/samples.hpp"
+
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "physics/catalogue.hpp"
+
+namespace mpm::tests {
+
+namespace {
+
+using core::LawInput;
+using core::MaterialInput;
+using Values = core::ParameterValues;
+
+const Values elastic{{"Young", 124e9}, {"Poisson", 0.34}};
+
+Values with(Values values, const Values& more) {
+  for (const auto& [name, value] : more) values.insert_or_assign(name, value);
+  return values;
+}
+
+// Johnson-Cook constants of OFHC copper: manual, tables 6.2 and 6.3.
+const Values johnson_cook{{"Yield0", 90e6}, {"B", 292e6}, {"n", 0.31}, {"C", 0.025}, {"epso", 1.0}};
+const Values heat{{"m", 1.09}, {"melt", 1356.0}, {"roomt", 293.0}, {"SpecHeat", 383.0}};
+const Values damage{{"D1", 0.54}, {"D2", 4.89}, {"D3", -3.03}, {"D4", 0.014}, {"D5", 1.12}};
+
+/// Strength laws: label, type, parameters, path strain.
+struct Strength {
+  std::string label, type;
+  Values values;
+  double strain;
+};
+const std::vector<Strength> strengths{
+    {"IsoElastic", "IsoElastic", elastic, 0.02},
+    {"CauchyElastic", "CauchyElastic", elastic, 0.02},
+    {"ElaPlastic", "ElaPlastic", with(elastic, {{"Yield0", 200e6}}), 0.02},
+    {"IsoHarden", "IsoHarden", with(elastic, {{"Yield0", 200e6}, {"TangMod", 3e9}}), 0.02},
+    {"IsoHarden heated", "IsoHarden",
+     with(elastic, {{"Yield0", 200e6}, {"TangMod", 3e9}, {"SpecHeat", 383.0}}), 0.02},
+    {"SimJohnsonCook", "SimJohnsonCook", with(elastic, johnson_cook), 0.02},
+    {"JohnsonCook", "JohnsonCook", with(with(elastic, johnson_cook), heat), 0.02},
+    {"JohnsonCook damaged", "JohnsonCook", with(with(with(elastic, johnson_cook), heat), damage), 0.02},
+    {"Null", "Null", {}, 0.02},
+    {"Null Newtonian", "Null", {{"mu", 20.0}}, 0.02},
+    {"Null power law", "Null", {{"ck", 300.0}, {"nn", 0.6}}, 0.02},
+};
+
+const std::map<std::string, LawInput> equations{
+    {"Gruneisen", {"Gruneisen", {{"C0", 3940.0}, {"S1", 1.49}, {"gamma0", 1.96}}, {}}},
+    {"Gruneisen simplified",
+     {"Gruneisen", {{"C0", 3940.0}, {"S1", 1.49}, {"gamma0", 1.96}, {"simplified", 1.0}}, {}}},
+    {"Polynomial solid",
+     {"Polynomial",
+      {{"c0", 0.0}, {"c1", 137e9}, {"c2", 175e9}, {"c3", 564e9}, {"c4", 1.96}, {"c5", 0.9}, {"c6", 0.3}},
+      {}}},
+    {"Polynomial gas",
+     {"Polynomial",
+      {{"c0", 0.0}, {"c1", 0.0}, {"c2", 0.0}, {"c3", 0.0}, {"c4", 0.4}, {"c5", 0.4}, {"c6", 0.0}, {"E0", 250e6}},
+      {}}},
+};
+
+MaterialInput input_of(const Strength& strength, const LawInput* eos) {
+  MaterialInput input;
+  input.name = strength.label;
+  input.reference_density = 8960;
+  input.strength.type = strength.type;
+  input.strength.values = strength.values;
+  if (eos) input.eos = *eos;
+  return input;
+}
+
+std::vector<Sample> all_samples() {
+  std::vector<Sample> all;
+  for (const Strength& strength : strengths) {
+    const bool fluid = strength.type == "Null", own_pressure = strength.type == "CauchyElastic";
+    if (!fluid) all.push_back({strength.label, input_of(strength, nullptr), strength.strain});
+    for (const auto& [label, eos] : equations) {
+      if (own_pressure) continue;
+      if (strength.label != "IsoHarden" && label != "Gruneisen" && !fluid) continue;
+      all.push_back({strength.label + " + " + label, input_of(strength, &eos), strength.strain});
+    }
+  }
+  for (const core::FailureInput& failure :
+       {core::FailureInput{{"PlaStrain", {{"epmax", 0.01}}, {}}, false},
+        core::FailureInput{{"Pmin", {{"pmin", -20e6}}, {}}, true}}) {
+    MaterialInput input = copper("IsoHarden", true);
+    input.failures.push_back(failure);
+    all.push_back({"IsoHarden + Gruneisen + " + failure.type, input, 0.02});
+  }
+  return all;
+}
+
+template <class Types, class Used>
+void require_samples_of(const Types& types, Used used) {
+  for (const core::TypeInfo& type : types) {
+    if (type.name == "none") continue;
+    INFO("no sample for the law " << type.name << ": add one to tests/physics/samples.cpp");
+    bool found = false;
+    for (const Sample& s : samples()) found = found || used(s.input, type.name);
+    REQUIRE(found);
+  }
+}
+
+}  // namespace
+
+const std::vector<Sample>& samples() {
+  static const std::vector<Sample> all = all_samples();
+  return all;
+}
+
+const Sample& sample(const std::string& label) {
+  for (const Sample& s : samples()) {
+    if (s.label == label) return s;
+  }
+  FAIL("no sample is called " << label);
+  throw 0;
+}
+
+MaterialInput copper(const std::string& strength, bool with_gruneisen) {
+  for (const Strength& s : strengths) {
+    if (s.label == strength) return input_of(s, with_gruneisen ? &equations.at("Gruneisen") : nullptr);
+  }
+  FAIL("no strength law is called " << strength);
+  throw 0;
+}
+
+double Units::factor(std::string_view dimension, double exponent) const {
+  const std::map<std::string_view, double> factors{
+      {"1", 1},
+      {"stress", stress()},
+      {"density", density()},
+      {"velocity", velocity()},
+      {"time", time},
+      {"1/time", 1 / time},
+      {"temperature", 1},
+      {"1/temperature", 1},
+      {"stress time", stress() * time},
+      {"stress time^nn", stress() * std::pow(time, exponent)},
+      {"energy/(mass temperature)", velocity() * velocity()},
+      {"power/(length temperature)", mass * length / (time * time * time)},
+  };
+  const auto found = factors.find(dimension);
+  INFO("unknown dimension '" << dimension << "' in a table of parameters");
+  REQUIRE(found != factors.end());
+  return found->second;
+}
+
+core::MaterialInput convert(const core::MaterialInput& input, const Units& units) {
+  const core::Catalogue catalogue = physics::catalogue();
+  const double exponent = input.strength.value_or("nn", 1);
+  const auto convert_law = [&](LawInput& law, const std::vector<core::TypeInfo>& types,
+                               const std::vector<core::ParameterInfo>& common) {
+    for (auto& [name, value] : law.values) {
+      std::string_view dimension = "unknown";
+      for (const core::ParameterInfo& info : common) {
+        if (info.name == name) dimension = info.dimension;
+      }
+      for (const core::TypeInfo& type : types) {
+        if (type.name != law.type) continue;
+        for (const core::ParameterInfo& info : type.parameters) {
+          if (info.name == name) dimension = info.dimension;
+        }
+      }
+      value *= units.factor(dimension, exponent);
+    }
+  };
+  core::MaterialInput converted = input;
+  converted.reference_density *= units.density();
+  convert_law(converted.strength, catalogue.strength, catalogue.common_strength);
+  if (converted.eos) convert_law(*converted.eos, catalogue.eos, catalogue.common_eos);
+  for (core::FailureInput& failure : converted.failures) convert_law(failure, catalogue.failure, {});
+  return converted;
+}
+
+std::unique_ptr<physics::Material> make(const core::MaterialInput& input) {
+  auto model = physics::make_material(input);
+  return std::unique_ptr<physics::Material>(dynamic_cast<physics::Material*>(model.release()));
+}
+
+TEST_CASE("every law of the lists has a sample", "[physics]") {
+  const core::Catalogue catalogue = physics::catalogue();
+  require_samples_of(catalogue.strength,
+                     [](const MaterialInput& i, std::string_view name) { return i.strength.type == name; });
+  require_samples_of(catalogue.eos,
+                     [](const MaterialInput& i, std::string_view name) { return i.eos && i.eos->type == name; });
+  require_samples_of(catalogue.failure, [](const MaterialInput& i, std::string_view name) {
+    return !i.failures.empty() && i.failures.front().type == name;
+  });
+}
+
+}  // namespace mpm::tests

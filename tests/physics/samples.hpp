@@ -1,0 +1,45 @@
+// Materials for the tests that hold for every law: at least one set of parameters per law of the lists, in SI, and
+// the same in mm-g-ms, converted by the dimensions that the laws' own tables state.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene/catalogue.hpp"
+#include "core/scene/material.hpp"
+#include "physics/material/material.hpp"
+
+namespace mpm::tests {
+
+struct Sample {
+  std::string label;  ///< for messages
+  core::MaterialInput input;
+  /// Strain that a test's path should reach: beyond yield where the law yields.
+  double strain = 0.02;
+};
+
+/// Every strength law with the elastic bulk and with an equation of state, and every equation of state with a
+/// strength law. Fails the test (REQUIRE) for a law of the catalogue that has no sample.
+const std::vector<Sample>& samples();
+const Sample& sample(const std::string& label);
+
+/// Factors from one system of units to another: value in the new unit = factor * value in the old.
+struct Units {
+  double length = 1, mass = 1, time = 1;
+  double factor(std::string_view dimension, double power_law_exponent) const;
+  double stress() const { return mass / (length * time * time); }
+  double density() const { return mass / (length * length * length); }
+  double velocity() const { return length / time; }
+};
+inline constexpr Units mm_g_ms{1e3, 1e3, 1e3};  // from m, kg, s
+
+core::MaterialInput convert(const core::MaterialInput& input, const Units& units);
+
+std::unique_ptr<physics::Material> make(const core::MaterialInput& input);
+
+/// OFHC copper with the strength law given, in SI: the parameters that most tests use.
+core::MaterialInput copper(const std::string& strength, bool with_gruneisen = false);
+
+}  // namespace mpm::tests
