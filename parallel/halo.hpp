@@ -42,13 +42,14 @@ class Halo {
  public:
   Halo(const Communicator& comm, const Directory& directory) : comm_(comm), directory_(directory) {}
 
-  /// The ranks with bricks next to ours, ascending.
+  /// The ranks with bricks next to ours, ascending. No communication.
   const std::vector<HaloPartner>& partners(const core::BrickGrid& grid) {
     update(grid);
     return partners_;
   }
-  /// As Exchange::begin_halo and end_halo. Collective.
+  /// As Exchange::begin_halo. Collective.
   void begin(core::BrickGrid& grid, core::NodeArray of, int first, int count);
+  /// As Exchange::end_halo. Collective.
   void end(core::BrickGrid& grid);
 
  private:

@@ -72,11 +72,12 @@ class Communicator {
   void barrier() const;
   /// Entry by entry over the ranks, in place. Collective.
   void reduce(std::span<double> values, MPI_Op op) const;
+  /// Collective.
   void reduce(std::span<std::int64_t> values, MPI_Op op) const;
   /// In place on every rank what `root` holds. Collective.
   void broadcast(std::span<std::byte> bytes, int root = 0) const;
 
-  /// Append the next message of `rank` with `tag`, whatever its length.
+  /// Append the next message of `rank` with `tag`, whatever its length. Waits for it.
   void receive_onto(std::vector<double>& data, int rank, int tag) const;
 
   /// Every rank's list to every rank. Collective.

@@ -250,18 +250,19 @@ std::int32_t MpiExchange::owner_of_traveller(const Travellers::Head& head) const
 
 void MpiExchange::migrate(const BrickGrid& grid, Travellers& travellers, std::span<const int> columns_of) {
   const std::vector<HaloPartner>& partners = halo_.partners(grid);
-  const std::size_t self = partners.size();
+  const auto self = static_cast<std::ptrdiff_t>(partners.size());
   std::vector<std::uint32_t> destination;
   destination.reserve(travellers.size());
   for (const Travellers::Head& head : travellers.heads) {
     const std::int32_t owner = owner_of_traveller(head);
     const auto p = std::lower_bound(partners.begin(), partners.end(), owner,
                                     [](const HaloPartner& h, std::int32_t r) { return h.rank < r; });
-    if (owner != rank() && (p == partners.end() || p->rank != owner)) {
+    const bool is_partner = p != partners.end() && p->rank == owner;
+    if (owner != rank() && !is_partner) {
       throw_lost(head, "belongs to rank " + std::to_string(owner) +
                            ", but no brick of that rank is next to one of rank " + std::to_string(rank()));
     }
-    destination.push_back(static_cast<std::uint32_t>(owner == rank() ? self : p - partners.begin()));
+    destination.push_back(static_cast<std::uint32_t>(is_partner ? p - partners.begin() : self));
   }
 
   const Parcels parcels = pack(travellers, destination, partners.size() + 1, columns_of);
@@ -269,7 +270,7 @@ void MpiExchange::migrate(const BrickGrid& grid, Travellers& travellers, std::sp
   for (std::size_t p = 0; p < partners.size(); ++p) {
     requests.send(comm_, parcels.of(p).data(), parcels.of(p).size_bytes(), partners[p].rank, tag_migrate);
   }
-  const auto stay = parcels.of(self);
+  const auto stay = parcels.of(partners.size());
   std::vector<double> arrived(stay.begin(), stay.end());
   for (const HaloPartner& p : partners) comm_.receive_onto(arrived, p.rank, tag_migrate);
   requests.wait_all();

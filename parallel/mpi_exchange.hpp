@@ -29,10 +29,11 @@ class MpiExchange final : public core::Exchange {
   int rank() const override { return comm_.rank(); }
   int size() const override { return comm_.size(); }
 
-  /// Collective.
+  /// Collective, with the ranks next to this one.
   void begin_halo(core::BrickGrid& grid, core::NodeArray of, int first, int count) override {
     halo_.begin(grid, of, first, count);
   }
+  /// Collective, with the ranks next to this one.
   void end_halo(core::BrickGrid& grid) override { halo_.end(grid); }
 
   /// Collective.
@@ -44,24 +45,28 @@ class MpiExchange final : public core::Exchange {
   /// Leaves the sums normalised: their limbs, too, are the same on any ranks. Collective.
   void sum(std::span<core::ExactSum> values) override;
 
-  /// Collective.
+  /// May be called again, for the same or for another set of bricks. Collective.
   void partition(core::BrickGrid& grid, std::span<const core::BrickCount> counts,
                  const core::DecompositionInput& how) override;
+  /// Holds up to twice the travellers' memory; give it pieces. Throws as migrate() does. Collective.
   void scatter(const core::BrickGrid& grid, core::Travellers& travellers,
                std::span<const int> columns_of) override;
 
-  /// Collective.
+  /// Bricks that exist already may be among the wanted. Collective.
   void claim(core::BrickGrid& grid, std::span<const core::BrickCoord> wanted) override;
+  /// Throws std::logic_error, on this rank alone, for a brick that holds particles or is not ours.
+  /// Collective.
   void retire(core::BrickGrid& grid, std::span<const core::BrickCoord> empty) override;
   bool exists(const core::BrickGrid&, core::BrickCoord b) const override { return directory_.contains(b); }
 
   /// Throws std::logic_error, on this rank alone, for a traveller whose brick does not exist or is not next
-  /// to one of ours. Collective.
+  /// to one of ours. Collective, with the ranks next to this one.
   void migrate(const core::BrickGrid& grid, core::Travellers& travellers,
                std::span<const int> columns_of) override;
 
   /// Collective.
   std::vector<std::string> gather(const std::string& mine) override;
+  /// Collective.
   Spread spread(double mine) override;
 
   /// For libraries that communicate by themselves; see communicator.hpp.
@@ -70,7 +75,9 @@ class MpiExchange final : public core::Exchange {
   const Directory& directory() const { return directory_; }
 
  private:
+  /// All ranks' counts, each brick once, by key. Collective.
   std::vector<core::BrickCount> merged(std::span<const core::BrickCount> counts) const;
+  /// Collective.
   std::vector<std::int32_t> owners(const core::BrickGrid& grid, std::span<const core::BrickCount> bricks,
                                    const core::DecompositionInput& how);
   std::int32_t owner_of_new(const core::BrickGrid& grid, core::BrickCoord b, std::int32_t asker) const;

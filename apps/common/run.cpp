@@ -83,12 +83,13 @@ class Run {
     threads_ = choose_threads(*case_.scene);
     prepare_folder();
     const std::string stem = options.output_dir + "/" + case_.scene->provenance.job_name;
-    log_.emplace(stem + ".out", case_.restart.has_value() && !options.dry_run, true, exchange_);
+    log_.emplace(stem + ".out", continues_files(), true, exchange_);
     for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
     model_ = core::prepare_model(case_.scene, make_materials(*case_.scene), io::columns_for(case_.scene->output));
     if (case_.restart) {
-      const io::RestartNews news = io::read_restart(*case_.restart, model_, exchange_);
-      continuation_ = Continuation{news.tracked};
+      const io::RestartResult state = io::read_restart(*case_.restart, model_, exchange_);
+      for (const std::string& notice : state.notices) log_->warn("{}", notice);
+      if (continues_files()) continuation_ = Continuation{state.extra.tracked};
       log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step, model_.clock.time);
     } else {
       core::discretise(model_, exchange_);
@@ -135,13 +136,16 @@ class Run {
     });
   }
 
+  /// A restart goes on with the job's own files; with another input (-rt) it writes under that one's name.
+  bool continues_files() const { return case_.restart && !options_.restart_input && !options_.dry_run; }
+
   bool status_rows_reached() const {
     return options_.status_rows && outputs_->status_rows() >= *options_.status_rows;
   }
 
   /// Runs to the end, or until something asks to stop: why, in words.
   std::string loop() {
-    if (!continuation_) {
+    if (!case_.restart) {
       outputs_->after_step(model_, exchange_);
       watch_->after_report(model_, outputs_->report(model_, exchange_));
     }
@@ -167,8 +171,8 @@ class Run {
   }
 
   void save() {
-    const std::string path = io::restart_path(options_.output_dir, *case_.scene, model_.clock.step);
-    io::write_restart(path, case_.bytes, model_, {outputs_->tracked()}, exchange_);
+    const std::string path = io::write_restart(options_.output_dir, case_.scene->provenance.job_name, model_,
+                                               {case_.bytes, outputs_->tracked(), {}}, exchange_);
     log_->say("restart    {} at step {}, time {:.6g}", path, model_.clock.step, model_.clock.time);
     last_restart_ = path;
   }

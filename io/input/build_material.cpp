@@ -128,7 +128,7 @@ std::vector<core::FrictionPair> build_frictions(const Node& root,
     const auto first = resolve(node, "mat1", "material", names, context);
     const auto second = resolve(node, "mat2", "material", names, context);
     if (!first || !second) continue;
-    const auto [low, high] = std::minmax(*first, *second);
+    const std::size_t low = std::min(*first, *second), high = std::max(*first, *second);
     if (std::ranges::any_of(
             pairs, [&](const auto& p) { return p.first_material == low && p.second_material == high; }))
       node.complain(context.diagnostics, "the friction of this pair of materials is given twice");

@@ -86,7 +86,11 @@ std::string read_bytes(const std::filesystem::path& file) {
 
 core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file,
                         const core::Catalogue& catalogue, const ReadOptions& options) {
-  const ElementSpec root = language(catalogue);
+  return parse_scene(bytes, file, language(catalogue), options);
+}
+
+core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file, const ElementSpec& root,
+                        const ReadOptions& options) {
   Diagnostics diagnostics(file.string());
   std::optional<XmlError> error;
   const Document document = parse_document(bytes, error);

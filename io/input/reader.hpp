@@ -11,6 +11,8 @@
 
 namespace mpm::io {
 
+struct ElementSpec;
+
 struct ReadOptions {
   bool check_files = true;    ///< look whether the files that the input names can be read
   bool accept_later = false;  ///< let pass what the language has and the program has not yet
@@ -25,6 +27,10 @@ std::string read_bytes(const std::filesystem::path& file);
 /// `file` is for messages, for the job's name and for paths relative to it; it is not opened.
 core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file,
                         const core::Catalogue& catalogue, const ReadOptions& options = {});
+
+/// The same with a language that is ready (io::language), for programs that read many inputs.
+core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file,
+                        const ElementSpec& language, const ReadOptions& options = {});
 
 /// find_input, read_bytes and parse_scene.
 core::Scene read_scene(const std::filesystem::path& job, const core::Catalogue& catalogue,

@@ -74,21 +74,31 @@ std::string summary_of(const core::Catalogue& catalogue, LawFamily laws, std::st
   return found == list.end() ? "" : std::string(found->summary);
 }
 
+/// The types of a row in the language's order, or what is shorter: "all", "all but ...".
+std::vector<std::string> shortest(const std::vector<std::string>& types,
+                                  const std::vector<std::string>& all) {
+  std::vector<std::string> with, without;
+  for (const std::string& type : all)
+    (std::ranges::find(types, type) != types.end() ? with : without).push_back(type);
+  if (types.empty() || without.empty()) return {"all"};
+  return without.size() < with.size() ? std::vector{"all but " + join(without, ", ")} : with;
+}
+
 /// Attributes that many types share, then one table for each type with what is its own.
 std::string law_tables(const ElementSpec& element, const core::Catalogue& catalogue) {
   const AttributeSpec& type_row = element.attributes.front();
-  const std::size_t all = type_row.range.words.size();
+  const std::vector<std::string>& all = type_row.range.words;
   const auto shared = [&](const AttributeSpec& a) { return a.for_types.empty() || a.for_types.size() >= 4; };
   std::vector<AttributeSpec> common;
   for (const AttributeSpec& a : element.attributes) {
     if (!shared(a)) continue;
     common.push_back(a);
-    if (a.for_types.size() == all) common.back().for_types = {"all"};
+    common.back().for_types = shortest(a.for_types, all);
   }
   std::vector<const AttributeSpec*> rows;
   for (const AttributeSpec& a : common) rows.push_back(&a);
   std::string text = table(rows, true);
-  for (const std::string& type : type_row.range.words) {
+  for (const std::string& type : all) {
     const bool later = std::ranges::find(type_row.later_values, type) != type_row.later_values.end();
     const std::string summary = summary_of(catalogue, element.laws, type);
     text += fmt::format("`type=\"{}\"`{}{}\n\n", type, later ? " (not yet)" : "",

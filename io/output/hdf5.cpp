@@ -206,8 +206,10 @@ std::string read_all_bytes(hid_t parent, const std::string& name) {
 }
 
 void write_attribute(hid_t object, const std::string& name, const std::string& value) {
-  const Handle type = text_type(value.size() + 1);
-  write_scalar(object, name, type, type, value.c_str());
+  constexpr std::size_t longest = 60000;  // HDF5 holds attributes of less than 64 KiB
+  const std::string text = value.substr(0, longest);
+  const Handle type = text_type(text.size() + 1);
+  write_scalar(object, name, type, type, text.c_str());
 }
 void write_attribute(hid_t object, const std::string& name, double value) {
   write_scalar(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);

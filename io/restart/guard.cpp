@@ -122,14 +122,15 @@ std::uint64_t guard_bytes(std::size_t bodies) {
   return std::bit_ceil(std::max(smallest_block, head_bytes + sizeof(Extent) * bodies + sizeof(std::uint64_t)));
 }
 
-void seal(const std::string& path, std::int64_t step, std::vector<Extent> rows, std::size_t bodies) {
+void seal(const std::string& path, std::int64_t step, std::int64_t after, std::vector<Extent> rows,
+          std::size_t bodies) {
   const auto block_bytes = static_cast<std::size_t>(guard_bytes(bodies));
   std::sort(rows.begin(), rows.end(), [](const Extent& a, const Extent& b) { return a.offset < b.offset; });
   File file(path, File::Mode::change);
   Guard guard;
   guard.step = step;
-  guard.written = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                      std::chrono::system_clock::now().time_since_epoch()).count();
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  guard.written = std::max<std::int64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), after + 1);
   guard.file_size = file.size();
   guard.tables_hash = hash_tables(file, block_bytes, guard.file_size, rows);
   guard.rows = std::move(rows);

@@ -28,8 +28,10 @@ struct Guard {
 /// Room that the guard of a file with this many bodies needs; a power of two from 512 up, as HDF5 wants it.
 std::uint64_t guard_bytes(std::size_t bodies);
 
-/// Checksum the complete file and write its guard, all of it to the disk. Throws FileError.
-void seal(const std::string& path, std::int64_t step, std::vector<Extent> rows, std::size_t bodies);
+/// Checksum the complete file and write its guard, all of it to the disk. `after`: the time that the file must be
+/// younger than, whatever the clock says. Throws FileError.
+void seal(const std::string& path, std::int64_t step, std::int64_t after, std::vector<Extent> rows,
+          std::size_t bodies);
 
 /// Read the guard and make sure that everything but the rows is as it was written. Throws FileError that says what
 /// is wrong.

@@ -23,6 +23,8 @@ class PointDriver {
   PointDriver(const core::ConstitutiveModel& model, const Options& options);
   /// With another update in the place of model.update, for the comparison of value types.
   PointDriver(const core::ConstitutiveModel& model, const Options& options, Update update);
+  PointDriver(const PointDriver&) = delete;  // the batch points into the particle's block
+  PointDriver& operator=(const PointDriver&) = delete;
 
   /// One step with the velocity gradient of its middle. Unit 1/time and time.
   void step(const core::Mat3<double>& gradient, double dt);

@@ -34,7 +34,7 @@ double imbalance(const std::vector<BrickCount>& bricks, const std::vector<std::i
   return *std::max_element(sum.begin(), sum.end()) * ranks / total;
 }
 
-/// Nodes that travel: for each brick and each other rank, as a first measure, the pairs' shared nodes.
+/// Nodes shared by pairs of bricks of different ranks.
 std::int64_t cut(const std::vector<BrickCount>& bricks, const std::vector<std::int32_t>& owner) {
   Directory directory;
   for (std::size_t i = 0; i < bricks.size(); ++i) directory.assign(bricks[i].brick, owner[i]);

@@ -1,5 +1,6 @@
 // Particles that change rank keep every bit, and none is lost or doubled.
 #include <bit>
+#include <cstring>
 
 #include <catch2/catch.hpp>
 

@@ -214,27 +214,17 @@ ReferenceStepper::Support ReferenceStepper::support(const Vector& x) const {
   return result;
 }
 
-/// What the faces of the grid do to node (i, j, k): the velocity (or momentum) there, and the force with it.
-void ReferenceStepper::constrain(std::size_t i, std::size_t j, std::size_t k, Vector& velocity,
-                                 Vector* force) const {
-  const std::array<std::size_t, 3> index{i, j, k};
-  const auto stop = [&](std::size_t axis) {
-    velocity[axis] = 0;
-    if (force) (*force)[axis] = 0;
-  };
+/// What the faces of the grid do to component `axis` of a velocity at node (i, j, k).
+ReferenceStepper::Stop ReferenceStepper::stop(const Index& node, std::size_t axis, double velocity) const {
+  Stop result = Stop::none;
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t side = 0; side < 2; ++side) {
-      if (index[a] != (side == 0 ? 0 : nodes_[a] - 1)) continue;
-      const double outward = side == 0 ? -velocity[a] : velocity[a];
-      switch (case_.boundary[2 * a + side]) {
-        case 1: stop(0), stop(1), stop(2); break;
-        case 2: stop(a); break;
-        case 4:
-          if (outward > 0) stop(a);
-          break;
-        default: break;
-      }
+      if (node[a] != (side == 0 ? 0 : nodes_[a] - 1)) continue;
+      const int kind = case_.boundary[2 * a + side];
+      if (kind == 1 || (kind == 2 && a == axis)) return Stop::held;
+      if (kind == 4 && a == axis && (side == 0 ? velocity < 0 : velocity > 0)) result = Stop::wall;
     }
+  return result;
 }
 
 template <class Operation>
@@ -243,7 +233,7 @@ void ReferenceStepper::for_active_nodes(Operation&& operation) {
   for (std::size_t k = 0; k < nodes_[2]; ++k)
     for (std::size_t j = 0; j < nodes_[1]; ++j)
       for (std::size_t i = 0; i < nodes_[0]; ++i, ++n)
-        if (grid_[n].active) operation(i, j, k, grid_[n]);
+        if (grid_[n].active) operation(Index{i, j, k}, grid_[n]);
 }
 
 /// 2-31, 2-32; the forces at once unless USF has yet to update the stress.
@@ -277,18 +267,25 @@ void ReferenceStepper::add_force(const ReferenceParticle& particle, const Suppor
 
 /// 2-33.
 void ReferenceStepper::initial_velocities() {
-  for_active_nodes([&](std::size_t i, std::size_t j, std::size_t k, Node& node) {
-    for (std::size_t a = 0; a < 3; ++a) node.w[a] = node.p[a] / node.m;
-    constrain(i, j, k, node.w, nullptr);
+  for_active_nodes([&](const Index& index, Node& node) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      node.w[a] = node.p[a] / node.m;
+      if (stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
+    }
   });
 }
 
 /// 2-41 with the boundary conditions.
 void ReferenceStepper::integrate_momentum(double dt) {
-  for_active_nodes([&](std::size_t i, std::size_t j, std::size_t k, Node& node) {
-    for (std::size_t a = 0; a < 3; ++a) node.p[a] += node.f[a] * dt;
-    constrain(i, j, k, node.p, &node.f);
+  for_active_nodes([&](const Index& index, Node& node) {
     for (std::size_t a = 0; a < 3; ++a) {
+      const double p_old = node.p[a];
+      node.p[a] += node.f[a] * dt;
+      const Stop kind = stop(index, a, node.p[a]);
+      if (kind != Stop::none) {
+        node.f[a] = kind == Stop::wall && case_.wall_reaction ? -p_old / dt : 0.0;
+        node.p[a] = 0;
+      }
       node.v[a] = node.p[a] / node.m;
       node.a[a] = node.f[a] / node.m;
       node.w[a] = 0;
@@ -316,16 +313,16 @@ void ReferenceStepper::grid_to_particles(double dt) {
   }
 }
 
-/// MUSL: the rest of 2-45. USL: 2-44 with a remedy for its singularity 2-49: a node almost without mass takes
-/// v^k + (f/m) dt m/m_floor.
+/// MUSL: the rest of 2-45. USL: 2-44 with a remedy for its singularity 2-49, v^k + f dt/max(m, m_floor).
 void ReferenceStepper::final_velocities(double dt) {
   const double floor = case_.usl_mass_floor * node_mass_unit_;
-  for_active_nodes([&](std::size_t i, std::size_t j, std::size_t k, Node& node) {
+  for_active_nodes([&](const Index& index, Node& node) {
     const double left_out = node.m < floor ? 1 - node.m / floor : 0.0;
-    for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t a = 0; a < 3; ++a) {
       node.w[a] =
           case_.scheme == ReferenceScheme::musl ? node.w[a] / node.m : node.v[a] - left_out * dt * node.a[a];
-    constrain(i, j, k, node.w, nullptr);
+      if (stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
+    }
   });
 }
 

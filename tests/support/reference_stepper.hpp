@@ -67,13 +67,17 @@ struct ReferenceCase {
   /// Lower and upper face of x, y, z: 0 free, 1 fixed, 2 symmetry, 4 rigid wall (no penetration, free to
   /// leave).
   std::array<int, 6> boundary{};
+  /// A component that a constraint stops has no force, as the thesis has it: the particles never learn of the
+  /// wall, those beside it keep part of their speed, and a rigid wall does not let go of them. With this, the
+  /// force at a rigid wall is the one that stops the node.
+  bool wall_reaction = false;
   Vector gravity{};
   ReferenceScheme scheme = ReferenceScheme::musl;
   double dt_factor = 0.5;                                       ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
-  /// USL only. Nodes lighter than this times rho_0 * cell volume take part of their acceleration into the
-  /// strain rate.
-  double usl_mass_floor = 1e-2;
+  /// USL only: for the strain rate a node's force is divided by at least this times rho_0 * cell volume.
+  /// Below 0.05 the Taylor bar diverges, from 1 on the scheme is an unstable forward Euler.
+  double usl_mass_floor = 0.1;
   ReferenceMaterial material;
   std::vector<ReferenceParticle> particles;
 };
@@ -101,6 +105,8 @@ class ReferenceStepper {
   Vector momentum() const;
 
  private:
+  using Index = std::array<std::size_t, 3>;
+  enum class Stop { none, held, wall };
   struct Node {
     double m = 0;
     Vector p{}, f{};      ///< momentum and force
@@ -115,7 +121,7 @@ class ReferenceStepper {
   };
 
   Support support(const Vector& x) const;
-  void constrain(std::size_t i, std::size_t j, std::size_t k, Vector& velocity, Vector* force) const;
+  Stop stop(const Index& node, std::size_t axis, double velocity) const;
   template <class Operation>
   void for_active_nodes(Operation&& operation);
 
@@ -128,7 +134,7 @@ class ReferenceStepper {
   void update_stresses(double dt);
 
   ReferenceCase case_;
-  std::array<std::size_t, 3> nodes_{};  ///< along each axis
+  Index nodes_{};  ///< along each axis
   Vector inverse_cell_{};
   double length_ = 0;          ///< smallest cell edge
   double node_mass_unit_ = 0;  ///< rho_0 * cell volume

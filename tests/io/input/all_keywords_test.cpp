@@ -269,9 +269,9 @@ TEST_CASE("every keyword is accepted, and every keyword is described") {
 
 TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   const io::ReadOptions options{.check_files = false, .accept_later = true};
-  const core::Scene scene = io::parse_scene(all_keywords(), "all.xmp", {}, options);
+  const core::Scene scene = io::parse_scene(all_keywords(), "all.xmp", core::Catalogue{}, options);
   const std::string echo = io::to_text(scene);
-  CHECK(io::to_text(io::parse_scene(echo, "all.xmp", {}, options)) == echo);
+  CHECK(io::to_text(io::parse_scene(echo, "all.xmp", core::Catalogue{}, options)) == echo);
 
   CHECK(scene.materials.size() == 25);
   CHECK(scene.components[0].bodies.size() == 21);
@@ -287,7 +287,8 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
 
 TEST_CASE("what is known but not implemented yet says so, for each element and value") {
   try {
-    io::parse_scene(all_keywords(), "all.xmp", {}, {.check_files = false, .accept_later = false});
+    io::parse_scene(all_keywords(), "all.xmp", core::Catalogue{},
+                    {.check_files = false, .accept_later = false});
     FAIL("accepted");
   } catch (const core::InputErrors& errors) {
     for (const core::Diagnostic& d : errors.diagnostics()) {

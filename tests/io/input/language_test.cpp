@@ -1,5 +1,9 @@
 // The notation of Specification.xml, and how the laws' tables are merged into it.
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
 #include <catch2/catch.hpp>
 
 #include "io/input/reference.hpp"
@@ -96,6 +100,17 @@ TEST_CASE("the reference names every attribute") {
         "`type=\"Homemade\"`: a law that only", "`type=\"RHT\"` (not yet)", "**Not implemented yet.**",
         "`RectangluarForMembrane` is accepted for"})
     CHECK(reference.find(piece) != reference.npos);
+}
+
+TEST_CASE("docs/keywords.md is what the program prints") {
+  const char* const source = std::getenv("MPM_SOURCE");
+  if (!source) {
+    WARN("MPM_SOURCE is not set: docs/keywords.md is not compared");
+    return;
+  }
+  const std::string committed = io::read_bytes(std::filesystem::path(source) / "docs/keywords.md");
+  INFO("remedy: mpm_check --reference > docs/keywords.md");
+  CHECK((committed == io::keyword_reference(physics::catalogue())));
 }
 
 }  // namespace

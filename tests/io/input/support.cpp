@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <unistd.h>
 
+#include "io/input/specification.hpp"
+
 namespace mpm::test {
 
 namespace {
@@ -76,7 +78,8 @@ std::string replaced(std::string_view text, std::string_view from, std::string_v
 }
 
 core::Scene parse(std::string_view text, const io::ReadOptions& options) {
-  return io::parse_scene(text, "case.xmp", small_catalogue(), options);
+  static const io::ElementSpec language = io::language(small_catalogue());
+  return io::parse_scene(text, "case.xmp", language, options);
 }
 
 std::vector<std::string> complaints(std::string_view text, const io::ReadOptions& options) {

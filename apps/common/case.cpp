@@ -1,0 +1,108 @@
+#include "apps/common/case.hpp"
+
+#include <filesystem>
+
+#include "io/input/reader.hpp"
+#include "io/output/file_error.hpp"
+#include "io/output/variables.hpp"
+#include "io/restart/restart.hpp"
+#include "parallel/launch.hpp"
+#include "parallel/mpi_exchange.hpp"
+#include "physics/catalogue.hpp"
+#include "physics/material/material.hpp"
+
+namespace mpm::apps {
+
+namespace {
+
+bool is_restart(const std::string& job) { return std::filesystem::path(job).extension() == ".pe"; }
+
+/// The file itself, or for `Job.pe`, which names no step, the newest one that is whole. Collective.
+std::string find_restart(const std::string& named, const parallel::Communicator& world) {
+  namespace fs = std::filesystem;
+  if (fs::exists(named)) return named;
+  parallel::MpiExchange exchange(world);
+  const fs::path path(named);
+  std::vector<std::string> notices;
+  const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+  const std::string job = io::job_of_restart(named);
+  const auto newest = io::find_newest_restart(folder, job, exchange, notices);
+  if (world.rank() == 0) {
+    for (const std::string& notice : notices) std::fprintf(stderr, "%s\n", notice.c_str());
+  }
+  if (newest && job == path.stem().string()) return *newest;
+  throw io::FileError("cannot read " + named + ": no such file" +
+                      (newest ? "; the newest restart file of the job is " + *newest : "; nothing was started"));
+}
+
+Case parsed(const std::string& bytes, const std::string& path) {
+  Case c;
+  c.bytes = bytes;
+  c.scene = std::make_shared<const core::Scene>(io::parse_scene(bytes, path, physics::catalogue(), {.check_files = false}));
+  return c;
+}
+
+/// The bytes of an input file that rank 0 has checked. Collective.
+Case from_input(const std::string& job, const parallel::Communicator& world) {
+  std::string path;
+  std::string bytes = parallel::on_root_then_all<io::FileError>(world, [&] {
+    path = io::find_input(job).string();
+    std::string read = io::read_bytes(path);
+    io::parse_scene(read, path, physics::catalogue());
+    return read;
+  });
+  return parsed(bytes, parallel::broadcast(world, path));
+}
+
+}  // namespace
+
+Case load_case(const RunOptions& options, const parallel::Communicator& world) {
+  if (!is_restart(options.job)) {
+    if (options.restart_input) {
+      throw core::InputErrors(core::SourceLocation{options.job, 0}, "-rt", "needs a restart file (Job_<step>.pe) to start from");
+    }
+    return from_input(options.job, world);
+  }
+  const std::string restart = find_restart(options.job, world);
+  Case c;
+  if (options.restart_input) {
+    c = from_input(*options.restart_input, world);
+  } else {
+    std::string path;
+    const std::string bytes = parallel::on_root_then_all<io::FileError>(world, [&] {
+      io::RestartScene scene = io::read_restart_scene(restart);
+      path = scene.path;
+      io::parse_scene(scene.text, path, physics::catalogue(), {.check_files = false});
+      return scene.text;
+    });
+    c = parsed(bytes, parallel::broadcast(world, path));
+  }
+  c.restart = restart;
+  return c;
+}
+
+std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene) {
+  std::vector<std::unique_ptr<core::ConstitutiveModel>> materials;
+  for (const core::MaterialInput& m : scene.materials) materials.push_back(physics::make_material(m));
+  return materials;
+}
+
+ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world) {
+  if (!is_restart(options.job)) {
+    throw core::InputErrors(core::SourceLocation{options.job, 0}, "-h5pt", "converts a restart file: name a Job_<step>.pe");
+  }
+  const std::string restart = find_restart(options.job, world);
+  const Case c = load_case(options, world);
+  std::vector<io::Variable> variables;
+  if (c.scene->output.post_processing) variables = io::variables_of(c.scene->output.post_processing->variables);
+  parallel::MpiExchange exchange(world);
+  const std::string target = options.output_dir + "/" + std::filesystem::path(restart).stem().string() + ".h5part";
+  io::together(exchange, [&] {
+    if (exchange.rank() == 0) std::filesystem::create_directories(options.output_dir);
+  });
+  io::restart_to_h5part(restart, target, variables, false, exchange);
+  if (world.rank() == 0) std::printf("%s\n", target.c_str());
+  return done;
+}
+
+}  // namespace mpm::apps

@@ -1,0 +1,28 @@
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "io/restart/files.hpp"
+#include "io/restart/restart.hpp"
+
+namespace mpm::io {
+
+std::optional<std::string> find_newest_restart(const std::string& folder, const std::string& job,
+                                               core::Exchange& exchange, std::vector<std::string>& notices) {
+  std::string mine;
+  if (exchange.rank() == 0) {
+    for (const std::string& path : restart_files(folder, job)) mine += path + '\n';
+  }
+  std::istringstream paths(exchange.gather(mine).front());
+  for (std::string path; std::getline(paths, path);) {
+    try {
+      verify_restart(path, exchange);
+      return path;
+    } catch (const FileError& e) {
+      notices.push_back(fmt::format("passed over: {}", e.what()));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,136 @@
+#include "io/restart/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace mpm::io {
+
+namespace {
+
+/// The scene's own words on a body of this name, whether it takes part or not.
+const core::BodyInput* input_of(const core::Scene& scene, const std::string& name) {
+  for (const core::ComponentInput& component : scene.components) {
+    for (const core::BodyInput& body : component.bodies) {
+      if (body.name == name) return &body;
+    }
+  }
+  return nullptr;
+}
+
+class Fitting {
+ public:
+  Fitting(const RestartContents& contents, const core::Model& model, std::vector<std::string>& notices)
+      : contents_(contents), model_(model), notices_(notices) {}
+
+  Fit run() {
+    Fit fit;
+    std::vector<bool> filled(model_.bodies.size());
+    for (const BodyRecord& record : contents_.bodies) {
+      fit.bodies.push_back(place(record));
+      if (fit.bodies.back()) filled[fit.bodies.back()->number] = true;
+    }
+    for (std::size_t b = 0; b < filled.size(); ++b) {
+      if (!filled[b]) fit.new_bodies.push_back(b);
+    }
+    if (!wrong_.empty()) throw core::InputErrors(std::move(wrong_));
+    return fit;
+  }
+
+ private:
+  void complain(const core::SourceLocation& where, const std::string& name, std::string message) {
+    wrong_.push_back({where.file, where.line, "Body", "name", name, std::move(message)});
+  }
+
+  std::optional<Fit::Body> place(const BodyRecord& record) {
+    const auto found = std::find_if(model_.bodies.begin(), model_.bodies.end(),
+                                    [&](const core::Body& b) { return b.name == record.name; });
+    const core::BodyInput* input = input_of(*model_.scene, record.name);
+    if (found == model_.bodies.end()) {
+      leave_out(record, input);
+      return std::nullopt;
+    }
+    const core::SourceLocation where = input != nullptr ? input->source : core::SourceLocation{};
+    check_material(record, *found, where);
+    return Fit::Body{static_cast<std::size_t>(found - model_.bodies.begin()), sources(record, *found, where),
+                     record.columns.size()};
+  }
+
+  void leave_out(const BodyRecord& record, const core::BodyInput* input) {
+    if (input != nullptr && input->deactivated) {
+      notices_.push_back(fmt::format("body '{}' is deactivated: its {} particles are left out, and what they held is "
+                                     "booked as removed",
+                                     record.name, record.particles));
+    } else if (record.particles > 0) {
+      complain({model_.scene->provenance.path, 0}, record.name,
+               "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" if it is to be left "
+               "out");
+    }
+  }
+
+  void check_material(const BodyRecord& record, const core::Body& body, const core::SourceLocation& where) {
+    const std::string& material = model_.scene->materials[static_cast<std::size_t>(body.material)].name;
+    if (material != record.material) {
+      complain(where, record.name,
+               fmt::format("its material is '{}', but '{}' in the restart file; bodies keep their material", material,
+                           record.material));
+    } else if (body.model->reference_density() != record.reference_density) {
+      complain(where, record.name,
+               fmt::format("its material '{}' has the reference density {:.17g}, but {:.17g} in the restart file",
+                           material, body.model->reference_density(), record.reference_density));
+    }
+  }
+
+  std::vector<int> sources(const BodyRecord& record, const core::Body& body, const core::SourceLocation& where) {
+    // What the law reads back cannot start at zero; what is only shown can.
+    core::UpdateOptions options = model_.options;
+    options.keep_strain = false;
+    core::ColumnSet needed = core::ColumnSet::mechanics();
+    needed.add(body.model->columns(options));
+    const core::ColumnSet shown = shown_only();
+
+    std::vector<int> source;
+    std::string missing, started, dropped;
+    const auto list = [](std::string& names, core::Column c) {
+      names.append(names.empty() ? "" : ", ").append(core::name_of(c));
+    };
+    for (int i = 0; i < core::column_count; ++i) {
+      const auto c = static_cast<core::Column>(i);
+      const auto at = std::find(record.columns.begin(), record.columns.end(), c);
+      const bool there = at != record.columns.end();
+      if (!body.pool->layout().has(c)) {
+        if (there) list(dropped, c);
+        continue;
+      }
+      source.push_back(there ? static_cast<int>(at - record.columns.begin()) : -1);
+      if (!there) list(shown.has(c) && !needed.has(c) ? started : missing, c);
+    }
+    if (!missing.empty()) {
+      complain(where, record.name,
+               fmt::format("the scene needs state that the restart file does not have: {}; keep the material laws and "
+                           "the volume update of the run that wrote it",
+                           missing));
+    }
+    if (!started.empty()) {
+      notices_.push_back(fmt::format("body '{}': {} start at zero, for the restart file does not have them", record.name,
+                                     started));
+    }
+    if (!dropped.empty()) {
+      notices_.push_back(fmt::format("body '{}': {} of the restart file are not needed any more", record.name, dropped));
+    }
+    return source;
+  }
+
+  const RestartContents& contents_;
+  const core::Model& model_;
+  std::vector<std::string>& notices_;
+  std::vector<core::Diagnostic> wrong_;
+};
+
+}  // namespace
+
+Fit fit_to_model(const RestartContents& contents, const core::Model& model, std::vector<std::string>& notices) {
+  return Fitting(contents, model, notices).run();
+}
+
+}  // namespace mpm::io

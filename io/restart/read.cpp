@@ -1,0 +1,236 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/step/migration.hpp"
+#include "io/output/file.hpp"
+#include "io/restart/contents.hpp"
+#include "io/restart/fit.hpp"
+#include "io/restart/restart.hpp"
+#include "io/restart/rows.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+bool same_grid(const core::GridGeometry& a, const core::GridGeometry& b) {
+  return a.origin == b.origin && a.cell == b.cell && a.cells == b.cells;
+}
+
+/// The share of all records that a rank handles when nobody owns anything yet: about as many particles each.
+std::vector<std::size_t> share_of(const RestartContents& contents, const core::Exchange& exchange) {
+  std::uint64_t all = 0;
+  for (const CohortRecord& r : contents.cohorts) all += r.particles;
+  const auto ranks = static_cast<std::uint64_t>(exchange.size());
+  std::vector<std::size_t> mine;
+  std::uint64_t before = 0;
+  for (std::size_t i = 0; i < contents.cohorts.size(); ++i) {
+    const std::uint64_t rank = all == 0 ? 0 : static_cast<std::uint64_t>(static_cast<double>(before) /
+                                                                          static_cast<double>(all) *
+                                                                          static_cast<double>(ranks));
+    if (std::min(rank, ranks - 1) == static_cast<std::uint64_t>(exchange.rank())) mine.push_back(i);
+    before += contents.cohorts[i].particles;
+  }
+  return mine;
+}
+
+/// What takes one row of the file to a row of the model's body.
+void convert(const double* row, const std::vector<int>& source, std::vector<double>& out) {
+  out.resize(source.size());
+  for (std::size_t c = 0; c < source.size(); ++c) out[c] = source[c] < 0 ? 0.0 : row[source[c]];
+}
+
+/// Book what the bodies held that no longer take part.
+void book_removed(const RestartContents& contents, const Fit& fit, const std::string& path, core::Model& model,
+                  core::Exchange& exchange) {
+  std::vector<std::size_t> removed;
+  for (const std::size_t i : share_of(contents, exchange)) {
+    if (fit.of(contents.cohorts[i]) == nullptr) removed.push_back(i);
+  }
+  together(exchange, [&] {
+    for_each_record(path, contents, removed, [&](const CohortRecord& record, const double* rows) {
+      const BodyRecord& body = contents.bodies[static_cast<std::size_t>(record.body)];
+      const auto at = [&](core::Column c) {
+        return static_cast<std::size_t>(std::find(body.columns.begin(), body.columns.end(), c) - body.columns.begin());
+      };
+      const std::size_t m = at(core::Column::mass), e = at(core::Column::internal_energy);
+      const std::size_t v = at(core::Column::velocity_x);
+      for (std::uint64_t p = 0; p < record.particles; ++p, rows += body.columns.size()) {
+        model.books.removed_mass.add(rows[m]);
+        model.books.removed_kinetic.add(
+            0.5 * rows[m] * (rows[v] * rows[v] + rows[v + 1] * rows[v + 1] + rows[v + 2] * rows[v + 2]));
+        model.books.removed_internal.add(rows[e] * rows[m] / body.reference_density);
+      }
+    });
+  });
+}
+
+/// The bricks of the file as they were.
+void read_bricks(const std::string& path, const RestartContents& contents, const Fit& fit, core::Model& model,
+                 core::Exchange& exchange) {
+  std::vector<core::BrickCount> counts;
+  for (const std::size_t i : share_of(contents, exchange)) {
+    const CohortRecord& r = contents.cohorts[i];
+    if (fit.of(r) != nullptr) counts.push_back({core::brick_of_key(r.brick), static_cast<std::int64_t>(r.particles)});
+  }
+  exchange.partition(*model.grid, counts, model.scene->decomposition);
+
+  std::vector<std::size_t> mine;
+  for (std::size_t i = 0; i < contents.cohorts.size(); ++i) {
+    const CohortRecord& r = contents.cohorts[i];
+    const core::Slot s = model.grid->find(core::brick_of_key(r.brick));
+    if (fit.of(r) != nullptr && s != core::no_slot && s < model.grid->owned()) mine.push_back(i);
+  }
+  together(exchange, [&] {
+    std::vector<double> row;
+    for_each_record(path, contents, mine, [&](const CohortRecord& record, const double* rows) {
+      const Fit::Body& body = *fit.of(record);
+      core::BlockPool& pool = *model.bodies[body.number].pool;
+      core::Brick& brick = model.grid->brick(model.grid->find(core::brick_of_key(record.brick)));
+      core::Cohort cohort;
+      cohort.body = static_cast<int>(body.number);
+      for (std::uint64_t p = 0; p < record.particles; ++p, rows += body.file_columns) {
+        convert(rows, body.source, row);
+        core::append(pool, cohort, row.data());
+      }
+      brick.cohorts.push_back(std::move(cohort));
+    });
+    // The scene may number bodies otherwise than the file.
+    for (core::Brick& brick : model.grid->bricks()) {
+      std::sort(brick.cohorts.begin(), brick.cohorts.end(),
+                [](const core::Cohort& a, const core::Cohort& b) { return a.body < b.body; });
+    }
+  });
+}
+
+void refuse_outside(std::int64_t outside, const std::string& first, const core::Model& model, core::Exchange& exchange) {
+  exchange.sum(std::span(&outside, 1));
+  if (outside == 0) return;
+  std::string example;
+  for (const std::string& line : exchange.gather(first)) {
+    if (example.empty()) example = line;
+  }
+  throw core::InputErrors(model.scene->grid.source, "Grid",
+                          fmt::format("{} particles of the restart file lie outside of this grid; make it larger. "
+                                      "The first: {}",
+                                      outside, example));
+}
+
+/// Particles to wherever the new grid has them; each brick in the order of cells and identities, as at a start.
+void read_particles(const std::string& path, const RestartContents& contents, const Fit& fit, core::Model& model,
+                    core::Exchange& exchange) {
+  const core::GridGeometry& geometry = model.grid->geometry();
+  core::Travellers travellers;
+  std::map<core::BrickKey, std::int64_t> particles;
+  std::int64_t outside = 0;
+  std::string first_outside;
+  std::vector<std::size_t> mine = share_of(contents, exchange);
+  std::erase_if(mine, [&](std::size_t i) { return fit.of(contents.cohorts[i]) == nullptr; });
+  together(exchange, [&] {
+    std::vector<double> row;
+    for_each_record(path, contents, mine, [&](const CohortRecord& record, const double* rows) {
+      const Fit::Body& body = *fit.of(record);
+      for (std::uint64_t p = 0; p < record.particles; ++p, rows += body.file_columns) {
+        convert(rows, body.source, row);
+        const core::Vec3<double> x{row[0], row[1], row[2]};  // the first columns of every layout
+        if (!geometry.contains(x)) {
+          if (outside++ == 0) first_outside = core::describe_particle(model.bodies[body.number], row.data());
+          continue;
+        }
+        const core::BrickCoord to = geometry.brick_at(x);
+        ++particles[core::key_of(to)];
+        travellers.add(to, static_cast<int>(body.number), row.data(), static_cast<int>(row.size()));
+      }
+    });
+  });
+  refuse_outside(outside, first_outside, model, exchange);
+
+  std::vector<core::BrickCount> counts;
+  for (const auto& [key, n] : particles) counts.push_back({core::brick_of_key(key), n});
+  exchange.partition(*model.grid, counts, model.scene->decomposition);
+  std::vector<int> columns_of;
+  for (const core::Body& b : model.bodies) columns_of.push_back(b.pool->layout().columns());
+  exchange.scatter(*model.grid, travellers, columns_of);
+  core::insert_travellers(model, travellers);
+  for (core::Brick& brick : model.grid->bricks()) {
+    for (core::Cohort& cohort : brick.cohorts) {
+      core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+      core::sort_by_identity(pool, cohort);
+      core::sort_by_cell(*model.grid, brick.coord, pool, cohort);
+    }
+  }
+}
+
+/// The books of all ranks go on at rank 0.
+void restore_books(const RestartContents& contents, const Fit& fit, core::Model& model, const core::Exchange& exchange) {
+  const bool keeper = exchange.rank() == 0;
+  model.books = keeper ? contents.books : core::Books{};
+  model.books.body_eroded.assign(model.bodies.size(), 0);
+  model.books.body_left.assign(model.bodies.size(), 0);
+  if (!keeper) return;
+  for (std::size_t b = 0; b < contents.bodies.size(); ++b) {
+    if (!fit.bodies[b]) continue;
+    model.books.body_eroded[fit.bodies[b]->number] = contents.bodies[b].eroded;
+    model.books.body_left[fit.bodies[b]->number] = contents.bodies[b].left;
+  }
+}
+
+}  // namespace
+
+RestartScene read_restart_scene(const std::string& path) {
+  check_guard(path);
+  const RestartContents contents = read_contents(path);
+  return {contents.extra.scene_text, contents.provenance.path, contents.provenance.job_name};
+}
+
+RestartResult read_restart(const std::string& path, core::Model& model, core::Exchange& exchange) {
+  RestartContents contents;
+  together(exchange, [&] {
+    if (exchange.rank() == 0) check_guard(path);
+  });
+  together(exchange, [&] { contents = read_contents(path); });
+
+  RestartResult result;
+  const Fit fit = fit_to_model(contents, model, result.notices);
+  result.new_bodies = fit.new_bodies;
+  model.clock = contents.clock;
+  model.initial_energy = contents.initial_energy;
+  model.next_identity = contents.next_identity;
+  restore_books(contents, fit, model, exchange);
+  book_removed(contents, fit, path, model, exchange);
+  if (same_grid(contents.grid, model.grid->geometry())) {
+    read_bricks(path, contents, fit, model, exchange);
+  } else {
+    result.notices.push_back("the grid is another than that of the restart file: particles are dealt out anew");
+    read_particles(path, contents, fit, model, exchange);
+  }
+  result.extra = std::move(contents.extra);
+  result.extra.scene_text.clear();
+  return result;
+}
+
+void verify_restart(const std::string& path, core::Exchange& exchange) {
+  RestartContents contents;
+  together(exchange, [&] {
+    if (exchange.rank() == 0) check_guard(path);
+  });
+  together(exchange, [&] {
+    contents = read_contents(path);
+    for_each_record(path, contents, share_of(contents, exchange), [](const CohortRecord&, const double*) {});
+  });
+}
+
+std::uint64_t restart_state_hash(const std::string& path) {
+  check_guard(path);
+  const RestartContents contents = read_contents(path);
+  std::vector<std::string> bodies;
+  for (const BodyRecord& b : contents.bodies) {
+    core::ColumnSet set;
+    for (const core::Column c : b.columns) set.add(c);
+    bodies.push_back(described(b.name, set));
+  }
+  return state_hash(contents.cohorts, bodies);
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include "io/output/file.hpp"
+#include "io/output/hdf5.hpp"
+#include "io/output/row_batches.hpp"
+#include "io/restart/contents.hpp"
+#include "io/restart/files.hpp"
+#include "io/restart/restart.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+constexpr std::size_t bytes_at_once = std::size_t{8} << 20;
+
+/// The file without its rows, and the space for them.
+std::vector<Extent> make_room(const std::string& part, const RestartContents& contents, const core::Scene& scene) {
+  // Asked for before HDF5 begins, which does not survive a full disk.
+  File(part, File::Mode::write_anew).reserve(expected_bytes(contents));
+  std::vector<Extent> rows = write_contents(part, contents, scene);
+  File file(part, File::Mode::change);
+  file.reserve(file.size());
+  return rows;
+}
+
+void fill(const core::Model& model, const RowBatch& batch, int columns, std::vector<double>& rows) {
+  rows.resize(batch.particles * static_cast<std::size_t>(columns));
+  for_each_block(model, batch, [&](std::size_t, const core::ColumnLayout&, const double* block, int used,
+                                   std::size_t first) {
+    double* row = rows.data() + first * static_cast<std::size_t>(columns);
+    for (int i = 0; i < used; ++i) {
+      for (int c = 0; c < columns; ++c) *row++ = block[core::block_lanes * c + i];
+    }
+  });
+}
+
+void write_rows_of(std::size_t body, const std::vector<RowBatch>& batches, hid_t file, const core::Model& model,
+                   core::Exchange& exchange) {
+  const int columns = model.bodies[body].pool->layout().columns();
+  const hdf5::Handle dataset = hdf5::open_dataset(file, rows_name(body));
+  std::vector<double> rows;
+  for (const RowBatch& batch : batches) {
+    fill(model, batch, columns, rows);
+    hdf5::write_rows(dataset, H5T_NATIVE_DOUBLE, batch.rows, rows.data(), exchange.size() > 1);
+  }
+}
+
+void write_all_rows(const std::string& part, const ParticleOrder& order, const core::Model& model,
+                    core::Exchange& exchange) {
+  std::vector<std::vector<RowBatch>> batches;  // of each body
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    std::vector<std::int64_t> first_row(model.bodies.size(), left_out);
+    first_row[b] = 0;
+    const std::size_t most = bytes_at_once / static_cast<std::size_t>(model.bodies[b].pool->layout().bytes_per_particle());
+    batches.push_back(cut_into_batches(model, order, first_row, most, exchange));
+  }
+  std::string complaint;
+  try {
+    hdf5::Handle file = hdf5::open_file_together(part, exchange);
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) write_rows_of(b, batches[b], file, model, exchange);
+    file.close("write '" + part + "'");
+  } catch (const FileError& e) {
+    complaint = e.what();
+  }
+  agree(exchange, complaint);
+  together(exchange, [&] { File(part, File::Mode::read).sync(); });
+}
+
+}  // namespace
+
+std::string write_restart(const std::string& folder, const std::string& job, const core::Model& model,
+                          const RestartExtra& extra, core::Exchange& exchange) {
+  const std::string path = restart_path(folder, job, model.clock.step);
+  const std::string part = part_name(path);
+  const ParticleOrder order = order_particles(model, exchange, true);
+  const RestartContents contents = contents_of(model, extra, order, exchange);
+  try {
+    std::vector<Extent> rows;
+    together(exchange, [&] {
+      if (exchange.rank() == 0) rows = make_room(part, contents, *model.scene);
+    });
+    write_all_rows(part, order, model, exchange);
+    together(exchange, [&] {
+      if (exchange.rank() != 0) return;
+      seal(part, model.clock.step, youngest(folder, job), rows, contents.bodies.size());
+      rename_file(part, path);
+      remove_older(folder, job);
+    });
+  } catch (const FileError&) {
+    if (exchange.rank() == 0) remove_file(part);
+    throw;
+  }
+  return path;
+}
+
+}  // namespace mpm::io
