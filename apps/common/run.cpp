@@ -20,6 +20,7 @@
 #include "core/step/stepper.hpp"
 #include "io/output/file_error.hpp"
 #include "io/output/memory_use.hpp"
+#include "io/output/particle_order.hpp"
 #include "io/output/provenance.hpp"
 #include "io/output/summary.hpp"
 #include "io/restart/restart.hpp"
@@ -192,6 +193,7 @@ class Run {
     report.particle_steps = exchange_.spread(particle_steps_).mean * exchange_.size();
     const core::Totals totals = core::compute_totals(model_, exchange_);
     log_->say("\n{}", io::timing_table(report));
+    log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads", io::state_hash(model_, exchange_));
     if (totals.left_grid > 0 || totals.eroded > 0) {
       log_->say("{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal energy {:.6g} went with them",
                 totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic, totals.removed_internal);

@@ -207,31 +207,52 @@ int overfull_tag(std::string_view bytes) {
                       [&](std::size_t i) { return bytes[2 * i + 1 - low] ? '?' : bytes[2 * i + low]; });
 }
 
+/// What forbids to parse the bytes at all.
+std::optional<XmlError> refusal(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.size() > largest_document)
+    return XmlError{
+        0,
+        fmt::format("{} bytes are more than the {} that an input may have; put particles into a file of "
+                    "their own (Geometry file=)",
+                    bytes.size(), largest_document),
+        {}};
+  if (trim(bytes).empty()) return XmlError{0, "the file is empty", {}};
+  if (bytes.starts_with("\0\0"sv) || bytes.starts_with("\xFF\xFE\0\0"sv) || bytes.starts_with("<\0\0\0"sv))
+    return XmlError{0, "UTF-32 is not read; save the file as UTF-8", {}};
+  if (const int line = overfull_tag(bytes))
+    return XmlError{line, fmt::format("more than {} attributes on one element", most_attributes), {}};
+  return {};
+}
+
+/// libxml2 prints failures to convert on its own, unless this thread has a handler.
+class ConversionWatch {
+ public:
+  ConversionWatch() {
+    xmlSetStructuredErrorFunc(
+        this, [](void* self, xmlErrorPtr) { static_cast<ConversionWatch*>(self)->failed_ = true; });
+  }
+  ~ConversionWatch() { xmlSetStructuredErrorFunc(context_, handler_); }
+  ConversionWatch(const ConversionWatch&) = delete;
+  ConversionWatch& operator=(const ConversionWatch&) = delete;
+
+  bool failed() const { return failed_; }
+
+ private:
+  void* context_ = xmlStructuredErrorContext;
+  xmlStructuredErrorFunc handler_ = xmlStructuredError;
+  bool failed_ = false;
+};
+
 }  // namespace
 
 Document parse_document(std::string_view bytes, std::optional<XmlError>& error) {
-  error.reset();
-  if (bytes.size() > largest_document)
-    error = XmlError{
-        0,
-        fmt::format("{} bytes are more than the {} that an input may have; put particles into a file "
-                    "of their own (Geometry file=)",
-                    bytes.size(), largest_document),
-        {}};
-  else if (trim(bytes).empty())
-    error = XmlError{0, "the file is empty", {}};
+  error = refusal(bytes);
   if (error) return {};
-  if (bytes.starts_with(std::string_view("\0\0", 2)) ||
-      bytes.starts_with(std::string_view("\xFF\xFE\0\0", 4)) ||
-      bytes.starts_with(std::string_view("<\0\0\0", 4)))
-    error = XmlError{0, "UTF-32 is not read; save the file as UTF-8", {}};
-  else if (const int line = overfull_tag(bytes))
-    error = XmlError{line, fmt::format("more than {} attributes on one element", most_attributes), {}};
-  if (error) return {};
-
   const std::unique_ptr<xmlParserCtxt, void (*)(xmlParserCtxtPtr)> parser(xmlNewParserCtxt(),
                                                                           xmlFreeParserCtxt);
   if (!parser) throw std::bad_alloc();
+  const ConversionWatch watch;
   DocumentBuilder builder(parser.get());
   // NOENT makes &amp; and its kin plain characters; others cannot be declared without a document type.
   xmlDocPtr unused =
@@ -240,6 +261,8 @@ Document parse_document(std::string_view bytes, std::optional<XmlError>& error) 
   if (unused) xmlFreeDoc(unused);
   error = builder.error();
   if (!error && !parser->wellFormed) error = XmlError{0, "not well-formed XML", {}};
+  if (error && watch.failed())
+    error->message += " (some bytes are not of the encoding that the first line names)";
   return error ? Document() : std::move(builder).take();
 }
 

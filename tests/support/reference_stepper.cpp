@@ -180,7 +180,7 @@ void ReferenceStepper::step() {
   integrate_momentum(dt);
   grid_to_particles(dt);
   if (!usf) {
-    final_velocities(dt);
+    final_velocities();
     update_stresses(dt);
   }
   for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].x = next_x_[n];
@@ -275,20 +275,26 @@ void ReferenceStepper::initial_velocities() {
   });
 }
 
-/// 2-41 with the boundary conditions.
+/// 2-41 with the boundary conditions. USL: 2-44 too, with a remedy for its singularity 2-49: the internal
+/// force on light nodes is divided by m_floor instead of m. Not the external one: a body that falls freely
+/// stays unstrained.
 void ReferenceStepper::integrate_momentum(double dt) {
+  const double floor = case_.scheme == ReferenceScheme::usl ? case_.usl_mass_floor * node_mass_unit_ : 0.0;
   for_active_nodes([&](const Index& index, Node& node) {
+    const double left_out = node.m < floor ? 1 - node.m / floor : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double p_old = node.p[a];
       node.p[a] += node.f[a] * dt;
+      const double f_internal = node.f[a] - node.m * case_.gravity[a];
+      node.w[a] = (node.p[a] - left_out * f_internal * dt) / node.m;
       const Stop kind = stop(index, a, node.p[a]);
       if (kind != Stop::none) {
         node.f[a] = kind == Stop::wall && case_.wall_reaction ? -p_old / dt : 0.0;
-        node.p[a] = 0;
+        node.p[a] = node.w[a] = 0;
       }
       node.v[a] = node.p[a] / node.m;
       node.a[a] = node.f[a] / node.m;
-      node.w[a] = 0;
+      if (case_.scheme == ReferenceScheme::musl) node.w[a] = 0;  // a sum to come
     }
   });
 }
@@ -313,14 +319,11 @@ void ReferenceStepper::grid_to_particles(double dt) {
   }
 }
 
-/// MUSL: the rest of 2-45. USL: 2-44 with a remedy for its singularity 2-49, v^k + f dt/max(m, m_floor).
-void ReferenceStepper::final_velocities(double dt) {
-  const double floor = case_.usl_mass_floor * node_mass_unit_;
+/// The rest of 2-45 for MUSL, and the boundary conditions on the velocity of the strain rate.
+void ReferenceStepper::final_velocities() {
   for_active_nodes([&](const Index& index, Node& node) {
-    const double left_out = node.m < floor ? 1 - node.m / floor : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      node.w[a] =
-          case_.scheme == ReferenceScheme::musl ? node.w[a] / node.m : node.v[a] - left_out * dt * node.a[a];
+      if (case_.scheme == ReferenceScheme::musl) node.w[a] /= node.m;
       if (stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
     }
   });

@@ -75,8 +75,8 @@ struct ReferenceCase {
   ReferenceScheme scheme = ReferenceScheme::musl;
   double dt_factor = 0.5;                                       ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
-  /// USL only: for the strain rate a node's force is divided by at least this times rho_0 * cell volume.
-  /// Below 0.05 the Taylor bar diverges, from 1 on the scheme is an unstable forward Euler.
+  /// USL only: for the strain rate a node's internal force is divided by at least this times rho_0 * cell
+  /// volume. Below 0.05 the Taylor bar diverges, from 1 on the scheme is an unstable forward Euler.
   double usl_mass_floor = 0.1;
   ReferenceMaterial material;
   std::vector<ReferenceParticle> particles;
@@ -130,7 +130,7 @@ class ReferenceStepper {
   void initial_velocities();
   void integrate_momentum(double dt);
   void grid_to_particles(double dt);
-  void final_velocities(double dt);
+  void final_velocities();
   void update_stresses(double dt);
 
   ReferenceCase case_;

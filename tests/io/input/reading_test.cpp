@@ -201,6 +201,16 @@ TEST_CASE("other encodings") {
   CHECK(test::complaints(wide).front() == "ok");
 }
 
+TEST_CASE("bytes that are not of the encoding") {
+  const std::string text = replaced(replaced(bar, "encoding=\"utf-8\"", "encoding=\"gb2312\""),
+                                    "<Name value=\"bar\"/>", "<Name value=\"\xFF\xFF\"/>");
+  CHECK(test::complaints(text).front() ==
+        "line 3: not well-formed XML: AttValue: ' expected (some bytes are not of the encoding that the "
+        "first line names)");
+  CHECK(test::complaints(replaced(bar, "encoding=\"utf-8\"", "encoding=\"klingon\"")).front() ==
+        "line 1: not well-formed XML: Unsupported encoding klingon");
+}
+
 TEST_CASE("lines of elements and attributes, also beyond 65535") {
   const std::string text =
       replaced(bar, "<Solution>", std::string(100000, '\n') + "<Solution\n\n  algorithm='MUSL'\n speed='1'>");

@@ -1,0 +1,132 @@
+#include "io/output/history_file.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <sstream>
+
+#include "core/step/totals.hpp"
+#include "io/output/file.hpp"
+#include "tests/io/output/small_model.hpp"
+
+using namespace mpm;
+using namespace mpm::tests;
+using core::Column;
+
+namespace {
+
+std::vector<std::vector<double>> rows_of(const std::string& path) {
+  std::istringstream in(io::read_file(path));
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(in, line);) {
+    if (line.front() == '#') continue;
+    std::istringstream numbers(line);
+    rows.emplace_back();
+    for (std::string n; numbers >> n;) rows.back().push_back(std::strtod(n.c_str(), nullptr));
+  }
+  return rows;
+}
+
+/// Two particles in one cell and one in another, with the pressures 1, 2 and 3.
+core::Model three_particles(core::SoloExchange& solo, const std::array<std::array<double, 3>, 3>& positions) {
+  auto scene = small_scene();
+  core::TimeHistoryInput& history = scene->output.histories.emplace_back();
+  history.variables = {"pres", "posx"};
+  history.particles = {{0.5, 0.5, 0.5}, {11, 11, 11}};
+  history.points = {{0.25, 0.5, 0.5}, {6.5, 6.5, 6.5}, {-1, 0, 0}};
+  core::Model model = prepared_model(scene);
+  std::vector<core::BrickCount> counts;
+  for (const auto& x : positions) counts.push_back({model.grid->geometry().brick_at({x[0], x[1], x[2]}), 1});
+  solo.partition(*model.grid, counts, {});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const core::ColumnLayout& layout = model.bodies[0].pool->layout();
+    std::vector<double> columns(static_cast<std::size_t>(layout.columns()));
+    const auto set = [&](Column c, double v) { columns[static_cast<std::size_t>(layout.offset(c) / core::block_lanes)] = v; };
+    for (int a = 0; a < 3; ++a) set(core::next(Column::position_x, a), positions[i][static_cast<std::size_t>(a)]);
+    set(Column::mass, static_cast<double>(i + 1));
+    set(Column::pressure, static_cast<double>(i + 1));
+    set(Column::identity, static_cast<double>(10 - i));
+    auto& cohorts = model.grid->brick(model.grid->find(counts[i].brick)).cohorts;
+    if (cohorts.empty()) cohorts.emplace_back().body = 0;
+    core::append(*model.bodies[0].pool, cohorts.back(), columns.data());
+  }
+  return model;
+}
+
+constexpr std::array<std::array<double, 3>, 3> at_start{{{0.25, 0.5, 0.5}, {0.75, 0.5, 0.5}, {10, 10, 10}}};
+
+void set_position(core::Model& model, std::size_t brick, double x) {
+  core::Cohort& cohort = model.grid->bricks()[brick].cohorts[0];
+  core::BlockPool& pool = *model.bodies[0].pool;
+  pool.block(cohort.blocks[0])[pool.layout().offset(Column::position_x)] = x;
+}
+
+}  // namespace
+
+TEST_CASE("Histories follow the nearest particles, and points average their cell") {
+  const Folder folder("curv");
+  core::SoloExchange solo;
+  core::Model model = three_particles(solo, at_start);
+  io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
+  // Both particles of the first cell are as near to the first point: the lower identity wins.
+  CHECK(file.tracked() == std::vector<std::uint64_t>{9, 8});
+  file.add(model, solo);
+  file.flush(solo);
+
+  const std::vector<double> row = rows_of(folder / "a_curv.dat").at(0);
+  const core::Energies energies = core::compute_energies(model, solo);
+  // Weights 1 * 1 and 2 * 0.5 at the first point; nothing near the second; the third is outside.
+  const std::vector<double> expected{0, 0, energies.kinetic, energies.internal, 2, 0.75, 3, 10, 1.5, 0.5, 0, 0, 0, 0};
+  CHECK(row == expected);
+  CHECK_THAT(io::read_file(folder / "a_curv.dat"), Catch::Contains("pres[particle2]") && Catch::Contains("posx[point3]") &&
+                                                       Catch::Contains("# particle1: identity 9, nearest to (0.5, 0.5, 0.5)"));
+}
+
+TEST_CASE("A particle is followed into other bricks, and lost when it is gone") {
+  const Folder folder("curv_follow");
+  core::SoloExchange solo;
+  core::Model model = three_particles(solo, at_start);
+  io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
+  file.add(model, solo);
+  // The particle that was far away jumps to the other end of the grid, and then vanishes.
+  core::Model elsewhere = three_particles(solo, {{{0.25, 0.5, 0.5}, {4.5, 0.5, 0.5}, {1, 9, 1}}});
+  file.add(elsewhere, solo);
+  core::Cohort& cohort = elsewhere.grid->brick(elsewhere.grid->find({0, 2, 0})).cohorts[0];
+  core::remove_swapping(*elsewhere.bodies[0].pool, cohort, 0);
+  file.add(elsewhere, solo);
+  file.add(elsewhere, solo);
+  file.flush(solo);
+  const auto rows = rows_of(folder / "a_curv.dat");
+  REQUIRE(rows.size() == 4);
+  CHECK(rows[1][5] == 4.5);
+  CHECK(rows[1][6] == 3);
+  CHECK(rows[1][7] == 1);
+  CHECK(std::isnan(rows[2][6]));
+  CHECK(std::isnan(rows[3][7]));
+  CHECK(rows[3][5] == 4.5);
+  CHECK(file.tracked() == std::vector<std::uint64_t>{9, io::no_identity});
+}
+
+TEST_CASE("Histories of a run that goes on follow the same particles") {
+  const Folder folder("curv_continue");
+  core::SoloExchange solo;
+  core::Model model = three_particles(solo, at_start);
+  std::vector<std::uint64_t> tracked;
+  {
+    io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
+    for (int step = 0; step < 5; ++step) {
+      model.clock.step = step;
+      file.add(model, solo);
+    }
+    tracked = file.tracked();
+  }
+  set_position(model, 0, 0.4);  // nearest now, but not then
+  model.clock.step = 3;
+  io::HistoryFile file(folder / "a_curv.dat", model, io::HistoryFile::Continuation{2, tracked}, solo);
+  CHECK(file.tracked() == tracked);
+  file.add(model, solo);
+  file.flush(solo);
+  const auto rows = rows_of(folder / "a_curv.dat");
+  REQUIRE(rows.size() == 4);
+  CHECK(rows[3][0] == 3);
+  CHECK(rows[3][4] == 2);
+}
