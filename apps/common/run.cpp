@@ -234,6 +234,10 @@ class Run {
 }  // namespace
 
 ExitCode run(const RunOptions& options, const parallel::Communicator& world) {
+  if (options.lsdyna) {
+    throw core::InputErrors(core::SourceLocation{options.job, 0}, "-lsdyna",
+                            "known, but not implemented yet: leave the option out; .h5part and .vtu files hold the particles");
+  }
   if (options.to_h5part) return convert_restart(options, world);
   return Run(options, world).go();
 }

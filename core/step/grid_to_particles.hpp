@@ -67,6 +67,29 @@ inline void velocity_gradient(const BrickFrame& frame, const CellCorners& corner
   }
 }
 
+/// Volumetric strain of the cells that hold the block's particles: dt times the mean of div v over each cell, which
+/// for trilinear functions is its value at the centre. `component`: first of the velocity in the node records.
+template <class Row>
+inline void cell_strain(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
+                        const double* nodes, int component, double dt, const double* block, Row& row, int at) {
+  const auto col = [&](Column c) { return block + layout.offset(c); };
+  for (int l = 0; l < block_lanes; l += real_width) {
+    auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
+                          col(Column::position_z) + l);
+    p.fx = p.fy = p.fz = Real(0.5);
+    Real strain(0.0);
+    for_each_cell(p, [&](int node, MaskOf<Real> here) {
+      const double* lowest = nodes + node_doubles * node + component;
+      Real divergence(0.0);
+      for (int a = 0; a < 3; ++a) {
+        divergence += scaled_gradient(CornerValues(lowest + a, corners), p)[a] * Real(frame.inverse_cell[a]);
+      }
+      strain = select(here, divergence * Real(dt), strain);
+    });
+    store(row + at + l, strain);
+  }
+}
+
 /// x += dt sum S v, from node components 0..2.
 inline void move_with_grid(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
                            const double* nodes, double dt, double* block) {

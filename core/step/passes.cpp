@@ -224,6 +224,10 @@ void Passes::stress_of_brick(Slot s, StrainVelocity which, Workplace& at) {
           velocity_gradient<StrainVelocity::regularised>(frame, corners, pool.layout(), at.nodes.data(), batch.block[b],
                                                          batch.gradient, block_lanes * b);
         }
+        if (model_.options.volume_update == static_cast<int>(VolumeUpdate::cell)) {
+          cell_strain(frame, corners, pool.layout(), at.nodes.data(), which == StrainVelocity::second ? 4 : 0, dt,
+                      batch.block[b], batch.cell_volumetric_strain, block_lanes * b);
+        }
       }
       batch.events = {};
       body.model->update(batch, model_.options);

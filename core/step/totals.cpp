@@ -83,9 +83,10 @@ void add_block(const ColumnLayout& layout, const double* block, int used, double
 template <class P, class F>
 void over_bricks(const Model& model, P& out, F f) {
   const int bricks = model.grid->owned();
+  const P none = out;
 #pragma omp parallel
   {
-    P mine = out;
+    P mine = none;
 #pragma omp for schedule(dynamic, 16) nowait
     for (int s = 0; s < bricks; ++s) f(model.grid->brick(s), mine);
 #pragma omp critical(mpm_totals)

@@ -66,7 +66,7 @@ TEST_CASE("The columns of .sta are named, and its numbers are exact") {
   CHECK(table.at(0, "external_work") == 1e20);
   CHECK(table.at(0, "relative_drift") == core::energy_balance(totals, 1e6).relative_drift);
   CHECK(table.at(0, "pz") == totals.momentum.z);
-  CHECK(table.at(0, "py[body:wall____&__floor]") == totals.bodies[1].momentum.y);
+  CHECK(table.at(0, "py[body:wall__&__floor]") == totals.bodies[1].momentum.y);
   CHECK(table.at(0, "vx[body:bar]") == totals.bodies[0].velocity.x);
   CHECK(table.at(0, "kinetic[material:copper]") == totals.bodies[0].kinetic + totals.bodies[2].kinetic);
   CHECK(table.at(0, "internal[material:wax]") == totals.bodies[1].internal);

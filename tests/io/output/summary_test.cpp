@@ -85,5 +85,5 @@ TEST_CASE("The timing table names every phase, the rest and the loop") {
   const std::string table = io::timing_table(report());
   CHECK_THAT(table, Catch::Contains("particles to grid      1.000      2.000      3.000    20.0%      50.0%"));
   CHECK_THAT(table, Catch::Contains("other                  3.000      4.000      5.000    40.0%"));
-  CHECK_THAT(table, Catch::Contains("loop                              10.000"));
+  CHECK_THAT(table, Catch::Contains("loop                             10.000"));
 }
