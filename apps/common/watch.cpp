@@ -19,11 +19,7 @@ void Watch::after_step(const core::Model& model, const core::Stepper::Incidents&
     if (counts[i] == 0) continue;
     std::string text = fmt::format("step {}, time {:.6g}: {} particle(s) {}", model.clock.step, model.clock.time, counts[i], words[i]);
     if (i == 2) {
-      for (const std::string& line : exchange.gather(mine.first_left)) {
-        if (line.empty()) continue;
-        text += "; the first: " + line;
-        break;
-      }
+      text += "; the first: " + core::first_of_all(exchange, mine.first_left).words;
     }
     if (warn_.level == core::WarnInput::Level::stop) throw core::NumericalFailure(text);
     if (warn_.level == core::WarnInput::Level::per_particle && warned_[i]) continue;

@@ -1,6 +1,7 @@
 #include "core/step/migration.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,13 +64,19 @@ std::string describe_particle(const Body& body, const double* columns) {
                      columns[place(layout, Column::identity)], body.name, x.x, x.y, x.z);
 }
 
-Migration::Migration(Model& model, Exchange& exchange) : model_(model), exchange_(exchange) {
+Migration::Migration(Model& model, Exchange& exchange)
+    : model_(model), exchange_(exchange), harvests_(static_cast<std::size_t>(omp_get_max_threads())) {
   for (const Body& b : model.bodies) columns_of_.push_back(b.pool->layout().columns());
+  for (Harvest& h : harvests_) {
+    h.books.body_eroded.resize(model.bodies.size());
+    h.books.body_left.resize(model.bodies.size());
+  }
 }
 
-void Migration::dispose(const Body& body, std::size_t body_index, const double* columns, bool eroded) {
+void Migration::dispose(std::size_t body_index, const double* columns, bool eroded, Harvest& harvest) const {
+  const Body& body = model_.bodies[body_index];
   const ColumnLayout& layout = body.pool->layout();
-  Books& books = model_.books;
+  Books& books = harvest.books;
   const double m = columns[place(layout, Column::mass)];
   const double* v = columns + place(layout, Column::velocity_x);
   books.removed_mass.add(m);
@@ -78,54 +85,91 @@ void Migration::dispose(const Body& body, std::size_t body_index, const double* 
   ++(eroded ? books.eroded : books.left_grid);
   ++(eroded ? books.body_eroded : books.body_left)[body_index];
   if (eroded) return;
-  ++left_now_;
-  if (first_left_.empty()) first_left_ = describe_particle(body, columns);
+  ++harvest.left;
+  harvest.first_left.offer(columns[place(layout, Column::identity)], [&] { return describe_particle(body, columns); });
+}
+
+void Migration::collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& harvest) {
+  const BrickGrid& grid = *model_.grid;
+  Brick& brick = model_.grid->brick(slot);
+  double columns[column_count];
+  const auto complain = [&](const Body& body, const char* what) {
+    harvest.complaint.offer(columns[place(body.pool->layout(), Column::identity)],
+                            [&] { return describe_particle(body, columns) + what; });
+  };
+  // From the last to the first: the particle that fills a gap is then never one that has yet to leave.
+  std::sort(leavers.begin(), leavers.end(), [](const Leaver& a, const Leaver& b) {
+    return a.cohort != b.cohort ? a.cohort > b.cohort : a.index > b.index;
+  });
+  for (const Leaver& l : leavers) {
+    Cohort& cohort = brick.cohorts[static_cast<std::size_t>(l.cohort)];
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    extract(*body.pool, cohort, l.index, columns);
+    const Vec3<double> x = position_of(body.pool->layout(), columns);
+    if (l.eroded || !grid.geometry().contains(x)) {
+      if (!l.eroded && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
+        complain(body, " is nowhere (not a number)");
+        continue;
+      }
+      dispose(static_cast<std::size_t>(cohort.body), columns, l.eroded, harvest);
+    } else {
+      const BrickCoord to = grid.geometry().brick_at(x);
+      if (to == brick.coord) continue;  // exactly on the grid's upper face
+      if (!adjacent(to, brick.coord)) {
+        complain(body, " moved over more than a brick in one step");
+        continue;
+      }
+      if (grid.find(to) == no_slot) harvest.wanted.push_back(to);
+      harvest.travellers.add(to, cohort.body, columns, body.pool->layout().columns());
+    }
+    remove_swapping(*body.pool, cohort, l.index);
+  }
+  std::erase_if(brick.cohorts, [](const Cohort& c) { return c.count == 0; });
+  leavers.clear();
+}
+
+void Migration::merge(Harvest& h) {
+  Books& books = model_.books;
+  for (std::size_t i = 0; i < h.travellers.size(); ++i) {
+    const Travellers::Head& head = h.travellers.heads[i];
+    travellers_.add(head.to, head.body, &h.travellers.columns[h.travellers.offsets[i]],
+                    columns_of_[static_cast<std::size_t>(head.body)]);
+  }
+  wanted_.insert(wanted_.end(), h.wanted.begin(), h.wanted.end());
+  left_now_ += h.left;
+  if (!h.first_left.empty()) first_left_.offer(h.first_left.identity, [&] { return h.first_left.words; });
+  if (!h.complaint.empty()) complaint_.offer(h.complaint.identity, [&] { return h.complaint.words; });
+  h.first_left = h.complaint = {};
+  if (h.books.eroded + h.books.left_grid > 0) {
+    books.removed_mass += h.books.removed_mass;
+    books.removed_kinetic += h.books.removed_kinetic;
+    books.removed_internal += h.books.removed_internal;
+    books.eroded += h.books.eroded;
+    books.left_grid += h.books.left_grid;
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      books.body_eroded[b] += h.books.body_eroded[b];
+      books.body_left[b] += h.books.body_left[b];
+    }
+    h.books = Books{};
+    h.books.body_eroded.resize(model_.bodies.size());
+    h.books.body_left.resize(model_.bodies.size());
+  }
+  h.travellers.clear();
+  h.wanted.clear();
+  h.left = 0;
 }
 
 void Migration::collect(std::vector<std::vector<Leaver>>& leavers) {
   travellers_.clear();
   wanted_.clear();
   left_now_ = 0;
-  first_left_.clear();
-  BrickGrid& grid = *model_.grid;
-  std::vector<double> columns(column_count);
+  first_left_ = complaint_ = {};
+#pragma omp parallel for schedule(dynamic, 16)
   for (std::size_t s = 0; s < leavers.size(); ++s) {
     if (leavers[s].empty()) continue;
-    Brick& brick = grid.brick(static_cast<Slot>(s));
-    // From the last to the first: the particle that fills a gap is then never one that has yet to leave.
-    std::sort(leavers[s].begin(), leavers[s].end(), [](const Leaver& a, const Leaver& b) {
-      return a.cohort != b.cohort ? a.cohort > b.cohort : a.index > b.index;
-    });
-    for (const Leaver& l : leavers[s]) {
-      Cohort& cohort = brick.cohorts[static_cast<std::size_t>(l.cohort)];
-      const auto body_index = static_cast<std::size_t>(cohort.body);
-      const Body& body = model_.bodies[body_index];
-      extract(*body.pool, cohort, l.index, columns.data());
-      const Vec3<double> x = position_of(body.pool->layout(), columns.data());
-      const bool inside = grid.geometry().contains(x);
-      if (!l.eroded && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
-        if (complaint_.empty()) complaint_ = describe_particle(body, columns.data()) + " is nowhere (not a number)";
-        continue;
-      }
-      if (l.eroded || !inside) {
-        dispose(body, body_index, columns.data(), l.eroded);
-      } else {
-        const BrickCoord to = grid.geometry().brick_at(x);
-        if (to == brick.coord) continue;  // exactly on the grid's upper face
-        if (!adjacent(to, brick.coord)) {
-          if (complaint_.empty()) {
-            complaint_ = describe_particle(body, columns.data()) + " moved over more than a brick in one step";
-          }
-          continue;
-        }
-        if (grid.find(to) == no_slot) wanted_.push_back(to);
-        travellers_.add(to, cohort.body, columns.data(), body.pool->layout().columns());
-      }
-      remove_swapping(*body.pool, cohort, l.index);
-    }
-    std::erase_if(brick.cohorts, [](const Cohort& c) { return c.count == 0; });
-    leavers[s].clear();
+    collect_from(static_cast<Slot>(s), leavers[s], harvests_[static_cast<std::size_t>(omp_get_thread_num())]);
   }
+  for (Harvest& h : harvests_) merge(h);
 }
 
 void Migration::deliver(bool claim) {
@@ -156,9 +200,19 @@ void insert_travellers(Model& model, const Travellers& travellers) {
     if (a.slot != b.slot) return a.slot < b.slot;
     return a.body != b.body ? a.body < b.body : a.identity < b.identity;
   });
-  for (const Arrival& a : arrivals) {
-    Cohort& cohort = cohort_of(model.grid->brick(a.slot), a.body);
-    append(*model.bodies[static_cast<std::size_t>(a.body)].pool, cohort, &travellers.columns[travellers.offsets[a.index]]);
+  // Each brick's arrivals are one thread's work.
+  std::vector<std::size_t> groups;
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    if (i == 0 || arrivals[i].slot != arrivals[i - 1].slot) groups.push_back(i);
+  }
+  groups.push_back(arrivals.size());
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::size_t g = 0; g < groups.size() - 1; ++g) {
+    for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
+      const Arrival& a = arrivals[i];
+      append(*model.bodies[static_cast<std::size_t>(a.body)].pool, cohort_of(model.grid->brick(a.slot), a.body),
+             &travellers.columns[travellers.offsets[a.index]]);
+    }
   }
 }
 

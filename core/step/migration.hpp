@@ -5,10 +5,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
 #include "core/step/passes.hpp"
+#include "core/step/witness.hpp"
 
 namespace mpm::core {
 
@@ -26,24 +28,33 @@ class Migration {
   /// Every now and then: particles in the order of their cells, bricks without particles forgotten. Collective.
   void tidy();
 
-  /// Problems that end the run, in words; empty if there are none.
-  const std::string& complaint() const { return complaint_; }
-  /// Particles that left the grid in the last collect(), and the first of them in words.
+  /// A problem of the last collect() that ends the run; empty if there is none.
+  const Witness& complaint() const { return complaint_; }
+  /// Particles that left the grid in the last collect(), and the first of them.
   std::int64_t left_now() const { return left_now_; }
-  const std::string& first_left() const { return first_left_; }
+  const Witness& first_left() const { return first_left_; }
 
  private:
-  void dispose(const Body& body, std::size_t body_index, const double* columns, bool eroded);
-  void insert();
+  /// What one thread finds; threads share the bricks out among themselves.
+  struct Harvest {
+    Travellers travellers;
+    std::vector<BrickCoord> wanted;
+    Books books;
+    std::int64_t left = 0;
+    Witness first_left, complaint;
+  };
+  void collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& harvest);
+  void dispose(std::size_t body, const double* columns, bool eroded, Harvest& harvest) const;
+  void merge(Harvest& harvest);
 
   Model& model_;
   Exchange& exchange_;
+  std::vector<Harvest> harvests_;  ///< by thread
   Travellers travellers_;
   std::vector<BrickCoord> wanted_;
   std::vector<int> columns_of_;
-  std::string complaint_;
   std::int64_t left_now_ = 0;
-  std::string first_left_;
+  Witness first_left_, complaint_;
 };
 
 /// Append travellers to their bricks, which must be ours: each cohort's in ascending order of identity.

@@ -14,10 +14,9 @@ namespace {
 /// A step this much shorter than the first one leads nowhere: the run would not end.
 constexpr double smallest_step_ratio = 1e-7;
 
-/// The rank's particle with the smallest identity whose state is not all numbers, in words; empty if none.
-std::string first_not_finite(const Model& model) {
-  double best = std::numeric_limits<double>::infinity();
-  std::string words;
+/// The rank's particle with the smallest identity whose state is not all numbers; empty if none.
+Witness first_not_finite(const Model& model) {
+  Witness first;
   std::vector<double> columns;
   for_each_block(model, [&](int body_index, const ColumnLayout& layout, const double* block, int used) {
     for (int lane = 0; lane < used; ++lane) {
@@ -27,18 +26,18 @@ std::string first_not_finite(const Model& model) {
         columns.push_back(block[block_lanes * c + lane]);
         finite = finite && std::isfinite(columns.back());
       }
-      const double identity = block[layout.offset(Column::identity) + lane];
-      if (finite || identity >= best) continue;
-      best = identity;
-      const Body& body = model.bodies[static_cast<std::size_t>(body_index)];
-      words = describe_particle(body, columns.data()) + ":";
-      for (int c = 0; c < column_count; ++c) {
-        const auto column = static_cast<Column>(c);
-        if (layout.has(column)) words += fmt::format(" {}={:.6g}", name_of(column), block[layout.offset(column) + lane]);
-      }
+      if (finite) continue;
+      first.offer(block[layout.offset(Column::identity) + lane], [&] {
+        std::string words = describe_particle(model.bodies[static_cast<std::size_t>(body_index)], columns.data()) + ":";
+        for (int c = 0; c < column_count; ++c) {
+          const auto column = static_cast<Column>(c);
+          if (layout.has(column)) words += fmt::format(" {}={:.6g}", name_of(column), block[layout.offset(column) + lane]);
+        }
+        return words;
+      });
     }
   });
-  return words;
+  return first;
 }
 
 }  // namespace
@@ -99,12 +98,9 @@ void Stepper::agree() {
 
   std::string what;
   if (news[2] < 0) {
-    std::string mine;
-    if (!migration_.complaint().empty()) mine = migration_.complaint();
-    else if (trouble) mine = first_not_finite(model_);
-    for (const std::string& line : exchange_.gather(mine)) {
-      if (!line.empty() && what.empty()) what = line;
-    }
+    Witness mine = migration_.complaint();
+    if (mine.empty() && trouble) mine = first_not_finite(model_);
+    what = first_of_all(exchange_, mine).words;
   } else if (clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
     what = fmt::format("the critical time step has fallen to {:.3g}, {:.1g} of the first one", clock.critical_dt,
                        clock.critical_dt / clock.first_critical_dt);

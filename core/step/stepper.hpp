@@ -43,7 +43,7 @@ class Stepper {
   struct Incidents {
     MaterialEvents events;
     std::int64_t left_grid = 0;
-    std::string first_left;
+    Witness first_left;
   };
   const Incidents& incidents() const { return incidents_; }
 

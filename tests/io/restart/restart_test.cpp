@@ -1,0 +1,233 @@
+#include "io/restart/restart.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "core/step/totals.hpp"
+#include "io/output/file.hpp"
+#include "io/output/hdf5.hpp"
+#include "io/output/particle_order.hpp"
+#include "tests/io/output/small_disk.hpp"
+#include "tests/io/output/small_model.hpp"
+
+using namespace mpm;
+using namespace mpm::tests;
+using core::Column;
+
+namespace {
+
+const io::RestartExtra an_extra{"<PeneBlast/>", {17, 3}, {{"next output", 0.375}, {"next_console", 1.0 / 3}}};
+
+bool same_particles(const core::Model& a, const core::Model& b) {
+  if (a.bodies.size() != b.bodies.size() || a.grid->owned() != b.grid->owned()) return false;
+  for (core::Slot s = 0; s < a.grid->owned(); ++s) {
+    const core::Brick &x = a.grid->brick(s), &y = b.grid->brick(s);
+    if (x.coord != y.coord || x.cohorts.size() != y.cohorts.size()) return false;
+    for (std::size_t c = 0; c < x.cohorts.size(); ++c) {
+      std::vector<double> rows_x, rows_y;
+      const auto body = static_cast<std::size_t>(x.cohorts[c].body);
+      if (x.cohorts[c].body != y.cohorts[c].body) return false;
+      io::append_rows(*a.bodies[body].pool, x.cohorts[c], rows_x);
+      io::append_rows(*b.bodies[body].pool, y.cohorts[c], rows_y);
+      if (rows_x != rows_y) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("A restart file gives back the state to the last bit") {
+  const Folder folder("restart");
+  core::SoloExchange solo;
+  const core::Model model = small_model(solo);
+  const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
+  CHECK(path == folder / "small_120.pe");
+  CHECK_FALSE(std::filesystem::exists(path + ".part"));
+
+  core::Model copy = prepared_model(small_scene());
+  const io::RestartResult result = io::read_restart(path, copy, solo);
+  CHECK(same_particles(model, copy));
+  CHECK(io::state_hash(copy, solo) == io::state_hash(model, solo));
+  CHECK(io::restart_state_hash(path) == io::state_hash(model, solo));
+  CHECK(copy.clock.step == 120);
+  CHECK(copy.clock.time == 0.25);
+  CHECK(copy.clock.dt == 1e-3);
+  CHECK(copy.clock.critical_dt == 1.25e-3);
+  CHECK(copy.clock.first_critical_dt == 1.5e-3);
+  CHECK(copy.initial_energy == 1e6);
+  CHECK(copy.next_identity == 601);
+  CHECK(copy.books.external_work.value() == 1e20);
+  // The small part is still there under the large one.
+  core::ExactSum rest = copy.books.external_work;
+  rest.add(-1e20);
+  CHECK(rest.value() == 0.1);
+  CHECK(copy.books.left_grid == 3);
+  CHECK(copy.books.body_left == std::vector<std::int64_t>{3, 0, 0});
+  CHECK(copy.books.body_eroded == std::vector<std::int64_t>{0, 5, 0});
+  CHECK(copy.books.events.failed == 7);
+  CHECK(result.extra.tracked == an_extra.tracked);
+  CHECK(result.extra.numbers == an_extra.numbers);
+  CHECK(result.notices.empty());
+  CHECK(result.new_bodies.empty());
+
+  const io::RestartScene scene = io::read_restart_scene(path);
+  CHECK(scene.text == "<PeneBlast/>");
+  CHECK(scene.path == "folder/small.xmp");
+  CHECK(scene.job_name == "small");
+}
+
+TEST_CASE("A state without particles can be stored too") {
+  const Folder folder("restart_empty");
+  core::SoloExchange solo;
+  const core::Model model = prepared_model(small_scene());
+  const std::string path = io::write_restart(folder.path(), "small", model, {}, solo);
+  core::Model copy = prepared_model(small_scene());
+  io::read_restart(path, copy, solo);
+  CHECK(copy.local_particles() == 0);
+}
+
+TEST_CASE("What a restart file shows to other programs") {
+  const Folder folder("restart_hdf5");
+  core::SoloExchange solo;
+  const std::string path = io::write_restart(folder.path(), "small", small_model(solo), an_extra, solo);
+  const io::hdf5::Handle file = io::hdf5::open_file(path, io::hdf5::Access::read);
+  CHECK(io::hdf5::read_string(file, "input_hash") == "0123456789abcdef");
+  CHECK(io::hdf5::read_double(file, "time") == 0.25);
+  CHECK(io::hdf5::read_all_bytes(file, "scene/text") == "<PeneBlast/>");
+  const io::hdf5::Handle bar = io::hdf5::open_group(file, "bodies/0");
+  CHECK(io::hdf5::read_string(bar, "name") == "bar");
+  CHECK_THAT(io::hdf5::read_string(bar, "columns"), Catch::StartsWith("position_x position_y") &&
+                                                        Catch::EndsWith("temperature failed"));
+  CHECK(io::hdf5::shape_of(io::hdf5::open_dataset(bar, "particles")) == std::vector<hsize_t>{300, 21});
+}
+
+TEST_CASE("On another grid the particles are dealt out anew") {
+  const Folder folder("restart_grid");
+  core::SoloExchange solo;
+  const core::Model model = small_model(solo);
+  const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
+  SmallSetup larger;
+  larger.cells = 20;
+  core::Model copy = prepared_model(small_scene(), larger);
+  const io::RestartResult result = io::read_restart(path, copy, solo);
+  REQUIRE(result.notices.size() == 1);
+  CHECK_THAT(result.notices[0], Catch::Contains("particles are dealt out anew"));
+  CHECK(copy.local_particles() == 601);
+  const core::Totals before = core::compute_totals(model, solo), after = core::compute_totals(copy, solo);
+  CHECK(after.kinetic == Approx(before.kinetic).epsilon(1e-14));
+  CHECK(after.bodies[0].max_temperature == before.bodies[0].max_temperature);
+  CHECK(after.external_work == before.external_work);
+
+  SmallSetup smaller;
+  smaller.cells = 8;
+  core::Model outside = prepared_model(small_scene(), smaller);
+  CHECK_THROWS_WITH(io::read_restart(path, outside, solo),
+                    Catch::Contains("folder/small.xmp:7: <Grid>") &&
+                        Catch::Contains("particles of the restart file lie outside of this grid; make it larger"));
+}
+
+TEST_CASE("A body may be deactivated; what it held is booked") {
+  const Folder folder("restart_deactivated");
+  core::SoloExchange solo;
+  const core::Model model = small_model(solo);
+  const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
+  auto scene = small_scene();
+  scene->components[0].bodies[0].deactivated = true;
+  core::Model copy = prepared_model(scene);
+  const io::RestartResult result = io::read_restart(path, copy, solo);
+  REQUIRE(result.notices.size() == 1);
+  CHECK_THAT(result.notices[0], Catch::Contains("body 'bar' is deactivated: its 300 particles are left out"));
+  CHECK(copy.local_particles() == 301);
+  CHECK(copy.books.body_eroded == std::vector<std::int64_t>{5, 0});
+  const core::Totals before = core::compute_totals(model, solo), after = core::compute_totals(copy, solo);
+  CHECK(after.removed_kinetic == Approx(before.bodies[0].kinetic).epsilon(1e-13));
+  CHECK(after.removed_internal == Approx(before.bodies[0].internal).epsilon(1e-11));
+  CHECK(after.removed_mass == Approx(before.bodies[0].mass).epsilon(1e-13));
+  CHECK(after.bodies[0].momentum == before.bodies[1].momentum);
+}
+
+TEST_CASE("A body may be added; it is left to the caller") {
+  const Folder folder("restart_added");
+  core::SoloExchange solo;
+  auto scene = small_scene();
+  scene->components[0].bodies[0].deactivated = true;
+  core::Model model = prepared_model(scene);
+  fill(model, solo);
+  const std::string path = io::write_restart(folder.path(), "small", model, {}, solo);
+  core::Model copy = prepared_model(small_scene());
+  const io::RestartResult result = io::read_restart(path, copy, solo);
+  CHECK(result.new_bodies == std::vector<std::size_t>{0});
+  CHECK(core::compute_totals(copy, solo).bodies[2].particles == 300);
+}
+
+TEST_CASE("A scene that does not fit is refused with every difference") {
+  const Folder folder("restart_misfit");
+  core::SoloExchange solo;
+  SmallSetup poor;
+  poor.only_one_material = true;
+  core::Model model = prepared_model(small_scene(), poor);
+  fill(model, solo, poor);
+  const std::string path = io::write_restart(folder.path(), "small", model, {}, solo);
+
+  auto scene = small_scene();
+  scene->components[1].bodies.pop_back();
+  scene->materials[1].name = "ice";
+  core::Model copy = prepared_model(scene);
+  CHECK_THROWS_WITH(
+      io::read_restart(path, copy, solo),
+      Catch::Contains("<Body name=\"dust\">: the restart file has this body, but the scene does not; add it, with "
+                      "Deactive=\"1\" if it is to be left out") &&
+          Catch::Contains("folder/small.xmp:5: <Body name=\"bar\">: the scene needs state that the restart file does not "
+                          "have: effective_plastic_strain, temperature, failed; keep the material laws") &&
+          Catch::Contains("<Body name=\"wall <&> floor\">: its material is 'ice', but 'wax' in the restart file"));
+}
+
+TEST_CASE("What is only shown may start at zero or go") {
+  const Folder folder("restart_shown");
+  core::SoloExchange solo;
+  SmallSetup with_speed;
+  with_speed.shown = {Column::sound_speed};
+  core::Model model = prepared_model(small_scene(), with_speed);
+  fill(model, solo, with_speed);
+  const std::string path = io::write_restart(folder.path(), "small", model, {}, solo);
+  SmallSetup with_yield;
+  with_yield.shown = {Column::yield_stress};
+  core::Model copy = prepared_model(small_scene(), with_yield);
+  const io::RestartResult result = io::read_restart(path, copy, solo);
+  REQUIRE(result.notices.size() == 6);
+  CHECK(result.notices[0] == "body 'bar': yield_stress start at zero, for the restart file does not have them");
+  CHECK(result.notices[1] == "body 'bar': sound_speed of the restart file are not needed any more");
+  core::for_each_block(copy, [](int, const core::ColumnLayout& layout, const double* block, int used) {
+    const auto identity = static_cast<std::uint64_t>(block[layout.offset(Column::identity)]);
+    std::vector<double> expected = small_particle(layout, identity);
+    for (int c = 0; c < core::column_count; ++c) {
+      const auto column = static_cast<Column>(c);
+      if (!layout.has(column)) continue;
+      const double value = block[layout.offset(column)];
+      if (value != (column == Column::yield_stress ? 0 : expected[static_cast<std::size_t>(layout.offset(column) / 8)])) {
+        FAIL(core::name_of(column) << " of particle " << identity << " among " << used);
+      }
+    }
+  });
+}
+
+TEST_CASE("A restart file becomes an .h5part file without its scene") {
+  const Folder folder("restart_h5part");
+  core::SoloExchange solo;
+  const core::Model model = small_model(solo);
+  const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
+  io::restart_to_h5part(path, folder / "small_120.h5part", io::variables_of({"kelv", "engi"}), true, solo);
+  const io::hdf5::Handle file = io::hdf5::open_file(folder / "small_120.h5part", io::hdf5::Access::read);
+  CHECK(io::hdf5::read_string(file, "job") == "small");
+  const std::vector<double> engi = io::hdf5::read_all_double(file, "Step#0/engi");
+  const std::vector<double> id = io::hdf5::read_all_double(file, "Step#0/id");
+  const std::vector<double> kelv = io::hdf5::read_all_double(file, "Step#0/kelv");
+  REQUIRE(engi.size() == 601);
+  const core::ColumnLayout& layout = model.bodies[0].pool->layout();
+  const auto p = small_particle(layout, static_cast<std::uint64_t>(id[9]));
+  const auto at = [&](Column c) { return p[static_cast<std::size_t>(layout.offset(c) / 8)]; };
+  CHECK(engi[9] == at(Column::internal_energy) * at(Column::mass) / 8.93e-3);
+  CHECK(kelv[9] == at(Column::temperature));
+}

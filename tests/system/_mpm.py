@@ -1,0 +1,183 @@
+"""Helpers of the end-to-end tests: scenes in few words, runs of the programs, and what they leave behind.
+
+The scenes' units are nobody's: cells of 1, densities of 1, waves of about 37."""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+SOURCE = pathlib.Path(os.environ.get("MPM_SOURCE", pathlib.Path(__file__).parents[2])).resolve()
+BIN = pathlib.Path(os.environ.get("MPM_BIN", SOURCE / "build/release/bin")).resolve()
+
+# Root in a container and more ranks than cores are normal here. Ranks that wait let others work: on a machine that
+# is busy otherwise, a rank that spins keeps the one that it waits for from its core.
+ENVIRONMENT = {
+    **os.environ,
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_ess_singleton_isolated": "1",  # a program on its own needs no daemon: half a second less
+    "OMP_WAIT_POLICY": "passive",
+}
+
+DONE, INPUT_ERROR, NUMERICAL_FAILURE, STOPPED, FILE_ERROR = 0, 2, 3, 4, 5
+
+
+# Scenes -----------------------------------------------------------------------------------------------------------
+
+
+def material(name="soft", density=1.0, strength='type="IsoElastic" Young="1000" Poisson="0.3"', more=""):
+    return (f'<Material name="{name}"><ReferenceDensity value="{density}"/>'
+            f"<StrengthModel {strength}/>{more}</Material>")
+
+
+def block(name, lower, size, velocity=(0, 0, 0), dp=0.5, of="soft", more="", attributes=""):
+    geometry = 'x0="{}" y0="{}" z0="{}" lx="{}" ly="{}" lz="{}"'.format(*lower, *size)
+    speed = 'vx="{}" vy="{}" vz="{}"'.format(*velocity)
+    return (f'<Body name="{name}" material="{of}" type="Block" {attributes}><Geometry dp="{dp}" {geometry}/>'
+            f"<InitialVelocity {speed}/>{more}</Body>")
+
+
+def grid(lower, upper, faces="000000", cell=1):
+    """`faces`: the boundary types of x-, x+, y-, y+, z-, z+."""
+    planes = ""
+    for axis, letter in enumerate("XYZ"):
+        planes += (f'<{letter}Min value="{lower[axis]}" boundary="{faces[2 * axis]}"/>'
+                   f'<{letter}Max value="{upper[axis]}" boundary="{faces[2 * axis + 1]}"/>')
+    return f'<Grid><Cell type="regular">{planes}<DCell dx="{cell}" dy="{cell}" dz="{cell}"/></Cell></Grid>'
+
+
+def solution(end, algorithm="MUSL", factor=0.5, attributes="", more=""):
+    return (f'<Solution algorithm="{algorithm}" {attributes}><EndTime value="{end}"/>'
+            f'<TimeStep factor="{factor}"/>{more}</Solution>')
+
+
+def scene(bodies, grid, solution, materials=None, output="", more=""):
+    """Whole text of an input file; `bodies` and `materials` are lists of elements."""
+    lines = ['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">',
+             *(materials or [material()]), '<Component name="all">', *bodies, "</Component>",
+             grid, solution, f"<Output>{output}</Output>", more, "</PeneBlast>", ""]
+    return "\n".join(lines)
+
+
+# Runs -------------------------------------------------------------------------------------------------------------
+
+
+def command(arguments, ranks=1, mpirun=(), program="mpm_run"):
+    words = [str(BIN / program), *map(str, arguments)]
+    return words if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks), *mpirun, *words]
+
+
+def start(arguments, ranks=1, threads=1, mpirun=(), program="mpm_run", **more):
+    """A running program, with its own process group and its output in pipes."""
+    return subprocess.Popen(command(arguments, ranks, mpirun, program), stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True,
+                            env={**ENVIRONMENT, "OMP_NUM_THREADS": str(threads)}, **more)
+
+
+def finish(process, begun=None, timeout=120):
+    """Waits for the end; a program that hangs is killed, and its end is then None."""
+    try:
+        out, err = process.communicate(timeout=timeout)
+        code = process.returncode
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        out, err = process.communicate()
+        code = None
+    return Outcome(code, out, err, time.monotonic() - begun if begun else None)
+
+
+def run(arguments, timeout=120, **more):
+    begun = time.monotonic()
+    return finish(start(arguments, **more), begun, timeout)
+
+
+class Outcome:
+    """How a program ended and what it said."""
+
+    def __init__(self, code, out, err, seconds=None):
+        self.code, self.out, self.err, self.seconds = code, out, err, seconds
+
+    @property
+    def state(self):
+        """The hash of all particles that the log names."""
+        found = re.search(r"^state +([0-9a-f]{16})\b", self.out, re.MULTILINE)
+        return found and found.group(1)
+
+    @property
+    def complaint(self):
+        """Standard error without what mpirun adds: its paragraphs are between lines of dashes, or begin with it."""
+        kept, inside = [], False
+        for line in self.err.splitlines():
+            if re.fullmatch(r"-{20,}", line):
+                inside = not inside
+            elif not inside and not re.match(r"mpirun|\[[^]]*\] |$", line):
+                kept.append(line)
+        return "\n".join(kept)
+
+    def __str__(self):
+        return f"exit code {self.code}\n--- output\n{self.out}--- errors\n{self.err}---"
+
+
+def restarts(folder, job="case"):
+    """Restart files of the job by ascending step."""
+    found = {}
+    for path in pathlib.Path(folder).glob(f"{job}_*.pe"):
+        number = path.stem[len(job) + 1:]
+        if number.isdigit():
+            found[int(number)] = path
+    return [found[step] for step in sorted(found)]
+
+
+def names(folder):
+    return sorted(str(p.relative_to(folder)) for p in pathlib.Path(folder).rglob("*"))
+
+
+def summary(folder, job="case"):
+    return json.loads((pathlib.Path(folder) / f"{job}.summary.json").read_text())
+
+
+def table(path):
+    """Columns by name of a text table whose last comment line names them; numbers as floats."""
+    rows, heads = [], []
+    for line in pathlib.Path(path).read_text().splitlines():
+        if line.startswith("#"):
+            heads = line.lstrip("# ").split()
+        elif line.strip():
+            rows.append([float(word) for word in line.split()])
+    return {head: [row[i] for row in rows] for i, head in enumerate(heads)}
+
+
+# Tests ------------------------------------------------------------------------------------------------------------
+
+
+class Case(unittest.TestCase):
+    """A test with a folder of its own, which goes when the test is over."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="mpm-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def write(self, text, name="case.xmp"):
+        path = self.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def run_in(self, folder, arguments, code=DONE, **more):
+        """Runs with the given output folder (made by the program) and expects the exit code."""
+        outcome = run([*arguments, "--output-dir", self.folder / folder], **more)
+        self.assertEqual(outcome.code, code, outcome)
+        return outcome
+
+
+def main():
+    unittest.main(verbosity=2)
