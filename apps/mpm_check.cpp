@@ -2,16 +2,15 @@
 // Prints every complaint; exit code 0 when all files are right, 2 when any is not.
 
 #include <cstdio>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "core/discretise/seeds.hpp"
 #include "core/scene/scene.hpp"
 #include "io/input/echo.hpp"
-#include "io/input/point_file.hpp"
 #include "io/input/reader.hpp"
 #include "io/input/reference.hpp"
 #include "physics/catalogue.hpp"
@@ -27,17 +26,15 @@ struct Settings {
   bool accept_later = false;
 };
 
-/// Reads every particle file to its end; throws on the first wrong line of each.
-std::size_t count_file_particles(const core::Scene& scene) {
-  std::size_t count = 0;
+/// An estimate; reads particle files to their end. Throws every complaint about shapes and files.
+double count_particles(const core::Scene& scene) {
+  double count = 0;
   std::vector<core::Diagnostic> wrong;
   for (const core::ComponentInput& component : scene.components) {
     for (const core::BodyInput& body : component.bodies) {
-      const auto* points = std::get_if<core::PointGeometry>(&body.geometry);
-      if (!points || points->file.empty()) continue;
+      if (body.deactivated || body.for_bool) continue;
       try {
-        io::PointFile file(points->file);
-        for (core::PointMass point; file.next(point);) ++count;
+        count += core::make_seed_source(scene, body)->expected_particles();
       } catch (const core::InputErrors& errors) {
         wrong.insert(wrong.end(), errors.diagnostics().begin(), errors.diagnostics().end());
       }
@@ -47,27 +44,25 @@ std::size_t count_file_particles(const core::Scene& scene) {
   return count;
 }
 
-std::string summary(const core::Scene& scene, std::size_t file_particles) {
+std::string summary(const core::Scene& scene) {
   std::size_t bodies = 0;
   for (const core::ComponentInput& component : scene.components) bodies += component.bodies.size();
   const auto& axes = scene.grid.axes;
-  std::string text =
-      fmt::format("ok: materials {}, components {}, bodies {}, grid {} x {} x {} cells, end time {}",
-                  scene.materials.size(), scene.components.size(), bodies, axes[0].cells, axes[1].cells,
-                  axes[2].cells, scene.solution.end_time);
-  if (file_particles > 0) text += fmt::format(", particles in files {}", file_particles);
-  return text;
+  return fmt::format("ok: materials {}, components {}, bodies {}, grid {} x {} x {} cells, end time {}",
+                     scene.materials.size(), scene.components.size(), bodies, axes[0].cells, axes[1].cells,
+                     axes[2].cells, scene.solution.end_time);
 }
 
 bool check(const std::string& job, const Settings& settings) {
   try {
     const core::Scene scene = io::read_scene(job, physics::catalogue(),
                                              {.check_files = true, .accept_later = settings.accept_later});
-    const std::size_t file_particles = count_file_particles(scene);
+    std::string verdict = summary(scene);
+    if (!settings.accept_later) verdict += fmt::format(", about {:.4g} particles", count_particles(scene));
     if (settings.echo)
       fmt::print("{}", io::to_text(scene));
     else
-      fmt::print("{}: {}\n", scene.provenance.path, summary(scene, file_particles));
+      fmt::print("{}: {}\n", scene.provenance.path, verdict);
     return true;
   } catch (const core::InputErrors& errors) {
     fmt::print(stderr, "{}\n", errors.what());

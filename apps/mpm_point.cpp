@@ -1,6 +1,6 @@
-// mpm_point INPUT --material NAME --path KIND --to STRAIN...: drives one particle of a material of an input file along
-// a strain path and prints the response as a table (CSV): for calibration, and to see what a law does.
-// Exit code 0 done, 2 wrong input, 3 where the material gave no defined answer.
+// mpm_point INPUT --material NAME --path KIND --to STRAIN...: drives one particle of a material of an input
+// file along a strain path and prints the response as a table (CSV): for calibration, and to see what a law
+// does. Exit code 0 done, 2 wrong input, 3 where the material gave no defined answer.
 
 #include <array>
 #include <cstdio>
@@ -45,8 +45,8 @@ const std::map<std::string, physics::PathKind> kinds{
 };
 
 /// Columns of the table beyond stress and energy, where the material carries them.
-constexpr std::array optional_columns{Column::effective_plastic_strain, Column::yield_stress, Column::temperature,
-                                      Column::damage, Column::failed};
+constexpr std::array optional_columns{Column::effective_plastic_strain, Column::yield_stress,
+                                      Column::temperature, Column::damage, Column::failed};
 
 const core::MaterialInput& find_material(const core::Scene& scene, const std::string& name) {
   std::string names;
@@ -66,15 +66,18 @@ void complete_path(Settings& settings) {
   if (!settings.cycle.empty()) {
     const double amplitude = settings.cycle[0];
     const int cycles = settings.cycle.size() > 1 ? static_cast<int>(settings.cycle[1]) : 1;
-    for (int i = 0; i < cycles; ++i) settings.path.targets.insert(settings.path.targets.end(), {amplitude, -amplitude});
+    for (int i = 0; i < cycles; ++i)
+      settings.path.targets.insert(settings.path.targets.end(), {amplitude, -amplitude});
     settings.path.targets.push_back(0);
   }
   if (settings.path.targets.empty()) throw CLI::ValidationError("--to", "--to or --cycle is needed");
 }
 
 void print_header(std::FILE* file, const physics::PointDriver& point) {
-  fmt::print(file, "time,strain,stress_xx,stress_yy,stress_zz,stress_xy,stress_yz,stress_xz,pressure,viscous_pressure,"
-                   "von_mises,density,internal_energy,sound_speed");
+  fmt::print(
+      file,
+      "time,strain,stress_xx,stress_yy,stress_zz,stress_xy,stress_yz,stress_xz,pressure,viscous_pressure,"
+      "von_mises,density,internal_energy,sound_speed");
   for (Column column : optional_columns) {
     if (point.has(column)) fmt::print(file, ",{}", core::name_of(column));
   }
@@ -83,9 +86,9 @@ void print_header(std::FILE* file, const physics::PointDriver& point) {
 
 void print_row(std::FILE* file, const physics::PointDriver& point, double strain) {
   const core::Sym3<double> s = point.stress();
-  fmt::print(file, "{},{},{},{},{},{},{},{},{},{},{},{},{},{}", point.time(), strain, s.xx, s.yy, s.zz, s.xy, s.yz,
-             s.xz, point.value(Column::pressure), point.value(Column::viscous_pressure), mises(point.deviator()),
-             point.density(), point.energy(), point.sound_speed());
+  fmt::print(file, "{},{},{},{},{},{},{},{},{},{},{},{},{},{}", point.time(), strain, s.xx, s.yy, s.zz, s.xy,
+             s.yz, s.xz, point.value(Column::pressure), point.value(Column::viscous_pressure),
+             mises(point.deviator()), point.density(), point.energy(), point.sound_speed());
   for (Column column : optional_columns) {
     if (point.has(column)) fmt::print(file, ",{}", point.value(column));
   }
@@ -95,10 +98,11 @@ void print_row(std::FILE* file, const physics::PointDriver& point, double strain
 int run(const Settings& settings) {
   const core::Scene scene = io::read_scene(settings.input, physics::catalogue());
   const auto material = physics::make_material(find_material(scene, settings.material));
-  physics::PointDriver point(*material, {.density = settings.density,
-                                         .cell_size = settings.cell_size,
-                                         .update = {.volume_update = static_cast<int>(scene.solution.volume.update)},
-                                         .extra_columns = {Column::yield_stress}});
+  physics::PointDriver point(*material,
+                             {.density = settings.density,
+                              .cell_size = settings.cell_size,
+                              .update = {.volume_update = static_cast<int>(scene.solution.volume.update)},
+                              .extra_columns = {Column::yield_stress}});
 
   const bool to_file = !settings.output.empty();
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(
@@ -116,9 +120,11 @@ int run(const Settings& settings) {
     if (row % settings.every == 0 || row == rows) print_row(table, point, strain);
     ++row;
   });
-  if (!converged) fmt::print(stderr, "mpm_point: the lateral stress could not be brought to zero in every step\n");
+  if (!converged)
+    fmt::print(stderr, "mpm_point: the lateral stress could not be brought to zero in every step\n");
   const core::MaterialEvents& events = point.events();
-  if (events.not_finite > 0) fmt::print(stderr, "mpm_point: the state is no number in {} steps\n", events.not_finite);
+  if (events.not_finite > 0)
+    fmt::print(stderr, "mpm_point: the state is no number in {} steps\n", events.not_finite);
   if (std::fflush(table) != 0) {
     fmt::print(stderr, "mpm_point: writing the table failed\n");
     return 5;
@@ -137,12 +143,16 @@ int main(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(kinds))
       ->default_str("uniaxial-strain");
   app.add_option("-t,--to", settings.path.targets, "strain to reach; several: one after the other");
-  app.add_option("--cycle", settings.cycle, "AMPLITUDE [CYCLES]: to and fro, and back to zero")->expected(1, 2);
-  app.add_option("-r,--rate", settings.path.rate, "strain rate")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--cycle", settings.cycle, "AMPLITUDE [CYCLES]: to and fro, and back to zero")
+      ->expected(1, 2);
+  app.add_option("-r,--rate", settings.path.rate, "strain rate")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("-n,--steps", settings.path.steps, "steps to each strain")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--gradient", settings.gradient, "velocity gradient per unit rate, row by row, for --path gradient")
+  app.add_option("--gradient", settings.gradient,
+                 "velocity gradient per unit rate, row by row, for --path gradient")
       ->expected(9);
   app.add_option("--density", settings.density, "density at the start, if not the reference density")
       ->check(CLI::PositiveNumber);

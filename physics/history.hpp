@@ -1,7 +1,8 @@
 // How a law's own state travels between the particle's columns and the point that the law sees.
 //
-// A law names its columns once, as `static constexpr std::array state`; each point type says which of its members
-// holds which column. What a law does not name is neither loaded nor stored (tests/physics/columns_test.cpp).
+// A law names its columns once, as `static constexpr std::array state`; each point type says which of its
+// members holds which column. What a law does not name is neither loaded nor stored
+// (tests/physics/columns_test.cpp).
 #pragma once
 
 #include <array>
@@ -27,7 +28,8 @@ consteval auto member_of(core::Column column) {
   throw "this kind of law cannot carry the column: add it to the point's table";
 }
 
-/// Whether a law of this configuration carries one of the columns of its `state`; all, unless it says otherwise.
+/// Whether a law of this configuration carries one of the columns of its `state`; all, unless it says
+/// otherwise.
 template <class Law>
 bool carries(const Law& law, core::Column column) {
   if constexpr (requires { law.carries(column); }) return law.carries(column);
@@ -80,7 +82,8 @@ class History {
   void each(F f) const {
     [&]<std::size_t... i>(std::index_sequence<i...>) {
       (f.template operator()<member_of<Point>(Law::state[i])>(offset_[i]), ...);
-    }(std::make_index_sequence<count>{});
+    }
+    (std::make_index_sequence<count>{});
   }
   std::array<int, count> offset_{};
 };

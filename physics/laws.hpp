@@ -14,7 +14,9 @@ namespace mpm::physics {
 
 /// A law that the input can name; the others are built in.
 template <class Law>
-concept Named = requires { Law::name; };
+concept Named = requires {
+  Law::name;
+};
 
 /// f(std::type_identity<Law>) for every law of a list.
 template <class List, class F>

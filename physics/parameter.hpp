@@ -1,5 +1,5 @@
-// A law's parameters as one table: the member that holds the value beside the name, range and meaning that the
-// input is checked against and that the keyword reference prints. Said once, used for all three.
+// A law's parameters as one table: the member that holds the value beside the name, range and meaning that
+// the input is checked against and that the keyword reference prints. Said once, used for all three.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "io/input/reader.hpp"
-#include "io/output/file_error.hpp"
+#include "io/output/file.hpp"
 #include "io/output/variables.hpp"
 #include "io/restart/restart.hpp"
 #include "parallel/launch.hpp"
@@ -98,7 +98,7 @@ ExitCode convert_restart(const RunOptions& options, const parallel::Communicator
   parallel::MpiExchange exchange(world);
   const std::string target = options.output_dir + "/" + std::filesystem::path(restart).stem().string() + ".h5part";
   io::together(exchange, [&] {
-    if (exchange.rank() == 0) std::filesystem::create_directories(options.output_dir);
+    if (exchange.rank() == 0) io::make_folder(options.output_dir);
   });
   io::restart_to_h5part(restart, target, variables, false, exchange);
   if (world.rank() == 0) std::printf("%s\n", target.c_str());

@@ -9,6 +9,20 @@
 
 namespace mpm::apps {
 
+namespace {
+
+/// CLI11's own prints the largest double in full.
+CLI::Validator more_than_zero() {
+  const auto check = [](const std::string& word) {
+    double number = 0;
+    const bool good = CLI::detail::lexical_cast(word, number) && number > 0;
+    return good ? std::string() : "'" + word + "' is not a number above 0";
+  };
+  return CLI::Validator(check, "NUMBER > 0");
+}
+
+}  // namespace
+
 ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
   // The manual's options have one dash and several letters, which CLI11 would read as letters.
   std::vector<std::string> words;
@@ -32,9 +46,9 @@ ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
   app.add_flag("--h5pt", o.to_h5part, "(-h5pt) convert a restart file to H5Part and leave");
   app.add_flag("--lsdyna", o.lsdyna, "(-lsdyna) write the particles as LS-DYNA SPH data too");
   app.add_option("--rt", o.restart_input, "(-rt) restart with another Grid, Solution, Output, Deactive from this .xmp");
-  app.add_option("--nsteps", o.status_rows, "(-nsteps) stop after so many rows of the .sta file")->check(CLI::PositiveNumber);
+  app.add_option("--nsteps", o.status_rows, "(-nsteps) stop after so many rows of the .sta file")->check(more_than_zero());
   app.add_option("--max-wall-time", o.max_wall_time, "seconds after which a restart file is written and the run stops")
-      ->check(CLI::PositiveNumber);
+      ->check(more_than_zero());
   try {
     app.parse(words);
   } catch (const CLI::ParseError& e) {

@@ -9,7 +9,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 #include "apps/common/case.hpp"
 #include "apps/common/outputs.hpp"
@@ -18,7 +17,7 @@
 #include "core/setup/build_model.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/stepper.hpp"
-#include "io/output/file_error.hpp"
+#include "io/output/file.hpp"
 #include "io/output/memory_use.hpp"
 #include "io/output/particle_order.hpp"
 #include "io/output/provenance.hpp"
@@ -82,20 +81,22 @@ class Run {
   Run(const RunOptions& options, const parallel::Communicator& world) : options_(options), exchange_(world), case_(load_case(options, world)) {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
-    prepare_folder();
-    const std::string stem = options.output_dir + "/" + case_.scene->provenance.job_name;
-    log_.emplace(stem + ".out", continues_files(), true, exchange_);
-    for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
+    core::check_decomposition(case_.scene->decomposition, exchange_.size());
     model_ = core::prepare_model(case_.scene, make_materials(*case_.scene), io::columns_for(case_.scene->output));
+    std::vector<std::string> notices;
     if (case_.restart) {
       const io::RestartResult state = io::read_restart(*case_.restart, model_, exchange_);
-      for (const std::string& notice : state.notices) log_->warn("{}", notice);
+      notices = state.notices;
+      last_restart_ = *case_.restart;
       if (continues_files()) continuation_ = Continuation{state.extra.tracked};
-      log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step, model_.clock.time);
     } else {
       core::discretise(model_, exchange_);
       core::start_clock(model_, exchange_);
     }
+    // Nothing is written before all that can be wrong with the input is known not to be.
+    open_log();
+    for (const std::string& notice : notices) log_->warn("{}", notice);
+    if (case_.restart) log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step, model_.clock.time);
     stepper_.emplace(model_, exchange_);
     describe(model_, *stepper_, exchange_, threads_, *log_);
     setup_seconds_ = clock_.seconds();
@@ -106,7 +107,6 @@ class Run {
       log_->flush(exchange_);
       return done;
     }
-    watch_signals();
     outputs_.emplace(options_.output_dir, model_, exchange_, continuation_, *log_);
     watch_.emplace(*case_.scene);
     restart_ = Interval(case_.scene->output.restart_interval.value_or(0), model_.clock.time);
@@ -119,26 +119,43 @@ class Run {
         status = "stopped";
         code = status_rows_reached() ? done : stopped_early;
       }
+      if (code == stopped_early) save();
+      outputs_->finish(model_, exchange_);
     } catch (const core::NumericalFailure& failure) {
       status = "failed";
       reason = failure.what();
       code = numerical_failure;
+    } catch (const io::FileError& failure) {
+      status = "failed";
+      reason = failure.what();
+      code = file_error;
     }
     const double loop_seconds = clock_.seconds() - loop_start;
-    if (code == stopped_early) save();
     conclude(status, reason, loop_seconds);
     return code;
   }
 
  private:
-  void prepare_folder() {
+  void open_log() {
     io::together(exchange_, [&] {
-      if (exchange_.rank() == 0) std::filesystem::create_directories(options_.output_dir);
+      if (exchange_.rank() != 0) return;
+      io::make_folder(options_.output_dir);
+      if (!options_.dry_run) io::remove_file(file(".summary.json"));  // of an earlier run, should this one not get so far
     });
+    log_.emplace(file(".out"), continues_files() || options_.dry_run, true, exchange_);
+    for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
   }
 
-  /// A restart goes on with the job's own files; with another input (-rt) it writes under that one's name.
-  bool continues_files() const { return case_.restart && !options_.restart_input && !options_.dry_run; }
+  /// `folder/Job<ending>`
+  std::string file(const std::string& ending) const {
+    return options_.output_dir + "/" + case_.scene->provenance.job_name + ending;
+  }
+
+  /// A restart goes on with the job's own files; with the input of another job (-rt) it writes under that one's name.
+  bool continues_files() const {
+    return case_.restart && !options_.dry_run &&
+           (!options_.restart_input || io::job_of_restart(*case_.restart) == case_.scene->provenance.job_name);
+  }
 
   bool status_rows_reached() const {
     return options_.status_rows && outputs_->status_rows() >= *options_.status_rows;
@@ -179,8 +196,6 @@ class Run {
   }
 
   void conclude(const std::string& status, const std::string& reason, double loop_seconds) {
-    // The state of a failed run is worth a look, but it is not a result: files other than the books leave it out.
-    if (status != "failed") outputs_->finish(model_, exchange_);
     io::RunReport report;
     report.status = status;
     report.reason = reason;
@@ -198,9 +213,6 @@ class Run {
       log_->say("{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal energy {:.6g} went with them",
                 totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic, totals.removed_internal);
     }
-    if (case_.scene->output.summary) {
-      io::write_summary(options_.output_dir + "/" + case_.scene->provenance.job_name + ".summary.json", model_, totals, report, exchange_);
-    }
     if (status == "failed") {
       log_->say("FAILED     {}", reason);
       if (!last_restart_.empty()) log_->say("           the last good state is in {}", last_restart_);
@@ -210,8 +222,13 @@ class Run {
     } else {
       log_->say("completed  in {:.2f} s", report.seconds_total);
     }
-    for (const std::string& file : outputs_->pictures()) log_->say("open       {}", file);
-    log_->flush(exchange_);
+    for (const std::string& picture : outputs_->pictures()) log_->say("open       {}", picture);
+    try {
+      io::write_summary(file(".summary.json"), model_, totals, report, exchange_);
+      log_->flush(exchange_);
+    } catch (const io::FileError&) {
+      if (status != "failed") throw;  // else the disk that ended the run takes no summary either
+    }
   }
 
   RunOptions options_;
@@ -239,6 +256,7 @@ ExitCode run(const RunOptions& options, const parallel::Communicator& world) {
                             "known, but not implemented yet: leave the option out; .h5part and .vtu files hold the particles");
   }
   if (options.to_h5part) return convert_restart(options, world);
+  if (!options.dry_run) watch_signals();
   return Run(options, world).go();
 }
 

@@ -1,8 +1,8 @@
 #include "core/scene/errors.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 
 namespace mpm::core {
 
@@ -14,7 +14,8 @@ std::string shown(const std::string& value) {
   std::size_t cut = std::min(value.size(), longest);
   while (cut < value.size() && cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0) == 0x80) --cut;
   std::string text = value.substr(0, cut);
-  std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
   return cut < value.size() ? text + "..." : text;
 }
 

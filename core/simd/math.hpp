@@ -1,10 +1,10 @@
 // exp, log and pow of Lanes, in plain vector arithmetic: no call per lane, no intrinsics, any width.
 //
-// Errors against the exact value (tests/core/simd/math_test.cpp): exp and log below 1.5 ulp, also for subnormal
-// arguments and results; pow below 2.3e-16 (3 + 2 |y log x|) relative, enough for the laws' exponents.
-// Special values: exp(-inf) = 0, exp(+inf) = inf, log(0) = -inf, log(x < 0) = NaN, log(inf) = inf, NaN stays NaN.
-// pow is for x >= 0: pow(x, 0) = 1, pow(0, y > 0) = 0, pow(0, y < 0) = inf; a negative x gives NaN.
-// The double instances are the C library's (core/simd/lanes.hpp).
+// Errors against the exact value (tests/core/simd/math_test.cpp): exp and log below 1.5 ulp, also for
+// subnormal arguments and results; pow below 2.3e-16 (3 + 2 |y log x|) relative, enough for the laws'
+// exponents. Special values: exp(-inf) = 0, exp(+inf) = inf, log(0) = -inf, log(x < 0) = NaN, log(inf) = inf,
+// NaN stays NaN. pow is for x >= 0: pow(x, 0) = 1, pow(0, y > 0) = 0, pow(0, y < 0) = inf; a negative x gives
+// NaN. The double instances are the C library's (core/simd/lanes.hpp).
 #pragma once
 
 #include <limits>
@@ -71,17 +71,18 @@ inline Lanes<L> exp(Lanes<L> x) {
 template <int L>
 inline Lanes<L> log(Lanes<L> x) {
   using namespace detail;
-  // Subnormal numbers are scaled up first.
+  // Subnormal numbers are scaled up first; what has no logarithm goes as 1 and gets its answer at the end.
   const auto tiny = x < std::numeric_limits<double>::min();
-  const Lanes<L> y = select(tiny, x * 0x1p54, x);
+  const Lanes<L> y = select(x > 0.0, select(tiny, x * 0x1p54, x), 1.0);
   // x = 2^k m with m in [sqrt(1/2), sqrt(2)), so that k is 0 about x = 1.
   constexpr std::int64_t sqrt_half = 0x3fe6a09e667f3bcd;
   const Bits<L> b = to_bits(y) - sqrt_half;
   const Bits<L> exponent = (b >> 52);
   const Lanes<L> m = from_bits<L>((b & 0x000fffffffffffff) + sqrt_half);
-  const Lanes<L> k = from_bits<L>(exponent + 0x4338000000000000) - round_magic - select(tiny, 54.0, Lanes<L>(0.0));
-  // log(1 + f) = 2 artanh(t) for t = f/(2 + f); as f - t (f - 2 t^2 (1/3 + t^2/5 + ...)) its leading term is exact.
-  // t^2 < 0.0295: what is left out is below 3e-18 of the whole.
+  const Lanes<L> k =
+      from_bits<L>(exponent + 0x4338000000000000) - round_magic - select(tiny, 54.0, Lanes<L>(0.0));
+  // log(1 + f) = 2 artanh(t) for t = f/(2 + f); as f - t (f - 2 t^2 (1/3 + t^2/5 + ...)) its leading term is
+  // exact. t^2 < 0.0295: what is left out is below 3e-18 of the whole.
   const Lanes<L> f = m - 1.0;
   const Lanes<L> t = f / (2.0 + f);
   const Lanes<L> t2 = t * t;

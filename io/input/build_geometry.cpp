@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "io/input/build.hpp"
-#include "io/input/point_file.hpp"
+#include "io/input/file_access.hpp"
 
 namespace mpm::io {
 

@@ -10,7 +10,7 @@
 #include "io/input/build.hpp"
 #include "io/input/checker.hpp"
 #include "io/input/document.hpp"
-#include "io/input/point_file.hpp"
+#include "io/input/file_access.hpp"
 #include "io/input/specification.hpp"
 #include "io/input/text.hpp"
 

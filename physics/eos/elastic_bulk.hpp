@@ -1,6 +1,7 @@
-// The pressure of a material without an equation of state: linear elastic in volume, p = p - K tr(de) (thesis 2-97),
-// which is p = K ln(rho/rho0) (2-58) in increments. Not a type of the input; K comes from Young and Poisson.
-// The energy of a body placed at another density is the work of bringing it there from the reference density.
+// The pressure of a material without an equation of state: linear elastic in volume, p = p - K tr(de) (thesis
+// 2-97), which is p = K ln(rho/rho0) (2-58) in increments. Not a type of the input; K comes from Young and
+// Poisson. The energy of a body placed at another density is the work of bringing it there from the reference
+// density.
 #pragma once
 
 #include <array>

@@ -1,8 +1,9 @@
-// Mie-Grueneisen equation of state about the Hugoniot Us = C0 + S1 up (manual 3-48 to 3-51, thesis 2-127 to 2-130):
+// Mie-Grueneisen equation of state about the Hugoniot Us = C0 + S1 up (manual 3-48 to 3-51, thesis 2-127 to
+// 2-130):
 //   p = pH (1 - gamma mu/2) + gamma0 E,   gamma = gamma0/(1 + mu),   in tension p = rho0 C0^2 mu + gamma0 E
 //   pH = rho0 C0^2 mu (1 + mu) / (1 - (S1 - 1) mu)^2,   or its cubic expansion where simplified = 1
-// Limit: pH has a pole at mu = 1/(S1 - 1), where the shock speed is infinite; the compression is held below it.
-// Shown by tests/physics/gruneisen_test.cpp.
+// Limit: pH has a pole at mu = 1/(S1 - 1), where the shock speed is infinite; the compression is held below
+// it. Shown by tests/physics/gruneisen_test.cpp.
 #pragma once
 
 #include <limits>
@@ -22,19 +23,29 @@ struct Gruneisen {
   double s1 = 0;
   double gamma0 = 0;
   double simplified = 0;
-  double stiffness = 0;  ///< rho0 C0^2, derived
+  double stiffness = 0;                                                ///< rho0 C0^2, derived
   double compression_limit = std::numeric_limits<double>::infinity();  ///< derived
 
   static constexpr auto parameters() {
     return std::array<Parameter<Gruneisen>, 4>{{
-        {&Gruneisen::c0, {.name = "C0", .required = true, .min = 0, .min_open = true, .dimension = "velocity",
-                          .meaning = "intercept of the shock Hugoniot"}},
-        {&Gruneisen::s1, {.name = "S1", .required = true, .min = 0,
-                          .meaning = "slope of the shock Hugoniot"}},
-        {&Gruneisen::gamma0, {.name = "gamma0", .required = true, .min = 0,
-                              .meaning = "Grueneisen coefficient"}},
-        {&Gruneisen::simplified, {.name = "simplified", .default_value = 0, .min = 0, .max = 1,
-                                  .integer = true, .meaning = "1: cubic expansion of the Hugoniot"}},
+        {&Gruneisen::c0,
+         {.name = "C0",
+          .required = true,
+          .min = 0,
+          .min_open = true,
+          .dimension = "velocity",
+          .meaning = "intercept of the shock Hugoniot"}},
+        {&Gruneisen::s1,
+         {.name = "S1", .required = true, .min = 0, .meaning = "slope of the shock Hugoniot"}},
+        {&Gruneisen::gamma0,
+         {.name = "gamma0", .required = true, .min = 0, .meaning = "Grueneisen coefficient"}},
+        {&Gruneisen::simplified,
+         {.name = "simplified",
+          .default_value = 0,
+          .min = 0,
+          .max = 1,
+          .integer = true,
+          .meaning = "1: cubic expansion of the Hugoniot"}},
     }};
   }
   void prepare(double reference_density) {

@@ -9,11 +9,11 @@ namespace mpm::physics {
 
 template <class T>
 struct EosPoint {
-  T compression;           ///< mu = rho/rho0 - 1 at the end of the step
-  T relative_volume;       ///< V/V0 = 1/(1 + mu)
-  T volumetric_strain;     ///< of the step
-  T pressure;              ///< at the beginning of the step
-  T energy;                ///< E at the beginning of the step, per unit initial volume
+  T compression;        ///< mu = rho/rho0 - 1 at the end of the step
+  T relative_volume;    ///< V/V0 = 1/(1 + mu)
+  T volumetric_strain;  ///< of the step
+  T pressure;           ///< at the beginning of the step
+  T energy;             ///< E at the beginning of the step, per unit initial volume
 
   // State: only the columns that the law names in `state` are loaded and stored.
   T max_compression = 0.0;
@@ -34,8 +34,8 @@ struct EosPoint {
   }
 };
 
-/// The pressure at the volume reached, as a line in the energy: p = a + b E (thesis 2-91). A law that is not linear
-/// gives its tangent at the point's energy. da and db are derivatives with respect to mu at fixed E.
+/// The pressure at the volume reached, as a line in the energy: p = a + b E (thesis 2-91). A law that is not
+/// linear gives its tangent at the point's energy. da and db are derivatives with respect to mu at fixed E.
 template <class T>
 struct EosLine {
   T a, b, da, db;

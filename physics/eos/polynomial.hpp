@@ -23,7 +23,8 @@ struct Polynomial {
     using P = Polynomial;
     constexpr auto coefficient = [](double P::*member, std::string_view name, std::string_view dimension,
                                     std::string_view meaning) {
-      return Parameter<P>{member, {.name = name, .required = true, .dimension = dimension, .meaning = meaning}};
+      return Parameter<P>{member,
+                          {.name = name, .required = true, .dimension = dimension, .meaning = meaning}};
     };
     return std::array<Parameter<P>, 7>{{
         coefficient(&P::c0, "c0", "stress", "constant term"),

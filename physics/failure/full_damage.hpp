@@ -1,5 +1,5 @@
-// Fails where a strength law's damage has reached one (manual 3-4, thesis 2-137). Not a type of the input: it comes
-// with every strength law that carries damage.
+// Fails where a strength law's damage has reached one (manual 3-4, thesis 2-137). Not a type of the input: it
+// comes with every strength law that carries damage.
 #pragma once
 
 #include "physics/failure/point.hpp"

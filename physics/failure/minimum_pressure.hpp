@@ -17,8 +17,13 @@ struct MinimumPressureFailure {
 
   static constexpr auto parameters() {
     return std::array<Parameter<MinimumPressureFailure>, 1>{{
-        {&MinimumPressureFailure::pmin, {.name = "pmin", .required = true, .max = 0, .max_open = true,
-                                         .dimension = "stress", .meaning = "lowest pressure (tension)"}},
+        {&MinimumPressureFailure::pmin,
+         {.name = "pmin",
+          .required = true,
+          .max = 0,
+          .max_open = true,
+          .dimension = "stress",
+          .meaning = "lowest pressure (tension)"}},
     }};
   }
 

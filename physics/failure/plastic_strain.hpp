@@ -17,8 +17,12 @@ struct PlasticStrainFailure {
 
   static constexpr auto parameters() {
     return std::array<Parameter<PlasticStrainFailure>, 1>{{
-        {&PlasticStrainFailure::epmax, {.name = "epmax", .required = true, .min = 0, .min_open = true,
-                                        .meaning = "effective plastic strain at failure"}},
+        {&PlasticStrainFailure::epmax,
+         {.name = "epmax",
+          .required = true,
+          .min = 0,
+          .min_open = true,
+          .meaning = "effective plastic strain at failure"}},
     }};
   }
 

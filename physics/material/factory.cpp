@@ -1,5 +1,5 @@
-// From the input's names and numbers to a material. Ranges were checked when the file was read; here only what
-// several elements together forbid.
+// From the input's names and numbers to a material. Ranges were checked when the file was read; here only
+// what several elements together forbid.
 
 #include "physics/laws.hpp"
 #include "physics/material/material.hpp"
@@ -28,17 +28,22 @@ EquationOfState make_eos(const core::MaterialInput& input, const StrengthModel& 
                          const CommonParameters& common) {
   if (!input.eos) return elastic_bulk(strength, common, input);
   const bool own_pressure = std::visit(
-      [](const auto& law) { return requires { requires std::decay_t<decltype(law)>::own_pressure; }; }, strength);
+      [](const auto& law) {
+        return requires { requires std::decay_t<decltype(law)>::own_pressure; };
+      },
+      strength);
   if (own_pressure) {
-    throw core::InputErrors(input.eos->source, "EquationOfState",
-                            input.strength.type + " computes its pressure itself: remove the EquationOfState");
+    throw core::InputErrors(
+        input.eos->source, "EquationOfState",
+        input.strength.type + " computes its pressure itself: remove the EquationOfState");
   }
   return make_law<EquationOfState>(*input.eos, "EquationOfState", input.reference_density);
 }
 
 void refuse_what_is_missing(const core::MaterialInput& input, const CommonParameters& common) {
   const auto refuse = [&](const char* what) {
-    throw core::InputErrors(input.strength.source, "StrengthModel", std::string(what) + " is not implemented yet");
+    throw core::InputErrors(input.strength.source, "StrengthModel",
+                            std::string(what) + " is not implemented yet");
   };
   if (common.temperature_coefficient != 0) refuse("TemperatureCoefficient other than 0");
   if (common.conductivity != 0) refuse("CoefficientOfThermalConductivity other than 0");

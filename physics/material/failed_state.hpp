@@ -1,5 +1,5 @@
-// What a failed particle's pressure may be (manual 3.2.1, FailedType): 0 no tension, 1 none at all, 2 tension down to
-// TensileCutoff, and zero beyond.
+// What a failed particle's pressure may be (manual 3.2.1, FailedType): 0 no tension, 1 none at all, 2 tension
+// down to TensileCutoff, and zero beyond.
 #pragma once
 
 #include "core/simd/lanes.hpp"

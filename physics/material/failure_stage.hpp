@@ -1,7 +1,8 @@
-// Fourth stage, where the material can fail: every failure model judges the same state, then the worst verdict counts
-// (manual 3.2.3: any one suffices). Verdicts and the column `failed`: 0 intact, 1 failed, 2 to be eroded by the step.
-// A particle that fails loses its deviatoric stress and the pressure that FailedType forbids; the elastic energy of
-// both stays in it as heat. The wave speed keeps the intact value for this one step, which is on the safe side.
+// Fourth stage, where the material can fail: every failure model judges the same state, then the worst
+// verdict counts (manual 3.2.3: any one suffices). Verdicts and the column `failed`: 0 intact, 1 failed, 2 to
+// be eroded by the step. A particle that fails loses its deviatoric stress and the pressure that FailedType
+// forbids; the elastic energy of both stays in it as heat. The wave speed keeps the intact value for this one
+// step, which is on the safe side.
 #pragma once
 
 #include <variant>
@@ -15,7 +16,8 @@ namespace mpm::physics {
 
 /// `verdict` becomes at least 1 (2 where the model erodes) where the model says so.
 template <class T, class Model>
-[[gnu::noinline, gnu::flatten]] void judge(const core::Batch& batch, const Model& model, bool erodes, double* verdict) {
+[[gnu::noinline, gnu::flatten]] void judge(const core::Batch& batch, const Model& model, bool erodes,
+                                           double* verdict) {
   const core::ColumnLayout& layout = *batch.layout;
   const History<Model, FailurePoint<T>> history(model, layout);
   const int pressure_at = layout.offset(core::Column::pressure);
@@ -29,7 +31,8 @@ template <class T, class Model>
 }
 
 template <class T>
-[[gnu::noinline, gnu::flatten]] void apply_failure(core::Batch& batch, const FailedRules& rules, const double* verdict) {
+[[gnu::noinline, gnu::flatten]] void apply_failure(core::Batch& batch, const FailedRules& rules,
+                                                   const double* verdict) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const int failed_at = layout.offset(Column::failed), pressure_at = layout.offset(Column::pressure);

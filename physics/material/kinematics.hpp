@@ -27,8 +27,8 @@ T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::S
     case 1: return 1.0 + cell_strain;
     case 2: return exp(trace(strain));
     case 3:
-      return determinant(core::Mat3<T>{1.0 + dt * l.xx, dt * l.xy, dt * l.xz, dt * l.yx, 1.0 + dt * l.yy, dt * l.yz,
-                                       dt * l.zx, dt * l.zy, 1.0 + dt * l.zz});
+      return determinant(core::Mat3<T>{1.0 + dt * l.xx, dt * l.xy, dt * l.xz, dt * l.yx, 1.0 + dt * l.yy,
+                                       dt * l.yz, dt * l.zx, dt * l.zy, 1.0 + dt * l.zz});
     case 4: {
       const core::Sym3<T> old = accumulated, now = accumulated + strain;
       return (1.0 + now.xx) * (1.0 + now.yy) * (1.0 + now.zz) /
@@ -40,8 +40,8 @@ T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::S
 
 /// The volume held within Volume min/max, which are factors of the volume at reference density.
 template <class T>
-T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double reference_density, const T& mass,
-               const T& volume, int row) {
+T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double reference_density,
+               const T& mass, const T& volume, int row) {
   using core::max;
   using core::min;
   const T reference = mass * (1 / reference_density);
@@ -52,11 +52,11 @@ T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double re
   return held;
 }
 
-/// Fills strain, volumetric_strain and old_volume of the batch; updates the volume and, where the layout has them,
-/// the accumulated strains.
+/// Fills strain, volumetric_strain and old_volume of the batch; updates the volume and, where the layout has
+/// them, the accumulated strains.
 template <class T>
 [[gnu::noinline, gnu::flatten]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
-                                         double reference_density) {
+                                                       double reference_density) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);

@@ -37,8 +37,10 @@ double modulus_at_rest(const Material::Laws& laws) {
   StrengthPoint<double> at_rest{};
   at_rest.density = laws.reference_density;
   at_rest.temperature = laws.common.room_temperature;
-  const double shear = std::visit([&](const auto& law) { return rest(law, at_rest).shear_modulus; }, laws.strength);
-  if (laws.common_eos.c0 > 0) return 4.0 / 3.0 * shear + laws.reference_density * laws.common_eos.c0 * laws.common_eos.c0;
+  const double shear =
+      std::visit([&](const auto& law) { return rest(law, at_rest).shear_modulus; }, laws.strength);
+  if (laws.common_eos.c0 > 0)
+    return 4.0 / 3.0 * shear + laws.reference_density * laws.common_eos.c0 * laws.common_eos.c0;
   return std::visit(
       [&](const auto& eos) {
         EosPoint<double> point{};
@@ -104,7 +106,8 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options)
   const PressureRules rules = pressure_rules(options);
   update_kinematics<T>(batch, options, laws_.reference_density);
   std::visit([&](const auto& law) { update_strength<T>(batch, law, strength_rules()); }, laws_.strength);
-  std::visit([&](const auto& eos) { update_pressure<T>(batch, eos, rules, fails_ ? verdict : nullptr); }, laws_.eos);
+  std::visit([&](const auto& eos) { update_pressure<T>(batch, eos, rules, fails_ ? verdict : nullptr); },
+             laws_.eos);
   if (!fails_) return;
   for (const FailureEntry& entry : laws_.failures) {
     std::visit([&](const auto& model) { judge<T>(batch, model, entry.erodes, verdict); }, entry.model);
@@ -144,8 +147,9 @@ void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& opti
           put(Column::pressure, bulk.pressure);
           put(Column::internal_energy, bulk.energy);
 
-          const T modulus = (4.0 / 3.0) * point.shear_modulus +
-                            isentropic_modulus(line, now.compression, now.relative_volume, bulk.pressure, bulk.energy);
+          const T modulus =
+              (4.0 / 3.0) * point.shear_modulus +
+              isentropic_modulus(line, now.compression, now.relative_volume, bulk.pressure, bulk.energy);
           const T c2 = core::max(modulus, 0.0) * volume * now.inverse_mass;
           store_speeds(batch, block, row, rules, c2, T(0.0));
         });

@@ -1,5 +1,6 @@
-// A material: strength model, equation of state and failure models composed, as the input states them, behind the
-// interface that the step knows. Each stage is one pass over the batch, and each law is chosen once per batch.
+// A material: strength model, equation of state and failure models composed, as the input states them, behind
+// the interface that the step knows. Each stage is one pass over the batch, and each law is chosen once per
+// batch.
 #pragma once
 
 #include <memory>

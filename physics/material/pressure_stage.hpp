@@ -1,9 +1,10 @@
-// Third stage: artificial viscosity, and energy and pressure solved together (thesis 2-69, 2-82 to 2-92). Per unit
-// initial volume, with h = (V^{n+1} - V^n)/(2 V0) and the stress work w = V^{n+1/2} s^{n+1/2} : de / V0:
+// Third stage: artificial viscosity, and energy and pressure solved together (thesis 2-69, 2-82 to 2-92). Per
+// unit initial volume, with h = (V^{n+1} - V^n)/(2 V0) and the stress work w = V^{n+1/2} s^{n+1/2} : de / V0:
 //   E* = E^n - h p^n - h (q^n + q^{n+1}) + w,   p = (a + b E*)/(1 + b h),   E = E* - h p
-// h takes the place of V^{n+1/2} tr(de)/2 (2-88), so that -p dV is the work of the volume that really changes.
-// The sound speed in q is that of the new volume with the old energy and pressure. Then the wave speed of the
-// state reached (2-57) and the speed of the critical step (2-74). Shown by tests/physics/energy_test.cpp.
+// h takes the place of V^{n+1/2} tr(de)/2 (2-88), so that -p dV is the work of the volume that really
+// changes. The sound speed in q is that of the new volume with the old energy and pressure. Then the wave
+// speed of the state reached (2-57) and the speed of the critical step (2-74). Shown by
+// tests/physics/energy_test.cpp.
 #pragma once
 
 #include "physics/eos/point.hpp"
@@ -15,13 +16,13 @@ namespace mpm::physics {
 
 struct PressureRules {
   double reference_density = 0;
-  double bq1 = 0;                      ///< quadratic term of the artificial viscosity
-  double bq2 = 0;                      ///< linear term
-  double initial_modulus = 0;          ///< rho0 c0^2 at rest, the scale of what is negligible
+  double bq1 = 0;              ///< quadratic term of the artificial viscosity
+  double bq2 = 0;              ///< linear term
+  double initial_modulus = 0;  ///< rho0 c0^2 at rest, the scale of what is negligible
   double initial_sound_speed = 0;
-  bool constant_sound_speed = false;   ///< for the critical step
+  bool constant_sound_speed = false;  ///< for the critical step
   bool viscosity_in_wave_speed = true;
-  bool viscous = false;                ///< the batch's shear_viscosity is not zero throughout
+  bool viscous = false;  ///< the batch's shear_viscosity is not zero throughout
   FailedRules failed;
 };
 
@@ -41,8 +42,8 @@ struct Density {
 
 /// rho dp/drho along an isentrope (2-57).
 template <class T>
-T isentropic_modulus(const EosLine<T>& line, const T& compression, const T& relative_volume, const T& pressure,
-                     const T& energy) {
+T isentropic_modulus(const EosLine<T>& line, const T& compression, const T& relative_volume,
+                     const T& pressure, const T& energy) {
   return (1.0 + compression) * (line.da + line.db * energy) + relative_volume * pressure * line.b;
 }
 
@@ -56,14 +57,24 @@ EosLine<T> limited_line(const Eos& eos, EosPoint<T>& point, core::MaskOf<T>& out
   return eos.line(point);
 }
 
-/// The damping speed Q of the artificial viscosity (2-73), from the rate of compression and the sound speed in it.
+/// Q of all that is viscous and counts in the critical step: the artificial viscosity (2-73), from the rate
+/// of compression and the sound speed in it, and the shear viscosity, 4/3 mu D = rho l Q D.
 template <class T>
-T damping_speed(const PressureRules& rules, double length, const T& rate, const T& c) {
-  return core::select(rate > 0.0, rules.bq2 * c + (rules.bq1 * length) * rate, 0.0);
+T damping_speed(const core::Batch& batch, const PressureRules& rules, const T& rate, const T& c,
+                const T& specific_volume, int row) {
+  T damping = 0.0;
+  if (rules.viscosity_in_wave_speed) {
+    const T sound = rules.constant_sound_speed ? T(rules.initial_sound_speed) : c;
+    damping = core::select(rate > 0.0, rules.bq2 * sound + (rules.bq1 * batch.cell_size) * rate, 0.0);
+  }
+  if (rules.viscous) {
+    damping += (4 / (3 * batch.cell_size)) * specific_volume * core::load<T>(batch.shear_viscosity + row);
+  }
+  return damping;
 }
 
-/// Speeds for the time step (2-74) and, where the layout has that column, for output. `damping` is Q of everything
-/// viscous that counts.
+/// Speeds for the time step (2-74) and, where the layout has that column, for output. `damping` is Q of
+/// everything viscous that counts.
 template <class T>
 void store_speeds(core::Batch& batch, double* block, int row, const PressureRules& rules, const T& c2,
                   const T& damping) {
@@ -77,11 +88,24 @@ void store_speeds(core::Batch& batch, double* block, int row, const PressureRule
   core::store(block + sound_at, c);
 }
 
-/// Updates pressure, viscous_pressure, internal_energy and the equation's state; fills sound_speed and critical_speed.
-/// `verdict` (null where the material cannot fail) becomes 1 where the state has no defined answer, else 0.
+/// Every stress has gone into the energy, so one look at it finds what is no number.
+template <class T>
+void count_events(core::MaterialEvents& events, core::MaskOf<T> undefined, const T& energy, double negligible,
+                  int row, int particles) {
+  const core::MaskOf<T> negative = energy < negligible;
+  const core::MaskOf<T> not_finite = !(energy - energy == 0.0);
+  if (!core::any(undefined | negative | not_finite)) return;
+  events.undefined_root += count<T>(undefined, row, particles);
+  events.negative_energy += count<T>(negative, row, particles);
+  events.not_finite += count<T>(not_finite, row, particles);
+}
+
+/// Updates pressure, viscous_pressure, internal_energy and the equation's state; fills sound_speed and
+/// critical_speed. `verdict` (null where the material cannot fail) becomes 1 where the state has no defined
+/// answer, else 0.
 template <class T, class Eos>
-[[gnu::noinline, gnu::flatten]] void update_pressure(core::Batch& batch, const Eos& eos, const PressureRules& rules,
-                                       double* verdict) {
+[[gnu::noinline, gnu::flatten]] void update_pressure(core::Batch& batch, const Eos& eos,
+                                                     const PressureRules& rules, double* verdict) {
   using core::Column;
   using core::max;
   const core::ColumnLayout& layout = *batch.layout;
@@ -113,7 +137,8 @@ template <class T, class Eos>
     core::MaskOf<T> failed{};
     if (failed_at >= 0) failed = core::load<T>(block + failed_at) > 0.5;
     const T rate = core::select(failed, 0.0, max(-inverse_dt * tr, 0.0));
-    const T modulus_before = shear + isentropic_modulus(line, now.compression, now.relative_volume, old_p, old_energy);
+    const T modulus_before =
+        shear + isentropic_modulus(line, now.compression, now.relative_volume, old_p, old_energy);
     const T c_before = sqrt(max(modulus_before, 0.0) * specific_volume);
     const T q = (length * now.density * rate) * (rules.bq1 * length * rate + rules.bq2 * c_before);
 
@@ -132,23 +157,11 @@ template <class T, class Eos>
     const core::MaskOf<T> undefined = outside | (modulus < negligible);
     const T c2 = core::select(undefined, rules.initial_sound_speed * rules.initial_sound_speed,
                               max(modulus, 0.0) * specific_volume);
-    T damping = 0.0;
-    if (rules.viscosity_in_wave_speed) {
-      damping = damping_speed(rules, length, rate, rules.constant_sound_speed ? T(rules.initial_sound_speed) : c_before);
-    }
-    if (rules.viscous) {  // 4/3 mu D = rho l Q D
-      damping += (4 / (3 * length)) * specific_volume * core::load<T>(batch.shear_viscosity + row);
-    }
-    store_speeds(batch, block, row, rules, c2, damping);
+    store_speeds(batch, block, row, rules, c2,
+                 damping_speed(batch, rules, rate, c_before, specific_volume, row));
     if (verdict != nullptr) core::store(verdict + row, core::select(undefined, 1.0, T(0.0)));
 
-    const core::MaskOf<T> negative = energy < negligible;
-    const core::MaskOf<T> not_finite = !(energy - energy == 0.0);  // every stress has gone into it
-    if (core::any(undefined | negative | not_finite)) {
-      batch.events.undefined_root += count<T>(undefined, row, batch.particles);
-      batch.events.negative_energy += count<T>(negative, row, batch.particles);
-      batch.events.not_finite += count<T>(not_finite, row, batch.particles);
-    }
+    count_events<T>(batch.events, undefined, energy, negligible, row, batch.particles);
   });
 }
 

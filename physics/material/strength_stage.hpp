@@ -1,8 +1,9 @@
-// Second stage: the deviatoric stress. The old stress is turned by the mid-point rule for the step's spin (Hughes and
-// Winget 1980; orthogonal to round-off, in the place of thesis 2-81). The strain increment belongs to the middle of
-// the step and is turned by the other half, to first order in the angle: with that the whole is of second order,
-// where an unturned increment leaves it of first (tests/physics/objectivity_test.cpp). Then the law.
-// Failed particles have the stress of a fluid, s = 2 FailViscosity D', and their state rests.
+// Second stage: the deviatoric stress. The old stress is turned by the mid-point rule for the step's spin
+// (Hughes and Winget 1980; orthogonal to round-off, in the place of thesis 2-81). The strain increment
+// belongs to the middle of the step and is turned by the other half, to first order in the angle: with that
+// the whole is of second order, where an unturned increment leaves it of first
+// (tests/physics/objectivity_test.cpp). Then the law. Failed particles have the stress of a fluid, s = 2
+// FailViscosity D', and their state rests.
 #pragma once
 
 #include "physics/history.hpp"
@@ -63,8 +64,9 @@ StrengthPoint<T> strength_point(const core::Batch& batch, const double* block, i
   StrengthPoint<T> point;
   point.dt = batch.dt;
   point.volumetric_strain = tr;
-  point.strain = turn_slightly(T(0.5) * spin, core::Sym3<T>{strain(0) - mean, strain(1) - mean, strain(2) - mean,
-                                                            strain(3), strain(4), strain(5)});
+  point.strain = turn_slightly(
+      T(0.5) * spin,
+      core::Sym3<T>{strain(0) - mean, strain(1) - mean, strain(2) - mean, strain(3), strain(4), strain(5)});
   point.s = rotate_deviator(core::mid_point_rotation(spin), load_deviator<T>(block, layout));
   point.pressure = get(Column::pressure);
   point.density = get(Column::mass) / get(Column::volume);
@@ -83,10 +85,11 @@ void hold_failed(StrengthPoint<T>& point, const History<Law, StrengthPoint<T>>& 
   history.restore(block, point, failed);
 }
 
-/// Fills deviatoric_work, shear_modulus and shear_viscosity of the batch; updates s, the law's state and, where the
-/// layout has it, the temperature (thesis 2-119).
+/// Fills deviatoric_work, shear_modulus and shear_viscosity of the batch; updates s, the law's state and,
+/// where the layout has it, the temperature (thesis 2-119).
 template <class T, class Law>
-[[gnu::noinline, gnu::flatten]] void update_strength(core::Batch& batch, const Law& law, const StrengthRules& rules) {
+[[gnu::noinline, gnu::flatten]] void update_strength(core::Batch& batch, const Law& law,
+                                                     const StrengthRules& rules) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const History<Law, StrengthPoint<T>> history(law, layout);

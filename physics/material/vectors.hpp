@@ -5,8 +5,8 @@
 
 namespace mpm::physics {
 
-/// f(block, row): `block + layout.offset(column)` is where the vector's values of a column lie, `row` its place in
-/// the rows of the batch.
+/// f(block, row): `block + layout.offset(column)` is where the vector's values of a column lie, `row` its
+/// place in the rows of the batch.
 template <class T, class F>
 inline void for_each_vector(const core::Batch& batch, F f) {
   for (int b = 0; b < batch.blocks; ++b) {

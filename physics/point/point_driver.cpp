@@ -69,9 +69,9 @@ Mat3<double> scaled(double k, const Mat3<double>& a) {
   return {k * a.xx, k * a.xy, k * a.xz, k * a.yx, k * a.yy, k * a.yz, k * a.zx, k * a.zy, k * a.zz};
 }
 
-/// One step of uniaxial stress. The lateral stress grows with the lateral rate, so its root is bracketed and then
-/// found by the secant, with bisection as the safeguard. `ratio`, lateral over axial rate, starts from the last
-/// step's and is returned in place.
+/// One step of uniaxial stress. The lateral stress grows with the lateral rate, so its root is bracketed and
+/// then found by the secant, with bisection as the safeguard. `ratio`, lateral over axial rate, starts from
+/// the last step's and is returned in place.
 bool step_without_lateral_stress(PointDriver& point, double axial_rate, double dt, double& ratio) {
   const PointDriver::State before = point.save();
   double scale = 0;

@@ -82,7 +82,8 @@ struct Path {
 };
 
 /// Walks the path; `visit(strain)` is called before the first and after every step. Returns false where the
-/// lateral stress of uniaxial stress could not be brought to zero (1e-9 of the axial stress increment's scale).
+/// lateral stress of uniaxial stress could not be brought to zero (1e-9 of the axial stress increment's
+/// scale).
 bool drive(PointDriver& point, const Path& path, const std::function<void(double strain)>& visit);
 
 }  // namespace mpm::physics

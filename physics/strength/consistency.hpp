@@ -1,7 +1,8 @@
-// The plastic strain increment of a law whose yield stress depends on it through rate, heat or a curved hardening:
+// The plastic strain increment of a law whose yield stress depends on it through rate, heat or a curved
+// hardening:
 //   f(x) = trial - 3 G x - sigma_y(x) = 0,   0 <= x <= trial/(3 G)
-// Newton's method held in a shrinking bracket, all lanes at once; a lane that has converged is left alone, so its
-// result does not depend on its neighbours. Converged means |f| below 1e-12 of the yield stress.
+// Newton's method held in a shrinking bracket, all lanes at once; a lane that has converged is left alone, so
+// its result does not depend on its neighbours. Converged means |f| below 1e-12 of the yield stress.
 #pragma once
 
 #include "core/tensor/tensor.hpp"
@@ -14,7 +15,8 @@ struct FlowStress {
   T slope;  ///< with respect to the plastic strain increment
 };
 
-/// Zero in the lanes where the trial stress does not exceed `threshold`, the yield stress for a vanishing increment.
+/// Zero in the lanes where the trial stress does not exceed `threshold`, the yield stress for a vanishing
+/// increment.
 template <class T, class Flow>
 T plastic_increment(const T& trial, const T& threshold, double shear, const Flow& flow) {
   using core::abs;

@@ -1,5 +1,5 @@
-// Isotropic linear elasticity of the deviator, the base of most strength laws: Young and Poisson, the moduli that
-// follow, and the trial stress s + 2 G de' of the Jaumann rate form (thesis 2-93 to 2-95, 2-100).
+// Isotropic linear elasticity of the deviator, the base of most strength laws: Young and Poisson, the moduli
+// that follow, and the trial stress s + 2 G de' of the Jaumann rate form (thesis 2-93 to 2-95, 2-100).
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 namespace mpm::physics {
 
 struct IsotropicElasticity {
-  double young = 0;    ///< stress
+  double young = 0;  ///< stress
   double poisson = 0;
-  double shear = 0;    ///< G, derived
-  double bulk = 0;     ///< K, derived
+  double shear = 0;  ///< G, derived
+  double bulk = 0;   ///< K, derived
 
   void derive_moduli() {
     shear = young / (2 * (1 + poisson));
@@ -31,10 +31,21 @@ struct IsotropicElasticity {
 template <class Law>
 constexpr auto elastic_parameters() {
   return std::array<Parameter<Law>, 2>{{
-      {&Law::young, {.name = "Young", .required = true, .min = 0, .min_open = true, .dimension = "stress",
-                     .meaning = "Young's modulus"}},
-      {&Law::poisson, {.name = "Poisson", .required = true, .min = -1, .max = 0.5, .min_open = true,
-                       .max_open = true, .meaning = "Poisson's ratio"}},
+      {&Law::young,
+       {.name = "Young",
+        .required = true,
+        .min = 0,
+        .min_open = true,
+        .dimension = "stress",
+        .meaning = "Young's modulus"}},
+      {&Law::poisson,
+       {.name = "Poisson",
+        .required = true,
+        .min = -1,
+        .max = 0.5,
+        .min_open = true,
+        .max_open = true,
+        .meaning = "Poisson's ratio"}},
   }};
 }
 

@@ -21,9 +21,12 @@ struct IsoHarden : MisesPlasticity {
   static constexpr auto parameters() {
     return join(plastic_parameters<IsoHarden>(),
                 std::array<Parameter<IsoHarden>, 1>{{
-                    {&IsoHarden::tangent_modulus, {.name = "TangMod", .required = true, .min = 0,
-                                                   .dimension = "stress",
-                                                   .meaning = "tangent modulus d(stress)/d(strain), < Young"}},
+                    {&IsoHarden::tangent_modulus,
+                     {.name = "TangMod",
+                      .required = true,
+                      .min = 0,
+                      .dimension = "stress",
+                      .meaning = "tangent modulus d(stress)/d(strain), < Young"}},
                 }});
   }
   std::string fault() const { return tangent_modulus < young ? "" : "TangMod must be smaller than Young"; }

@@ -1,9 +1,11 @@
 // Johnson-Cook plasticity with heat and damage (manual 3-2 to 3-5, thesis 2-116 to 2-120, 2-136, 2-137):
 //   sigma_y = (Yield0 + B epef^n)(1 + C ln(rate/epso))(1 - T*^m),  T* = (T - roomt)/(melt - roomt)
-//   eps_f = (D1 + D2 exp(D3 sigma_m/sigma_eq))(1 + D4 ln(rate/epso))(1 + D5 T*^m),  damage = sum of d epef/eps_f
-// Rate factors are 1 below epso. The increment solves the consistency condition with its own rate and adiabatic
-// temperature. Molten (T* = 1) means no shear strength. Damage 1 fails the particle; it weakens nothing before.
-// The exponent m in the last factor is the manual's. Shown by tests/physics/johnson_cook_test.cpp.
+//   eps_f = (D1 + D2 exp(D3 sigma_m/sigma_eq))(1 + D4 ln(rate/epso))(1 + D5 T*^m),  damage = sum of d
+//   epef/eps_f
+// Rate factors are 1 below epso. The increment solves the consistency condition with its own rate and
+// adiabatic temperature. Molten (T* = 1) means no shear strength. Damage 1 fails the particle; it weakens
+// nothing before. The exponent m in the last factor is the manual's. Shown by
+// tests/physics/johnson_cook_test.cpp.
 #pragma once
 
 #include <string>
@@ -28,16 +30,35 @@ struct JohnsonCook : JohnsonCookPlasticity {
     return join(
         johnson_cook_parameters<P>(),
         std::array<Parameter<P>, 9>{{
-            {&P::m, {.name = "m", .required = true, .min = 0, .min_open = true,
-                     .meaning = "thermal softening exponent"}},
-            {&P::melt, {.name = "melt", .required = true, .min = 0, .min_open = true, .dimension = "temperature",
-                        .meaning = "melting temperature, > roomt"}},
-            {&P::roomt, {.name = "roomt", .default_value = 293, .min = 0, .dimension = "temperature",
-                         .meaning = "room temperature, where softening begins; temperature at the start"}},
-            {&P::specific_heat, {.name = "SpecHeat", .required = true, .min = 0, .min_open = true,
-                                 .dimension = "energy/(mass temperature)", .meaning = "specific heat"}},
+            {&P::m,
+             {.name = "m",
+              .required = true,
+              .min = 0,
+              .min_open = true,
+              .meaning = "thermal softening exponent"}},
+            {&P::melt,
+             {.name = "melt",
+              .required = true,
+              .min = 0,
+              .min_open = true,
+              .dimension = "temperature",
+              .meaning = "melting temperature, > roomt"}},
+            {&P::roomt,
+             {.name = "roomt",
+              .default_value = 293,
+              .min = 0,
+              .dimension = "temperature",
+              .meaning = "room temperature, where softening begins; temperature at the start"}},
+            {&P::specific_heat,
+             {.name = "SpecHeat",
+              .required = true,
+              .min = 0,
+              .min_open = true,
+              .dimension = "energy/(mass temperature)",
+              .meaning = "specific heat"}},
             {&P::d1, {.name = "D1", .meaning = "failure strain", .group = "damage"}},
-            {&P::d2, {.name = "D2", .meaning = "failure strain: factor of the triaxiality term", .group = "damage"}},
+            {&P::d2,
+             {.name = "D2", .meaning = "failure strain: factor of the triaxiality term", .group = "damage"}},
             {&P::d3, {.name = "D3", .meaning = "failure strain: exponent of triaxiality", .group = "damage"}},
             {&P::d4, {.name = "D4", .meaning = "failure strain: strain rate", .group = "damage"}},
             {&P::d5, {.name = "D5", .meaning = "failure strain: temperature", .group = "damage"}},
@@ -86,10 +107,12 @@ struct JohnsonCook : JohnsonCookPlasticity {
     using core::exp;
     using core::max;
     using core::min;
-    // A molten particle has no stress to divide by; any flow under tension then breaks it, under pressure it does not.
+    // A molten particle has no stress to divide by; any flow under tension then breaks it, under pressure it
+    // does not.
     const T triaxiality = -point.pressure / max(point.yield_stress, 1e-6 * yield0);
     const T homologous = homologous_temperature(point.temperature, roomt, melt);
-    const T failure_strain = (d1 + d2 * exp(d3 * triaxiality)) * rate_factor(d4, increment, epso * point.dt).value *
+    const T failure_strain = (d1 + d2 * exp(d3 * triaxiality)) *
+                             rate_factor(d4, increment, epso * point.dt).value *
                              (1.0 + d5 * homologous_power(homologous, m));
     // Parameters that give no positive failure strain mean failure at the first flow.
     const T damage = point.damage + increment / max(failure_strain, 1e-6);

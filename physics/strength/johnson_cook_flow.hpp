@@ -1,8 +1,8 @@
-// The factors of the Johnson-Cook flow stress (manual 3-2, thesis 2-116), each with its derivative with respect to the
-// plastic strain increment x of a step:
+// The factors of the Johnson-Cook flow stress (manual 3-2, thesis 2-116), each with its derivative with
+// respect to the plastic strain increment x of a step:
 //   hardening A + B (epef + x)^n,   rate 1 + C ln(max(x/(dt epso), 1)),   heat 1 - T*^m
-// Below the reference rate epso the rate factor is 1: the logarithm would otherwise make a slow material weaker than
-// A and, at rest, of no strength at all.
+// Below the reference rate epso the rate factor is 1: the logarithm would otherwise make a slow material
+// weaker than A and, at rest, of no strength at all.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace mpm::physics {
 
 struct JohnsonCookPlasticity : MisesPlasticity {  // yield0 is A
-  double b = 0;     ///< stress
+  double b = 0;                                   ///< stress
   double n = 0;
   double c = 0;
   double epso = 0;  ///< 1/time
@@ -22,16 +22,21 @@ struct JohnsonCookPlasticity : MisesPlasticity {  // yield0 is A
 
 template <class Law>
 constexpr auto johnson_cook_parameters() {
-  return join(plastic_parameters<Law>(),
-              std::array<Parameter<Law>, 4>{{
-                  {&Law::b, {.name = "B", .required = true, .min = 0, .dimension = "stress",
-                             .meaning = "hardening constant"}},
-                  {&Law::n, {.name = "n", .required = true, .min = 0, .meaning = "hardening exponent"}},
-                  {&Law::c, {.name = "C", .required = true, .min = 0, .meaning = "strain-rate constant"}},
-                  {&Law::epso, {.name = "epso", .required = true, .min = 0, .min_open = true,
-                                .dimension = "1/time",
-                                .meaning = "reference strain rate: 1/s in the unit of time of the case"}},
-              }});
+  return join(
+      plastic_parameters<Law>(),
+      std::array<Parameter<Law>, 4>{{
+          {&Law::b,
+           {.name = "B", .required = true, .min = 0, .dimension = "stress", .meaning = "hardening constant"}},
+          {&Law::n, {.name = "n", .required = true, .min = 0, .meaning = "hardening exponent"}},
+          {&Law::c, {.name = "C", .required = true, .min = 0, .meaning = "strain-rate constant"}},
+          {&Law::epso,
+           {.name = "epso",
+            .required = true,
+            .min = 0,
+            .min_open = true,
+            .dimension = "1/time",
+            .meaning = "reference strain rate: 1/s in the unit of time of the case"}},
+      }});
 }
 
 template <class T>

@@ -1,9 +1,9 @@
 // Fluids: no elastic shear stress, pressure from the equation of state (manual 3.2.1.8).
 //   ck = 0: Newtonian, tau = mu * rate in simple shear;  ck > 0: power law, tau = ck * rate^nn
 // As tensors s = 2 eta D' with eta = mu or ck g^(nn - 1), g = sqrt(2 D':D') the shear rate. The manual prints
-// s = mu D' (3-7) and calls mu the dynamic viscosity: with the shear components counted as g that is the same.
-// Limit: where nn < 1 the viscosity of a fluid almost at rest is that of the rate 1e-8/dt.
-// Shown by tests/physics/fluid_test.cpp.
+// s = mu D' (3-7) and calls mu the dynamic viscosity: with the shear components counted as g that is the
+// same. Limit: where nn < 1 the viscosity of a fluid almost at rest is that of the rate 1e-8/dt. Shown by
+// tests/physics/fluid_test.cpp.
 #pragma once
 
 #include <string_view>
@@ -25,12 +25,24 @@ struct Null {
 
   static constexpr auto parameters() {
     return std::array<Parameter<Null>, 3>{{
-        {&Null::mu, {.name = "mu", .default_value = 0, .min = 0, .dimension = "stress time",
-                     .meaning = "dynamic viscosity"}},
-        {&Null::ck, {.name = "ck", .default_value = 0, .min = 0, .dimension = "stress time^nn",
-                     .meaning = "consistency of a power-law fluid; 0: Newtonian"}},
-        {&Null::nn, {.name = "nn", .default_value = 1, .min = 0, .min_open = true,
-                     .meaning = "power-law exponent: < 1 thins with the rate, > 1 thickens"}},
+        {&Null::mu,
+         {.name = "mu",
+          .default_value = 0,
+          .min = 0,
+          .dimension = "stress time",
+          .meaning = "dynamic viscosity"}},
+        {&Null::ck,
+         {.name = "ck",
+          .default_value = 0,
+          .min = 0,
+          .dimension = "stress time^nn",
+          .meaning = "consistency of a power-law fluid; 0: Newtonian"}},
+        {&Null::nn,
+         {.name = "nn",
+          .default_value = 1,
+          .min = 0,
+          .min_open = true,
+          .meaning = "power-law exponent: < 1 thins with the rate, > 1 thickens"}},
     }};
   }
   bool is_viscous() const { return mu > 0 || ck > 0; }

@@ -11,8 +11,8 @@ struct MisesPlasticity : IsotropicElasticity {
   double yield0 = 0;                    ///< initial yield stress
   double plastic_work_coefficient = 0;  ///< part of the plastic work that becomes heat
 
-  /// Books the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112 to
-  /// 2-120). `before` and `after` are the yield stress at the ends of the plastic part of the step; where
+  /// Books the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112
+  /// to 2-120). `before` and `after` are the yield stress at the ends of the plastic part of the step; where
   /// the increment is zero the trial stress stays as it is.
   template <class T>
   static void radial_return(StrengthPoint<T>& point, const T& trial, const T& before, const T& after,
@@ -26,8 +26,8 @@ struct MisesPlasticity : IsotropicElasticity {
   }
 
   /// The same for an increment found by iteration: `old_stress` is the von Mises stress before the step and
-  /// `threshold` the yield stress for a vanishing increment. Flow starts at the greater of the two: a material
-  /// that flows fast is above its static yield stress already.
+  /// `threshold` the yield stress for a vanishing increment. Flow starts at the greater of the two: a
+  /// material that flows fast is above its static yield stress already.
   template <class T>
   void return_to(StrengthPoint<T>& point, const T& trial, const T& old_stress, const T& threshold,
                  const T& increment) const {
@@ -38,14 +38,21 @@ struct MisesPlasticity : IsotropicElasticity {
 
 template <class Law>
 constexpr auto plastic_parameters() {
-  return join(elastic_parameters<Law>(),
-              std::array<Parameter<Law>, 2>{{
-                  {&Law::yield0, {.name = "Yield0", .required = true, .min = 0, .min_open = true,
-                                  .dimension = "stress", .meaning = "initial yield stress"}},
-                  {&Law::plastic_work_coefficient,
-                   {.name = "PlasticWorkCoefficient", .default_value = 0.9, .min = 0, .max = 1,
-                    .meaning = "part of the plastic work that becomes heat"}},
-              }});
+  return join(elastic_parameters<Law>(), std::array<Parameter<Law>, 2>{{
+                                             {&Law::yield0,
+                                              {.name = "Yield0",
+                                               .required = true,
+                                               .min = 0,
+                                               .min_open = true,
+                                               .dimension = "stress",
+                                               .meaning = "initial yield stress"}},
+                                             {&Law::plastic_work_coefficient,
+                                              {.name = "PlasticWorkCoefficient",
+                                               .default_value = 0.9,
+                                               .min = 0,
+                                               .max = 1,
+                                               .meaning = "part of the plastic work that becomes heat"}},
+                                         }});
 }
 
 }  // namespace mpm::physics

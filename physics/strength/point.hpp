@@ -12,14 +12,14 @@ namespace mpm::physics {
 template <class T>
 struct StrengthPoint {
   // --- given -------------------------------------------------------------------------------------------
-  double dt;              ///< > 0
-  core::Sym3<T> strain;   ///< deviator of the strain increment
-  T volumetric_strain;    ///< its trace
-  T pressure;             ///< at the beginning of the step, positive in compression
-  T density;              ///< at the end of the step
+  double dt;             ///< > 0
+  core::Sym3<T> strain;  ///< deviator of the strain increment
+  T volumetric_strain;   ///< its trace
+  T pressure;            ///< at the beginning of the step, positive in compression
+  T density;             ///< at the end of the step
 
   // --- changed -----------------------------------------------------------------------------------------
-  core::Sym3<T> s;        ///< deviatoric stress
+  core::Sym3<T> s;  ///< deviatoric stress
 
   // --- results beside the stress; laws that have none leave them ----------------------------------------
   T shear_modulus = 0.0;  ///< for the wave speed

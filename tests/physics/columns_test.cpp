@@ -1,6 +1,6 @@
-// A law's particles carry the columns that it declares: all of those are read or written on some path, and no other
-// column is. A layout with every column there is holds a pattern where nothing was declared; the pattern must
-// survive, and the results must be those of the lean layout.
+// A law's particles carry the columns that it declares: all of those are read or written on some path, and no
+// other column is. A layout with every column there is holds a pattern where nothing was declared; the
+// pattern must survive, and the results must be those of the lean layout.
 
 #include <bit>
 #include <cmath>
@@ -120,7 +120,8 @@ TEST_CASE("columns follow from what the material can do", "[physics][columns]") 
   CHECK(make(copper("IsoHarden"))->columns({}) == ColumnSet{Column::effective_plastic_strain});
   CHECK(make(copper("IsoHarden heated"))->columns({}) ==
         ColumnSet{Column::effective_plastic_strain, Column::temperature});
-  CHECK(make(copper("JohnsonCook"))->columns({}) == ColumnSet{Column::effective_plastic_strain, Column::temperature});
+  CHECK(make(copper("JohnsonCook"))->columns({}) ==
+        ColumnSet{Column::effective_plastic_strain, Column::temperature});
   CHECK(make(copper("JohnsonCook damaged"))->columns({}) ==
         ColumnSet{Column::effective_plastic_strain, Column::temperature, Column::damage, Column::failed});
   core::MaterialInput input = copper("IsoElastic");

@@ -48,8 +48,8 @@ TEST_CASE("uniaxial stress gives Young's modulus and Poisson's ratio", "[physics
 }
 
 TEST_CASE("simple shear of a Jaumann elastic body is G sin(gamma)", "[physics][elastic]") {
-  // Jaumann rate under constant spin: s_xy = G sin(gamma), s_xx = G (1 - cos(gamma)); e.g. Dienes, Acta Mechanica 32
-  // (1979) 217, whose objection to the rate this oscillation is.
+  // Jaumann rate under constant spin: s_xy = G sin(gamma), s_xx = G (1 - cos(gamma)); e.g. Dienes, Acta
+  // Mechanica 32 (1979) 217, whose objection to the rate this oscillation is.
   const auto material = make(copper("IsoElastic"));
   const double gamma = 2;
   double last = 0;
@@ -57,7 +57,8 @@ TEST_CASE("simple shear of a Jaumann elastic body is G sin(gamma)", "[physics][e
     PointDriver point(*material, {});
     drive(point, {.kind = PathKind::simple_shear, .targets = {gamma}, .steps = steps}, [](double) {});
     const double error = std::hypot(point.stress().xy - shear * std::sin(gamma),
-                                    point.deviator().xx - shear * (1 - std::cos(gamma))) / shear;
+                                    point.deviator().xx - shear * (1 - std::cos(gamma))) /
+                         shear;
     CHECK(error < 2e-4);
     if (last > 0) CHECK(std::log2(last / error) == Approx(2).margin(0.05));
     last = error;
@@ -81,9 +82,11 @@ TEST_CASE("a body placed at another density starts with the pressure and energy 
   for (const double ratio : {1.05, 1.0, 0.96}) {
     PointDriver point(*material, {.density = ratio * rho0});
     CHECK(point.value(Column::pressure) == Approx(bulk * std::log(ratio)).epsilon(1e-12).margin(1e-6));
-    // Released to the reference density, it has given back all: E is zero there, to the second order of the steps.
+    // Released to the reference density, it has given back all: E is zero there, to the second order of the
+    // steps.
     const int steps = 400;
-    drive(point, {.kind = PathKind::hydrostatic, .rate = 1, .targets = {std::log(ratio)}, .steps = steps}, [](double) {});
+    drive(point, {.kind = PathKind::hydrostatic, .rate = 1, .targets = {std::log(ratio)}, .steps = steps},
+          [](double) {});
     CHECK(std::abs(point.value(Column::pressure)) < 1e-9 * bulk);
     CHECK(std::abs(point.energy()) < 1e-3 * bulk * std::pow(std::log(ratio), 2) + 1e-12);
   }

@@ -1,5 +1,5 @@
-// Energy and pressure solved together (thesis 2-82 to 2-92): isentropes with their order of convergence, the balance
-// of energy against the work of the stresses, and the sound speed (2-57).
+// Energy and pressure solved together (thesis 2-82 to 2-92): isentropes with their order of convergence, the
+// balance of energy against the work of the stresses, and the sound speed (2-57).
 
 #include <cmath>
 
@@ -52,7 +52,8 @@ TEST_CASE("the isentrope of Grueneisen copper converges with second order", "[ph
   const double rho0 = 8960, c0 = 3940, s1 = 1.49, gamma0 = 1.96, volume = std::exp(-0.2);
   const auto pressure = [&](double v, double energy) {
     const double mu = 1 / v - 1;
-    return rho0 * c0 * c0 * mu * (1 + (1 - gamma0 / 2) * mu) / std::pow(1 - (s1 - 1) * mu, 2) + gamma0 * energy;
+    return rho0 * c0 * c0 * mu * (1 + (1 - gamma0 / 2) * mu) / std::pow(1 - (s1 - 1) * mu, 2) +
+           gamma0 * energy;
   };
   double energy = 0, v = 1;
   const int steps = 2000;
@@ -87,12 +88,17 @@ TEST_CASE("internal energy is the work of all stresses, viscous ones included on
       double work = 0;
       for (int i = 0; i < steps; ++i) {
         const core::Mat3<double> l = path.gradient((i + 0.5) * dt);
-        const core::Sym3<double> strain{dt * l.xx, dt * l.yy, dt * l.zz, 0.5 * dt * (l.xy + l.yx),
-                                        0.5 * dt * (l.yz + l.zy), 0.5 * dt * (l.xz + l.zx)};
+        const core::Sym3<double> strain{dt * l.xx,
+                                        dt * l.yy,
+                                        dt * l.zz,
+                                        0.5 * dt * (l.xy + l.yx),
+                                        0.5 * dt * (l.yz + l.zy),
+                                        0.5 * dt * (l.xz + l.zx)};
         const core::Sym3<double> before = point.stress();
         const double v = point.value(Column::volume);
         point.step(l, dt);
-        work += 0.5 * (v + point.value(Column::volume)) / v0 * 0.5 * contract(before + point.stress(), strain);
+        work +=
+            0.5 * (v + point.value(Column::volume)) / v0 * 0.5 * contract(before + point.stress(), strain);
       }
       return std::abs(point.energy() - start - work) / std::max(std::abs(work), 1e-3 * start);
     };

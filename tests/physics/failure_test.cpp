@@ -1,5 +1,5 @@
-// Failure: criteria (manual 3.2.3), what is left of the stress (FailedType, TensileCutoff, FailViscosity in 3.2.1),
-// and erosion.
+// Failure: criteria (manual 3.2.3), what is left of the stress (FailedType, TensileCutoff, FailViscosity
+// in 3.2.1), and erosion.
 
 #include <cmath>
 
@@ -19,7 +19,9 @@ namespace {
 core::FailureInput plastic_strain(double epmax, bool erosion = false) {
   return {{"PlaStrain", {{"epmax", epmax}}, {}}, erosion};
 }
-core::FailureInput pmin(double value, bool erosion = false) { return {{"Pmin", {{"pmin", value}}, {}}, erosion}; }
+core::FailureInput pmin(double value, bool erosion = false) {
+  return {{"Pmin", {{"pmin", value}}, {}}, erosion};
+}
 
 core::MaterialInput brittle(const core::FailureInput& failure, const core::ParameterValues& values = {},
                             bool gruneisen = true) {
@@ -31,7 +33,8 @@ core::MaterialInput brittle(const core::FailureInput& failure, const core::Param
 
 /// Stretches equally in all directions to the logarithmic volume strain.
 void stretch(PointDriver& point, double strain, int steps = 100) {
-  drive(point, {.kind = PathKind::hydrostatic, .rate = 1e3, .targets = {strain}, .steps = steps}, [](double) {});
+  drive(point, {.kind = PathKind::hydrostatic, .rate = 1e3, .targets = {strain}, .steps = steps},
+        [](double) {});
 }
 
 }  // namespace
@@ -57,11 +60,12 @@ TEST_CASE("PlaStrain fails at epmax and takes the deviatoric stress away", "[phy
 TEST_CASE("Pmin fails in tension beyond its limit only", "[physics][failure]") {
   const auto material = make(brittle(pmin(-500e6)));
   PointDriver point(*material, {});
-  drive(point, {.kind = PathKind::hydrostatic, .rate = 1e3, .targets = {-0.01, 0.02}, .steps = 500}, [&](double) {
-    const double p = point.value(Column::pressure);
-    CHECK(p >= -500e6);
-    if (p < 0) CHECK(point.value(Column::failed) == 0);
-  });
+  drive(point, {.kind = PathKind::hydrostatic, .rate = 1e3, .targets = {-0.01, 0.02}, .steps = 500},
+        [&](double) {
+          const double p = point.value(Column::pressure);
+          CHECK(p >= -500e6);
+          if (p < 0) CHECK(point.value(Column::failed) == 0);
+        });
   CHECK(point.value(Column::failed) == 1);
   CHECK(point.value(Column::pressure) == 0);
 }
@@ -77,8 +81,8 @@ TEST_CASE("FailedType decides on the pressure of failed particles", "[physics][f
        {Expectation{0, 0, 0, 0, 1}, Expectation{1, 0, 0, 0, 0}, Expectation{2, -300e6, 1, 0, 1},
         Expectation{2, 0, 0, 0, 1}}) {
     INFO("FailedType " << type << ", TensileCutoff " << cutoff);
-    const auto material =
-        make(brittle(plastic_strain(0.5), {{"FailedType", static_cast<double>(type)}, {"TensileCutoff", cutoff}}));
+    const auto material = make(
+        brittle(plastic_strain(0.5), {{"FailedType", static_cast<double>(type)}, {"TensileCutoff", cutoff}}));
     const auto intact_material = make(copper("IsoHarden", true));
     PointDriver point(*material, {}), intact(*intact_material, {});
     point.set(Column::failed, 1);
@@ -86,7 +90,8 @@ TEST_CASE("FailedType decides on the pressure of failed particles", "[physics][f
       stretch(point, strain);
       stretch(intact, strain);
       // The energy of the two differs a little: what the intact one stored in tension the other did not.
-      CHECK(point.value(Column::pressure) == Approx(factor * intact.value(Column::pressure)).epsilon(1e-3).margin(1e-9));
+      CHECK(point.value(Column::pressure) ==
+            Approx(factor * intact.value(Column::pressure)).epsilon(1e-3).margin(1e-9));
     }
     CHECK(point.events().not_finite == 0);
   }

@@ -1,5 +1,5 @@
-// Fluids: shear stress of Newtonian and power-law fluids in simple shear and in extension (manual 3-7, 3-8), and the
-// part of the viscosity in the critical speed.
+// Fluids: shear stress of Newtonian and power-law fluids in simple shear and in extension (manual 3-7, 3-8),
+// and the part of the viscosity in the critical speed.
 
 #include <cmath>
 

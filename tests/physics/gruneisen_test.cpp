@@ -1,11 +1,13 @@
-// Mie-Grueneisen against the shock Hugoniot: the jump conditions (thesis 2-60 to 2-62) with Us = C0 + S1 up give
-// states that the equation must reproduce exactly, being built about them; and its derivatives and limits.
+// Mie-Grueneisen against the shock Hugoniot: the jump conditions (thesis 2-60 to 2-62) with Us = C0 + S1 up
+// give states that the equation must reproduce exactly, being built about them; and its derivatives and
+// limits.
+
+#include "physics/eos/gruneisen.hpp"
 
 #include <cmath>
 
 #include <catch2/catch.hpp>
 
-#include "physics/eos/gruneisen.hpp"
 #include "physics/point/point_driver.hpp"
 #include "tests/physics/samples.hpp"
 
@@ -42,9 +44,9 @@ TEST_CASE("states behind a shock lie on the equation of state", "[physics][grune
   for (const double up : {10.0, 200.0, 500.0, 1000.0, 3000.0, 6000.0}) {
     INFO("particle velocity " << up);
     const double us = c0 + s1 * up;
-    const double rho = rho0 * us / (us - up);       // 2-60
-    const double p = rho0 * us * up;                // 2-61
-    const double energy = rho0 * 0.5 * up * up;     // 2-62 with p0 = e0 = 0, per unit initial volume
+    const double rho = rho0 * us / (us - up);    // 2-60
+    const double p = rho0 * us * up;             // 2-61
+    const double energy = rho0 * 0.5 * up * up;  // 2-62 with p0 = e0 = 0, per unit initial volume
     CHECK(pressure(law(), rho / rho0 - 1, energy) == Approx(p).epsilon(1e-12));
   }
 }
@@ -79,7 +81,8 @@ TEST_CASE("compression beyond the pole of the Hugoniot is counted and stays fini
   const auto material = make(copper("IsoHarden", true));
   PointDriver point(*material, {});
   const double pole = 1 / (s1 - 1);
-  drive(point, {.kind = PathKind::hydrostatic, .targets = {-std::log(1.5 * (1 + pole))}, .steps = 4000}, [](double) {});
+  drive(point, {.kind = PathKind::hydrostatic, .targets = {-std::log(1.5 * (1 + pole))}, .steps = 4000},
+        [](double) {});
   CHECK(point.events().undefined_root > 0);
   CHECK(point.events().not_finite == 0);
   CHECK(point.value(Column::pressure) > 0);
@@ -88,12 +91,14 @@ TEST_CASE("compression beyond the pole of the Hugoniot is counted and stays fini
   input.failures.push_back({{"Pmin", {{"pmin", -1e15}}, {}}, false});
   const auto brittle = make(input);
   PointDriver failing(*brittle, {});
-  drive(failing, {.kind = PathKind::hydrostatic, .targets = {-std::log(1.5 * (1 + pole))}, .steps = 4000}, [](double) {});
+  drive(failing, {.kind = PathKind::hydrostatic, .targets = {-std::log(1.5 * (1 + pole))}, .steps = 4000},
+        [](double) {});
   CHECK(failing.value(Column::failed) == 1);
   CHECK(failing.events().failed == 1);
 }
 
-TEST_CASE("tension without a limit ends with an undefined sound speed that is counted", "[physics][gruneisen]") {
+TEST_CASE("tension without a limit ends with an undefined sound speed that is counted",
+          "[physics][gruneisen]") {
   const auto material = make(sample("Null + Gruneisen").input);
   PointDriver point(*material, {});
   drive(point, {.kind = PathKind::hydrostatic, .targets = {0.6}, .steps = 600}, [](double) {});

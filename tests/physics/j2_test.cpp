@@ -1,5 +1,5 @@
-// Von Mises plasticity in uniaxial stress and shear against the closed forms of thesis 2.4.3 and of the definition of
-// TangMod (manual 3.2.1.4).
+// Von Mises plasticity in uniaxial stress and shear against the closed forms of thesis 2.4.3 and of the
+// definition of TangMod (manual 3.2.1.4).
 
 #include <cmath>
 
@@ -25,16 +25,16 @@ TEST_CASE("a bar beyond yield follows the tangent modulus, and unloads elastical
   const double yield_strain = yield / young;
   double worst = 0, strain_before = 0, peak = 0;
   bool unloading = false;
-  const bool converged = drive(point, {.kind = PathKind::uniaxial_stress, .targets = {0.02, 0.019}, .steps = 200},
-                               [&](double strain) {
-    if (strain < strain_before) unloading = true;
-    const double expected = unloading              ? peak - young * (0.02 - strain)
-                            : strain < yield_strain ? young * strain
-                                                    : yield + tangent * (strain - yield_strain);
-    if (!unloading) peak = expected;
-    worst = std::max(worst, std::abs(point.stress().xx - expected));
-    strain_before = strain;
-  });
+  const bool converged = drive(
+      point, {.kind = PathKind::uniaxial_stress, .targets = {0.02, 0.019}, .steps = 200}, [&](double strain) {
+        if (strain < strain_before) unloading = true;
+        const double expected = unloading               ? peak - young * (0.02 - strain)
+                                : strain < yield_strain ? young * strain
+                                                        : yield + tangent * (strain - yield_strain);
+        if (!unloading) peak = expected;
+        worst = std::max(worst, std::abs(point.stress().xx - expected));
+        strain_before = strain;
+      });
   CHECK(converged);
   // The step that crosses yield mixes elastic and plastic lateral strain: first order in its length.
   CHECK(worst < 2e-4 * peak);
@@ -49,7 +49,11 @@ TEST_CASE("simple shear of a hardening material in one step and in many", "[phys
   const double gamma = 0.05;  // engineering
   for (const int steps : {1, 7, 100}) {
     PointDriver point(*material, {});
-    drive(point, {.kind = PathKind::gradient, .targets = {gamma}, .steps = steps, .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
+    drive(point,
+          {.kind = PathKind::gradient,
+           .targets = {gamma},
+           .steps = steps,
+           .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
           [](double) {});
     const double plastic = (std::sqrt(3.0) * shear * gamma - yield) / (3 * shear + hardening);
     CHECK(point.value(Column::effective_plastic_strain) == Approx(plastic).epsilon(1e-12));
@@ -60,7 +64,8 @@ TEST_CASE("simple shear of a hardening material in one step and in many", "[phys
 TEST_CASE("a perfectly plastic bar stays at its yield stress", "[physics][j2]") {
   const auto material = make(copper("ElaPlastic"));
   PointDriver point(*material, {.extra_columns = {Column::yield_stress}});
-  REQUIRE(drive(point, {.kind = PathKind::uniaxial_stress, .targets = {-0.01, 0.01}, .steps = 200}, [](double) {}));
+  REQUIRE(drive(point, {.kind = PathKind::uniaxial_stress, .targets = {-0.01, 0.01}, .steps = 200},
+                [](double) {}));
   CHECK(point.stress().xx == Approx(yield).epsilon(1e-8));
   CHECK(point.value(Column::yield_stress) == yield);
 }
@@ -77,7 +82,11 @@ TEST_CASE("plastic work heats where the specific heat is given", "[physics][j2]"
   const auto material = make(copper("IsoHarden heated"));
   PointDriver point(*material, {});
   const double gamma = 0.1;
-  drive(point, {.kind = PathKind::gradient, .targets = {gamma}, .steps = 500, .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
+  drive(point,
+        {.kind = PathKind::gradient,
+         .targets = {gamma},
+         .steps = 500,
+         .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
         [](double) {});
   // Mean yield stress times plastic strain, exact for linear hardening; the volume does not change.
   const double hardening = young * tangent / (young - tangent);

@@ -1,4 +1,5 @@
-// Johnson-Cook: flow curves at three rates, adiabatic and isothermal, and the damage law, against manual 3-2 to 3-5.
+// Johnson-Cook: flow curves at three rates, adiabatic and isothermal, and the damage law, against manual 3-2
+// to 3-5.
 
 #include <algorithm>
 #include <array>
@@ -25,7 +26,8 @@ constexpr std::array rates{0.5, 1e2, 1e5};  // 1/s; the first below the referenc
 double log_rate(double rate) { return std::log(std::max(rate, 1.0)); }
 double homologous(double temperature) { return std::clamp((temperature - room) / (melt - room), 0.0, 1.0); }
 double flow_stress(double strain, double rate, double temperature) {
-  return (a + b * std::pow(strain, n)) * (1 + c * log_rate(rate)) * (1 - std::pow(homologous(temperature), m));
+  return (a + b * std::pow(strain, n)) * (1 + c * log_rate(rate)) *
+         (1 - std::pow(homologous(temperature), m));
 }
 
 core::MaterialInput isothermal(const std::string& law) {
@@ -135,7 +137,8 @@ TEST_CASE("damage follows triaxiality, rate and temperature, and fails the parti
   for (const double compression : {0.0, 0.001, -0.001}) {
     INFO("volumetric strain " << -compression);
     PointDriver point(*material, {});
-    drive(point, {.kind = PathKind::hydrostatic, .rate = rate, .targets = {-compression}, .steps = 10}, [](double) {});
+    drive(point, {.kind = PathKind::hydrostatic, .rate = rate, .targets = {-compression}, .steps = 10},
+          [](double) {});
     double expected = 0, epef = 0, time = point.time(), temperature = room, worst = 0;
     bool failed = false;
     drive(point, pure_shear(rate, 20, 20000), [&](double) {
@@ -147,7 +150,8 @@ TEST_CASE("damage follows triaxiality, rate and temperature, and fails the parti
       if (next > epef) {
         const double plastic_rate = (next - epef) / (point.time() - time);
         const double triaxiality = -point.value(Column::pressure) / mises(point.deviator());
-        const double failure_strain = (d1 + d2 * std::exp(d3 * triaxiality)) * (1 + d4 * log_rate(plastic_rate)) *
+        const double failure_strain = (d1 + d2 * std::exp(d3 * triaxiality)) *
+                                      (1 + d4 * log_rate(plastic_rate)) *
                                       (1 + d5 * std::pow(homologous(temperature), m));
         expected += (next - epef) / failure_strain;
         worst = std::max(worst, std::abs(point.value(Column::damage) - expected));

@@ -1,5 +1,5 @@
-// What holds for every law, over the samples of tests/physics/samples.cpp: nothing here knows a law's name, so a law
-// that is added is tested by the same statements.
+// What holds for every law, over the samples of tests/physics/samples.cpp: nothing here knows a law's name,
+// so a law that is added is tested by the same statements.
 
 #include <algorithm>
 #include <cmath>
@@ -60,13 +60,14 @@ TEST_CASE("scalar and vector instances of every law agree to round-off", "[physi
     PointDriver vector(*material, options), scalar(*material, options, scalar_update(*material));
     const double scale = walk(vector, path, 200);
     walk(scalar, path, 200);
-    // Contraction and the library's exp and log differ: a few roundings a step, of the largest stress met, and of
-    // the moduli behind the differences of nearly equal volumes.
+    // Contraction and the library's exp and log differ: a few roundings a step, of the largest stress met,
+    // and of the moduli behind the differences of nearly equal volumes.
     const double stiffness = s.input.reference_density * std::pow(material->initial_sound_speed(), 2);
     CHECK(norm(vector.stress() - scalar.stress()) <= 1e-12 * scale + 1e-13 * stiffness);
     CHECK(std::abs(vector.energy() - scalar.energy()) <= 1e-12 * std::max(scale, std::abs(scalar.energy())));
     for (Column column : {Column::effective_plastic_strain, Column::temperature, Column::damage}) {
-      if (vector.has(column)) CHECK(vector.value(column) == Approx(scalar.value(column)).epsilon(1e-11).margin(1e-14));
+      if (vector.has(column))
+        CHECK(vector.value(column) == Approx(scalar.value(column)).epsilon(1e-11).margin(1e-14));
     }
   }
 }
@@ -99,9 +100,11 @@ TEST_CASE("every law gives the same answer in SI and in mm-g-ms", "[physics][law
     const double stiffness = s.input.reference_density * std::pow(si->initial_sound_speed(), 2);
     // Only the roundings of the conversion differ; an absolute tolerance inside a law would show at once.
     CHECK(norm(a.stress() - (1 / units.stress()) * b.stress()) <= 1e-11 * scale + 1e-13 * stiffness);
-    CHECK(std::abs(a.energy() - b.energy() / units.stress()) <= 1e-11 * std::max(scale, std::abs(a.energy())));
+    CHECK(std::abs(a.energy() - b.energy() / units.stress()) <=
+          1e-11 * std::max(scale, std::abs(a.energy())));
     CHECK(a.critical_speed() == Approx(b.critical_speed() / units.velocity()).epsilon(1e-11));
-    for (Column column : {Column::effective_plastic_strain, Column::temperature, Column::damage, Column::failed}) {
+    for (Column column :
+         {Column::effective_plastic_strain, Column::temperature, Column::damage, Column::failed}) {
       if (a.has(column)) CHECK(a.value(column) == Approx(b.value(column)).epsilon(1e-10).margin(1e-14));
     }
   }
@@ -150,19 +153,23 @@ TEST_CASE("plastic flow and viscous flow never give energy back", "[physics][law
     for (int i = 0; i < steps; ++i) {
       const Mat3<double> l = path.gradient((i + 0.5) * dt);
       const Sym3<double> before = point.deviator();
-      const double energy = point.energy(), p = point.value(Column::pressure), v = point.value(Column::volume);
+      const double energy = point.energy(), p = point.value(Column::pressure),
+                   v = point.value(Column::volume);
       point.step(l, dt);
       if (point.has(Column::failed) && point.value(Column::failed) > 0) break;
-      // What the stress work puts in, less what the elastic deviator stores: E* of the energy equation without -p dV.
+      // What the stress work puts in, less what the elastic deviator stores: E* of the energy equation
+      // without -p dV.
       const double v0 = point.value(Column::mass) / s.input.reference_density;
       const double dv = point.value(Column::volume) - v;
       const double work = (point.energy() - energy) + 0.5 * (p + point.value(Column::pressure)) * dv / v0;
       const double mean_volume = 0.5 * (point.value(Column::volume) + v) / v0;
       const double stored =
-          shear > 0 ? (contract(point.deviator(), point.deviator()) - contract(before, before)) / (4 * shear) : 0;
+          shear > 0 ? (contract(point.deviator(), point.deviator()) - contract(before, before)) / (4 * shear)
+                    : 0;
       const double step_dissipation = work - mean_volume * stored;
       const double volume_work = std::abs((p + point.value(Column::pressure)) * dv / v0);
-      scale = std::max({scale, std::abs(work), std::abs(energy), volume_work, std::abs(mean_volume * stored)});
+      scale =
+          std::max({scale, std::abs(work), std::abs(energy), volume_work, std::abs(mean_volume * stored)});
       CHECK(step_dissipation >= -1e-12 * scale);
       dissipated += step_dissipation;
     }
@@ -190,7 +197,8 @@ TEST_CASE("every law converges with first order or better as the step is refined
     }
     const double order = std::log2(first / last) / (levels - 1);
     INFO("error " << first << " -> " << last << ", order " << order);
-    // Errors of round-off size have no order; the moment of failure is only known to a step, so errors scatter.
+    // Errors of round-off size have no order; the moment of failure is only known to a step, so errors
+    // scatter.
     CHECK((order > (s.input.failures.empty() ? 0.95 : 0.7) || last < 1e-9));
     CHECK(last < 5e-3);
   }

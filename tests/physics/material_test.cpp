@@ -1,5 +1,7 @@
-// The material as a whole: neighbours in a batch, padding lanes, what contradicts itself in the input, and the
-// catalogue that the input reader works from.
+// The material as a whole: neighbours in a batch, padding lanes, what contradicts itself in the input, and
+// the catalogue that the input reader works from.
+
+#include "physics/material/material.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -11,7 +13,6 @@
 
 #include "core/scene/errors.hpp"
 #include "physics/catalogue.hpp"
-#include "physics/material/material.hpp"
 #include "tests/physics/samples.hpp"
 
 namespace mpm::tests {
@@ -23,7 +24,8 @@ namespace {
 
 constexpr int particles = core::batch_particles;
 
-/// A batch of particles, each with its own state and strain, at chosen places: `place[i]` is where particle i is.
+/// A batch of particles, each with its own state and strain, at chosen places: `place[i]` is where particle i
+/// is.
 struct Crowd {
   Crowd(const physics::Material& material, int blocks) {
     core::ColumnSet set = core::ColumnSet::mechanics();

@@ -1,5 +1,6 @@
-// A path with a superposed rotation gives the same stress, turned: ten full turns on top of stretch and shear, about
-// an oblique axis. The spin is followed exactly by the stress and to second order by the increments.
+// A path with a superposed rotation gives the same stress, turned: ten full turns on top of stretch and
+// shear, about an oblique axis. The spin is followed exactly by the stress and to second order by the
+// increments.
 
 #include <cmath>
 
@@ -22,21 +23,25 @@ using physics::PointDriver;
 constexpr double duration = 2e-5, pi = 3.14159265358979323846;
 constexpr double turns = 10;
 
-Mat3<double> transpose(const Mat3<double>& a) { return {a.xx, a.yx, a.zx, a.xy, a.yy, a.zy, a.xz, a.yz, a.zz}; }
+Mat3<double> transpose(const Mat3<double>& a) {
+  return {a.xx, a.yx, a.zx, a.xy, a.yy, a.zy, a.xz, a.yz, a.zz};
+}
 Mat3<double> operator+(const Mat3<double>& a, const Mat3<double>& b) {
   return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yx + b.yx, a.yy + b.yy,
           a.yz + b.yz, a.zx + b.zx, a.zy + b.zy, a.zz + b.zz};
 }
 
 const Vec3<double> axis{2.0 / 7, 3.0 / 7, 6.0 / 7};
-Mat3<double> skew(double w) { return {0, -w * axis.z, w * axis.y, w * axis.z, 0, -w * axis.x, -w * axis.y, w * axis.x, 0}; }
+Mat3<double> skew(double w) {
+  return {0, -w * axis.z, w * axis.y, w * axis.z, 0, -w * axis.x, -w * axis.y, w * axis.x, 0};
+}
 
 /// Rodrigues' formula.
 Mat3<double> rotation(double angle) {
   const Mat3<double> k = skew(1), k2 = k * k;
   const double s = std::sin(angle), c = 1 - std::cos(angle);
-  return Mat3<double>{1 + c * k2.xx, c * k2.xy, c * k2.xz, c * k2.yx, 1 + c * k2.yy, c * k2.yz,
-                      c * k2.zx, c * k2.zy, 1 + c * k2.zz} +
+  return Mat3<double>{1 + c * k2.xx, c * k2.xy, c * k2.xz, c * k2.yx,    1 + c * k2.yy,
+                      c * k2.yz,     c * k2.zx, c * k2.zy, 1 + c * k2.zz} +
          skew(s);
 }
 

@@ -23,7 +23,8 @@ struct Wearing : physics::IsotropicElasticity {
   double wear = 0;
   static constexpr auto parameters() {
     return physics::join(physics::elastic_parameters<Wearing>(),
-                         std::array<physics::Parameter<Wearing>, 1>{{{&Wearing::wear, {.name = "wear", .meaning = "1/strain"}}}});
+                         std::array<physics::Parameter<Wearing>, 1>{
+                             {{&Wearing::wear, {.name = "wear", .meaning = "1/strain"}}}});
   }
   void prepare() { derive_moduli(); }
   template <class T>
@@ -98,8 +99,8 @@ TEST_CASE("an equation of state with state of its own", "[physics][own-law]") {
     compression = 1 / one.get(Column::volume) - 1;
     largest = std::max(largest, compression);
     CHECK(one.get(Column::max_compression) == Approx(largest).epsilon(1e-12));
-    CHECK(one.get(Column::pressure) ==
-          Approx(eos.loading * largest + eos.unloading * (compression - largest)).margin(1e-15 * eos.unloading));
+    CHECK(one.get(Column::pressure) == Approx(eos.loading * largest + eos.unloading * (compression - largest))
+                                           .margin(1e-15 * eos.unloading));
   }
 }
 

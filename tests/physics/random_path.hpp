@@ -1,5 +1,5 @@
-// A smooth path of the velocity gradient through a bounded strain, with stretch, shear and spin at once: the same
-// for every material, in any unit of time.
+// A smooth path of the velocity gradient through a bounded strain, with stretch, shear and spin at once: the
+// same for every material, in any unit of time.
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@ namespace mpm::tests {
 
 class RandomPath {
  public:
-  /// The integral of each component is `strain` times a number within -1 and 1; the whole path takes `duration`.
+  /// The integral of each component is `strain` times a number within -1 and 1; the whole path takes
+  /// `duration`.
   RandomPath(unsigned seed, double strain, double duration) : strain_(strain), duration_(duration) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> amplitude(-1, 1), frequency(1, 2.5);

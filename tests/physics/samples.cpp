@@ -57,7 +57,14 @@ const std::map<std::string, LawInput> equations{
       {}}},
     {"Polynomial gas",
      {"Polynomial",
-      {{"c0", 0.0}, {"c1", 0.0}, {"c2", 0.0}, {"c3", 0.0}, {"c4", 0.4}, {"c5", 0.4}, {"c6", 0.0}, {"E0", 250e6}},
+      {{"c0", 0.0},
+       {"c1", 0.0},
+       {"c2", 0.0},
+       {"c3", 0.0},
+       {"c4", 0.4},
+       {"c5", 0.4},
+       {"c6", 0.0},
+       {"E0", 250e6}},
       {}}},
 };
 
@@ -82,9 +89,8 @@ std::vector<Sample> all_samples() {
       all.push_back({strength.label + " + " + label, input_of(strength, &eos), strength.strain});
     }
   }
-  for (const core::FailureInput& failure :
-       {core::FailureInput{{"PlaStrain", {{"epmax", 0.01}}, {}}, false},
-        core::FailureInput{{"Pmin", {{"pmin", -20e6}}, {}}, true}}) {
+  for (const core::FailureInput& failure : {core::FailureInput{{"PlaStrain", {{"epmax", 0.01}}, {}}, false},
+                                            core::FailureInput{{"Pmin", {{"pmin", -20e6}}, {}}, true}}) {
     MaterialInput input = copper("IsoHarden", true);
     input.failures.push_back(failure);
     all.push_back({"IsoHarden + Gruneisen + " + failure.type, input, 0.02});
@@ -183,8 +189,9 @@ TEST_CASE("every law of the lists has a sample", "[physics]") {
   const core::Catalogue catalogue = physics::catalogue();
   require_samples_of(catalogue.strength,
                      [](const MaterialInput& i, std::string_view name) { return i.strength.type == name; });
-  require_samples_of(catalogue.eos,
-                     [](const MaterialInput& i, std::string_view name) { return i.eos && i.eos->type == name; });
+  require_samples_of(catalogue.eos, [](const MaterialInput& i, std::string_view name) {
+    return i.eos && i.eos->type == name;
+  });
   require_samples_of(catalogue.failure, [](const MaterialInput& i, std::string_view name) {
     return !i.failures.empty() && i.failures.front().type == name;
   });

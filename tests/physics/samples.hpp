@@ -1,5 +1,5 @@
-// Materials for the tests that hold for every law: at least one set of parameters per law of the lists, in SI, and
-// the same in mm-g-ms, converted by the dimensions that the laws' own tables state.
+// Materials for the tests that hold for every law: at least one set of parameters per law of the lists, in
+// SI, and the same in mm-g-ms, converted by the dimensions that the laws' own tables state.
 #pragma once
 
 #include <map>

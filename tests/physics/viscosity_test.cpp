@@ -1,5 +1,5 @@
-// The artificial bulk viscosity (manual 3.1, thesis 2-69) and what it does to the critical speed (2-72 to 2-74) and to
-// the energy.
+// The artificial bulk viscosity (manual 3.1, thesis 2-69) and what it does to the critical speed (2-72 to
+// 2-74) and to the energy.
 
 #include <cmath>
 
@@ -23,7 +23,8 @@ core::Mat3<double> uniaxial(double rate) { return {rate, 0, 0, 0, 0, 0, 0, 0, 0}
 
 TEST_CASE("q = rho l (bq1 l D^2 - bq2 c D) in compression, zero in expansion", "[physics][viscosity]") {
   // Every kind of material, also those without shear stiffness: the sound speed in q is the material's own.
-  for (const char* label : {"IsoElastic", "IsoHarden + Gruneisen", "Null + Polynomial gas", "Null + Gruneisen"}) {
+  for (const char* label :
+       {"IsoElastic", "IsoHarden + Gruneisen", "Null + Polynomial gas", "Null + Gruneisen"}) {
     INFO(label);
     const auto material = make(sample(label).input);
     for (const double rate : {-1e3, -1e6}) {

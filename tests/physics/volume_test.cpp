@@ -31,7 +31,8 @@ TEST_CASE("volume updates follow their formulas", "[physics][volume]") {
   const double tr = dt * (100 - 60 + 80);
   const int n = 3;
   CHECK(ratio_after(0, n) == Approx(std::pow(1 + tr, n)).epsilon(1e-14));
-  CHECK(ratio_after(1, n) == Approx(std::pow(1 + tr, n)).epsilon(1e-14));  // the driver's cell is the particle
+  CHECK(ratio_after(1, n) ==
+        Approx(std::pow(1 + tr, n)).epsilon(1e-14));  // the driver's cell is the particle
   CHECK(ratio_after(2, n) == Approx(std::exp(n * tr)).epsilon(1e-14));
   const Mat3<double> f{1.1, 0.03, -0.02, 0.01, 0.94, 0.04, 0.025, -0.015, 1.08};
   CHECK(ratio_after(3, n) == Approx(std::pow(determinant(f), n)).epsilon(1e-14));

@@ -1,6 +1,6 @@
-// The wave speed must not be below that of the tangent: rho c^2 against the slope of the stress for a small, fast
-// uniaxial strain in many directions, found by differences, at states along a random path. Elastic unloading is
-// the stiffest answer, so both signs are tried.
+// The wave speed must not be below that of the tangent: rho c^2 against the slope of the stress for a small,
+// fast uniaxial strain in many directions, found by differences, at states along a random path. Elastic
+// unloading is the stiffest answer, so both signs are tried.
 
 #include <cmath>
 #include <random>
@@ -30,13 +30,15 @@ double stress_after(PointDriver& point, const Vec3<double>& n, double strain, do
   const PointDriver::State state = point.save();
   const double rate = strain / dt;
   point.step({rate * n.x * n.x, rate * n.x * n.y, rate * n.x * n.z, rate * n.y * n.x, rate * n.y * n.y,
-              rate * n.y * n.z, rate * n.z * n.x, rate * n.z * n.y, rate * n.z * n.z}, dt);
+              rate * n.y * n.z, rate * n.z * n.x, rate * n.z * n.y, rate * n.z * n.z},
+             dt);
   const double stress = along(point.stress(), n);
   point.restore(state);
   return stress;
 }
 
-/// d(stress along n)/d(strain along n), against a step without strain: what relaxes by itself is no stiffness.
+/// d(stress along n)/d(strain along n), against a step without strain: what relaxes by itself is no
+/// stiffness.
 double tangent(PointDriver& point, const Vec3<double>& n, double strain) {
   constexpr double dt = 1e-12;
   return (stress_after(point, n, strain, dt) - stress_after(point, n, 0, dt)) / strain;
@@ -48,7 +50,8 @@ TEST_CASE("the wave speed of every law is not below its tangent's", "[physics][w
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   for (const Sample& s : samples()) {
-    if (s.input.strength.has("mu") || s.input.strength.has("ck")) continue;  // viscous stress is not a modulus
+    if (s.input.strength.has("mu") || s.input.strength.has("ck"))
+      continue;  // viscous stress is not a modulus
     INFO(s.label);
     const auto material = make(s.input);
     PointDriver point(*material, {});
@@ -61,8 +64,8 @@ TEST_CASE("the wave speed of every law is not below its tangent's", "[physics][w
       if (i % 20 != 0) continue;
       point.step({}, 1e-12);
       const double modulus = point.density() * point.sound_speed() * point.sound_speed();
-      // (2-57) holds for dE = -p dV. The work of the deviatoric stress heats as well; with dp/dE < 2 here that adds
-      // at most twice the largest principal deviator, 2/3 of the von Mises stress.
+      // (2-57) holds for dE = -p dV. The work of the deviatoric stress heats as well; with dp/dE < 2 here
+      // that adds at most twice the largest principal deviator, 2/3 of the von Mises stress.
       const double bound = modulus + (s.input.eos ? 4.0 / 3.0 * mises(point.deviator()) : 0);
       for (int k = 0; k < 6; ++k) {
         Vec3<double> n{normal(random), normal(random), normal(random)};
@@ -74,7 +77,8 @@ TEST_CASE("the wave speed of every law is not below its tangent's", "[physics][w
         }
       }
     }
-    // The difference quotient is of first order in 1e-7, with round-off 1e-16 of the modulus over 1e-7 besides.
+    // The difference quotient is of first order in 1e-7, with round-off 1e-16 of the modulus over 1e-7
+    // besides.
     CHECK(largest < 1 + 1e-5);
     // And it is no idle bound: in some direction the material is as stiff as it says.
     CHECK(stiffest > 0.98);

@@ -12,6 +12,8 @@
 namespace mpm::tests {
 namespace {
 
+constexpr double bar_length = 25.4, bar_diameter = 7.6;
+
 Matrix product(const Matrix& a, const Matrix& b) {
   Matrix c{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -365,7 +367,7 @@ Vector ReferenceStepper::momentum() const {
 }
 
 ReferenceCase taylor_bar(double dp) {
-  constexpr double bar_length = 25.4, bar_diameter = 7.6, impact_speed = 190;
+  constexpr double impact_speed = 190;
   ReferenceCase setup;
   setup.material = {.density = 8.93e-3,
                     .young = 117e3,
@@ -403,20 +405,30 @@ ReferenceCase taylor_bar(double dp) {
   return setup;
 }
 
-BarShape bar_shape(std::span<const ReferenceParticle> particles, double dp, double height) {
-  BarShape shape;
-  for (const auto& particle : particles) {
-    const double z = particle.x[2];
-    const double diameter = 2 * std::hypot(particle.x[0], particle.x[1]) + dp;
-    shape.length = std::max(shape.length, z + dp / 2);
-    shape.foot_diameter = std::max(shape.foot_diameter, diameter);
-    if (std::abs(z - height) < dp / 2) shape.diameter = std::max(shape.diameter, diameter);
-  }
-  return shape;
+BarShape bar_shape(const ReferenceCase& initial, std::span<const ReferenceParticle> particles) {
+  struct Reach {
+    double z = 0, r = 0;
+  };
+  const auto reach = [](std::span<const ReferenceParticle> bar) {
+    Reach most;
+    for (const auto& particle : bar) {
+      most.z = std::max(most.z, particle.x[2]);
+      most.r = std::max(most.r, std::hypot(particle.x[0], particle.x[1]));
+    }
+    return most;
+  };
+  const Reach before = reach(initial.particles), now = reach(particles);
+  const double height = 0.2 * bar_length, width = initial.cell[2];
+  double area = 0;
+  for (const auto& particle : particles)
+    area += particle.V * std::max(0.0, 1 - std::abs(particle.x[2] - height) / width) / width;
+  return {.length = now.z + bar_length - before.z,
+          .foot_diameter = now.r / before.r * bar_diameter,
+          .diameter = std::sqrt(4 * area / std::numbers::pi)};
 }
 
 double run_reference(int particles_target, int steps) {
-  const double bar_volume = std::numbers::pi / 4 * 7.6 * 7.6 * 25.4;
+  const double bar_volume = std::numbers::pi / 4 * bar_diameter * bar_diameter * bar_length;
   ReferenceStepper stepper(taylor_bar(std::cbrt(bar_volume / particles_target)));
   stepper.step();  // the first one touches the memory
   const auto cpu_ns = [] {

@@ -17,8 +17,8 @@
 namespace mpm::tests {
 
 using Vector = std::array<double, 3>;
-using Matrix =
-    std::array<std::array<double, 3>, 3>;  ///< [row][column]; a velocity gradient has dv_row/dx_column
+/// [row][column]; a velocity gradient has dv_row/dx_column.
+using Matrix = std::array<std::array<double, 3>, 3>;
 
 enum class ReferenceScheme { usf, usl, musl };
 
@@ -64,12 +64,11 @@ struct ReferenceCase {
   Vector origin{};
   Vector cell{};
   std::array<int, 3> cells{};
-  /// Lower and upper face of x, y, z: 0 free, 1 fixed, 2 symmetry, 4 rigid wall (no penetration, free to
-  /// leave).
+  /// Lower and upper face of x, y, z: 0 free, 1 fixed, 2 symmetry, 4 rigid wall (free to leave).
   std::array<int, 6> boundary{};
-  /// A component that a constraint stops has no force, as the thesis has it: the particles never learn of the
-  /// wall, those beside it keep part of their speed, and a rigid wall does not let go of them. With this, the
-  /// force at a rigid wall is the one that stops the node.
+  /// In the thesis a component that a constraint stops has no force, so particles beside a wall keep part of
+  /// their speed towards it and a rigid wall hardly lets go of them. With this, the force at a rigid wall is
+  /// the one that stops the node.
   bool wall_reaction = false;
   Vector gravity{};
   ReferenceScheme scheme = ReferenceScheme::musl;
@@ -149,13 +148,13 @@ class ReferenceStepper {
 ReferenceCase taylor_bar(double dp);
 
 struct BarShape {
-  double length = 0;
-  double foot_diameter = 0;  ///< largest
-  double diameter = 0;       ///< at the height asked for
+  double length = 0;         ///< highest particle and its initial distance from the free end
+  double foot_diameter = 0;  ///< largest; the surface stretches as the outermost particle does
+  double diameter = 0;  ///< a fifth of the length, 5.08, above the foot; of a circle of that cross-section
 };
 
-/// Extents of particle centres plus half of dp on each side.
-BarShape bar_shape(std::span<const ReferenceParticle> particles, double dp, double height);
+/// Measured so that the initial bar has its nominal length and foot diameter at any spacing.
+BarShape bar_shape(const ReferenceCase& initial, std::span<const ReferenceParticle> particles);
 
 /// The naive baseline: MUSL on a Taylor bar of about that many particles.
 /// Returns CPU time of the stepping loop per particle and step, in ns.

@@ -13,7 +13,8 @@ COPPER = _mpm.material("copper", 8.93e-3, 'type="IsoHarden" Young="117e3" Poisso
 BAR = ('<Body name="bar" material="copper" type="Cylinder"><Geometry x0="0" y0="0" z0="0" dp_bottom="0.76" '
        'dp_top="0.76" Bottom_Outer_Radius="3.8" Top_Outer_Radius="3.8" height="25.4"/>'
        '<InitialVelocity vx="0" vy="0" vz="-190"/></Body>')
-END = 0.02
+END = 0.015
+FACTOR = {"MUSL": 0.8, "USF": 0.8, "USL": 0.4}  # of the critical step; USL is stable up to half of it
 METIS = '<DomainDecomposition method="metis"/>'
 DIMENSIONS = {1: (1, 1, 1), 2: (1, 1, 2), 3: (1, 3, 1), 4: (2, 1, 2), 8: (2, 2, 2)}
 
@@ -25,7 +26,7 @@ def uniform(ranks):
 def bar(algorithm="MUSL", decomposition="", restarts=False):
     output = f'<Console print_time="{END / 4}"/>' + (f'<Restart time_interval="{END / 2}"/>' if restarts else "")
     return _mpm.scene([BAR], _mpm.grid((-7.6, -7.6, 0), (7.6, 7.6, 27.36), "000020", 1.52),
-                      _mpm.solution(END, algorithm, 0.8), [COPPER], output, decomposition)
+                      _mpm.solution(END, algorithm, FACTOR[algorithm]), [COPPER], output, decomposition)
 
 
 class TaylorBar(Case):

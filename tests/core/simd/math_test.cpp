@@ -1,5 +1,5 @@
-// Vector exp, log and pow against long double, over the whole range; the bounds are those that core/simd/math.hpp
-// promises.
+// Vector exp, log and pow against long double, over the whole range; the bounds are those that
+// core/simd/math.hpp promises.
 
 #include "core/simd/math.hpp"
 
@@ -52,7 +52,8 @@ Worst worst_errors() {
     for (int lane = 0; lane < L; ++lane) {
       worst.exp = std::max(worst.exp, ulps(e[lane], std::exp(static_cast<long double>(x[lane]))));
       worst.log = std::max(worst.log, ulps(l[lane], std::log(static_cast<long double>(y[lane]))));
-      const long double exact = std::pow(static_cast<long double>(y[lane]), static_cast<long double>(z[lane]));
+      const long double exact =
+          std::pow(static_cast<long double>(y[lane]), static_cast<long double>(z[lane]));
       if (exact < 1e-300L || exact > 1e300L) continue;
       const double bound = 2.3e-16 * (3 + 2 * std::abs(z[lane] * std::log(y[lane])));
       worst.pow = std::max(worst.pow, static_cast<double>(std::abs(p[lane] / exact - 1)) / bound);

@@ -1,0 +1,99 @@
+// The copper Taylor bar (thesis 3.5.1, table 3.1) of about so many particles, eight per cell, as an input text, and a
+// run of it in memory on one rank. Units: mm, g, ms; stress MPa.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "apps/common/case.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/step/stepper.hpp"
+#include "io/input/reader.hpp"
+#include "io/output/variables.hpp"
+#include "physics/catalogue.hpp"
+
+namespace mpm::benchmarks {
+
+inline constexpr double bar_length = 25.4, bar_diameter = 7.6;
+
+/// Distance of particles in a bar of about so many.
+inline double bar_spacing(double particles) {
+  return std::cbrt(std::numbers::pi / 4 * bar_diameter * bar_diameter * bar_length / particles);
+}
+
+inline constexpr const char* iso_harden =
+    R"(<StrengthModel type="IsoHarden" Young="117e3" Poisson="0.35" Yield0="157" TangMod="423.461758"/>)";
+inline constexpr const char* gruneisen =
+    R"(<EquationOfState type="Gruneisen" C0="3940" S1="1.49" gamma0="1.96"/>)";
+
+/// What the bar is made of and what is asked of the run; the elements of the input, each as it stands.
+struct BarInput {
+  double particles = 20000;
+  std::string scheme = "MUSL";
+  double box = 1;  ///< times as many cells along each axis, the bar where it was among the bricks
+  std::string strength = iso_harden, eos = gruneisen, failure{};
+  std::string body{}, solution{}, output{};
+  std::string velocity = R"(<InitialVelocity vx="0" vy="0" vz="-190"/>)";
+
+  std::string text() const {
+    const double dp = bar_spacing(particles), cell = 2 * dp;
+    // Whole bricks on each side of the axis, wide enough for the foot to spread.
+    const double half = 4 * std::ceil(1.1 * bar_diameter / (4 * cell)) * cell;
+    const double height = 4 * std::ceil((bar_length / cell + 1) / 4) * cell;
+    std::string t = R"(<?xml version="1.0" encoding="utf-8"?><PeneBlast version="1.0"><Header><Name value="bar"/></Header>)";
+    t += fmt::format(R"(<Material name="copper"><ReferenceDensity value="8.93e-3"/>{}{}{}</Material>)", strength, eos, failure);
+    t += R"(<Component name="bar"><Body name="bar" material="copper" type="Cylinder">)";
+    t += fmt::format(R"(<Geometry x0="0" y0="0" z0="0" dp_bottom="{0}" dp_top="{0}" Bottom_Outer_Radius="{1}" )"
+                     R"(Top_Outer_Radius="{1}" height="{2}"/>{3}{4}</Body></Component>)",
+                     dp, bar_diameter / 2, bar_length, velocity, body);
+    t += R"(<Grid><Cell type="regular">)";
+    for (const char* axis : {"X", "Y"}) {
+      t += fmt::format(R"(<{0}Min value="{1}" boundary="0"/><{0}Max value="{2}" boundary="0"/>)", axis, -half * box, half * box);
+    }
+    t += fmt::format(R"(<ZMin value="0" boundary="2"/><ZMax value="{}" boundary="0"/>)", height * box);
+    t += fmt::format(R"(<DCell dx="{0}" dy="{0}" dz="{0}"/></Cell></Grid>)", cell);
+    t += fmt::format(R"(<Solution algorithm="{}"><EndTime value="0.08"/><TimeStep factor="0.4"/>{}</Solution>)", scheme, solution);
+    t += fmt::format(R"(<Output><Console print_time="0.08"/>{}</Output></PeneBlast>)", output);
+    return t;
+  }
+};
+
+/// A case on one rank, ready to step.
+struct BarRun {
+  std::shared_ptr<const core::Scene> scene;
+  core::Model model;
+  core::SoloExchange exchange;
+  std::optional<core::Stepper> stepper;
+
+  explicit BarRun(const BarInput& input) {
+    scene = std::make_shared<const core::Scene>(io::parse_scene(input.text(), "bar.xmp", physics::catalogue()));
+    model = core::prepare_model(scene, apps::make_materials(*scene), io::columns_for(scene->output));
+    core::discretise(model, exchange);
+    core::start_clock(model, exchange);
+    stepper.emplace(model, exchange);
+  }
+  BarRun(const BarRun&) = delete;
+  BarRun& operator=(const BarRun&) = delete;
+
+  double particles() const { return static_cast<double>(model.local_particles()); }
+  double state_bytes() const {
+    double bytes = 0;
+    for (const core::Body& b : model.bodies) {
+      bytes += static_cast<double>(b.pool->blocks_in_use()) * b.pool->layout().block_doubles() * sizeof(double);
+    }
+    return bytes;
+  }
+  /// Nodes of the bricks in use, both arrays.
+  double brick_bytes() const { return static_cast<double>(model.grid->owned()) * node_bytes_per_brick(); }
+  double node_bytes_per_brick() const {
+    const double doubles = core::record_doubles(core::NodeArray::first) + core::record_doubles(core::NodeArray::second);
+    return doubles * sizeof(double) * model.grid->shape().nodes();
+  }
+};
+
+}  // namespace mpm::benchmarks

@@ -1,0 +1,65 @@
+// Time as the benchmarks take it: of the processor and of the wall, several repeats, best and median.
+//
+// With one thread the processor's time of that thread counts, so a machine shared with others disturbs least. With
+// more, threads that wait may sleep or spin, and only the wall tells: a core's time is then wall times threads.
+#pragma once
+
+#include <time.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace mpm::benchmarks {
+
+inline double seconds_of(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Seconds {
+  double cpu = 0;   ///< of the calling thread
+  double wall = 0;
+  static Seconds now() { return {seconds_of(CLOCK_THREAD_CPUTIME_ID), seconds_of(CLOCK_MONOTONIC)}; }
+  friend Seconds operator-(Seconds a, Seconds b) { return {a.cpu - b.cpu, a.wall - b.wall}; }
+  Seconds& operator+=(Seconds o) {
+    cpu += o.cpu;
+    wall += o.wall;
+    return *this;
+  }
+  /// Time that the cores have spent.
+  double of_cores(int threads) const { return threads == 1 ? cpu : wall * threads; }
+};
+
+/// Several measurements of one thing.
+class Series {
+ public:
+  void add(double x) { values_.push_back(x); }
+  std::size_t size() const { return values_.size(); }
+  double best() const {
+    return values_.empty() ? std::numeric_limits<double>::quiet_NaN()
+                           : *std::min_element(values_.begin(), values_.end());
+  }
+  double median() const {
+    if (values_.empty()) return std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> sorted = values_;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t n = sorted.size();
+    return n % 2 == 1 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
+  }
+  std::size_t index_of_best() const {
+    return static_cast<std::size_t>(std::min_element(values_.begin(), values_.end()) - values_.begin());
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+/// Keeps the compiler from leaving out what made `x`.
+template <class T>
+inline void keep(const T& x) {
+  asm volatile("" : : "r"(&x) : "memory");
+}
+
+}  // namespace mpm::benchmarks

@@ -1,0 +1,256 @@
+#pragma once
+// Small runs without input files: a case of the oracle (tests/support/reference_stepper.hpp) becomes a model of the
+// production code, with the oracle's own stress update as its material, so that only the stepper is on trial.
+
+#include <cfenv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "core/step/stepper.hpp"
+#include "tests/support/reference_stepper.hpp"
+
+namespace mpm::tests {
+
+/// A stepper lets denormal numbers count as zero, for the thread that made it and for good: other tests do not want that.
+class KeepFloatingPoint {
+ public:
+  KeepFloatingPoint() { std::fegetenv(&before_); }
+  ~KeepFloatingPoint() { std::fesetenv(&before_); }
+  KeepFloatingPoint(const KeepFloatingPoint&) = delete;
+  KeepFloatingPoint& operator=(const KeepFloatingPoint&) = delete;
+
+ private:
+  std::fenv_t before_;
+};
+
+/// The oracle's law, lane by lane. History 0 and 1 are its wave speed and its rate of volumetric strain.
+class OracleLaw final : public core::ConstitutiveModel {
+ public:
+  explicit OracleLaw(const ReferenceMaterial& material) : material_(material) {}
+
+  const std::string& name() const override { return name_; }
+  double initial_sound_speed() const override { return 0; }
+  double reference_density() const override { return material_.density; }
+  core::ColumnSet columns(const core::UpdateOptions&) const override {
+    return {core::Column::effective_plastic_strain, core::Column::history_0, core::Column::history_1};
+  }
+
+  void initialise(core::Batch& batch, const core::UpdateOptions&) const override {
+    each(batch, [&](int, ReferenceParticle& p) { p.c = wave_speed(material_, p); });
+  }
+  void update(core::Batch& batch, const core::UpdateOptions&) const override {
+    each(batch, [&](int i, ReferenceParticle& p) {
+      Matrix l;
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) l[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] = batch.gradient[3 * a + b][i];
+      }
+      update_stress(material_, batch.cell_size, batch.dt, l, p);
+      if (!std::isfinite(p.E)) ++batch.events.not_finite;
+    });
+  }
+
+  static ReferenceParticle read(const core::ColumnLayout& layout, const double* lane) {
+    const auto at = [&](core::Column c) { return lane[layout.offset(c)]; };
+    ReferenceParticle p;
+    for (int a = 0; a < 3; ++a) {
+      p.x[static_cast<std::size_t>(a)] = at(next(core::Column::position_x, a));
+      p.v[static_cast<std::size_t>(a)] = at(next(core::Column::velocity_x, a));
+    }
+    p.m = at(core::Column::mass);
+    p.V = at(core::Column::volume);
+    const double xy = at(core::Column::s_xy), yz = at(core::Column::s_yz), xz = at(core::Column::s_xz);
+    p.s = {{{at(core::Column::s_xx), xy, xz}, {xy, at(core::Column::s_yy), yz}, {xz, yz, at(core::Column::s_zz)}}};
+    p.p = at(core::Column::pressure);
+    p.q = at(core::Column::viscous_pressure);
+    p.E = at(core::Column::internal_energy);
+    p.epef = at(core::Column::effective_plastic_strain);
+    p.c = at(core::Column::history_0);
+    p.D = at(core::Column::history_1);
+    return p;
+  }
+  static void write(const core::ColumnLayout& layout, const ReferenceParticle& p, double* lane) {
+    const auto put = [&](core::Column c, double value) { lane[layout.offset(c)] = value; };
+    for (int a = 0; a < 3; ++a) {
+      put(next(core::Column::position_x, a), p.x[static_cast<std::size_t>(a)]);
+      put(next(core::Column::velocity_x, a), p.v[static_cast<std::size_t>(a)]);
+    }
+    put(core::Column::mass, p.m);
+    put(core::Column::volume, p.V);
+    put(core::Column::s_xx, p.s[0][0]), put(core::Column::s_yy, p.s[1][1]), put(core::Column::s_zz, p.s[2][2]);
+    put(core::Column::s_xy, p.s[0][1]), put(core::Column::s_yz, p.s[1][2]), put(core::Column::s_xz, p.s[0][2]);
+    put(core::Column::pressure, p.p);
+    put(core::Column::viscous_pressure, p.q);
+    put(core::Column::internal_energy, p.E);
+    put(core::Column::effective_plastic_strain, p.epef);
+    put(core::Column::history_0, p.c);
+    put(core::Column::history_1, p.D);
+  }
+
+ private:
+  /// Lanes out of use get a speed that is no number: nobody may read it.
+  template <class F>
+  void each(core::Batch& batch, F f) const {
+    for (int i = 0; i < core::block_lanes * batch.blocks; ++i) {
+      batch.critical_speed[i] = std::numeric_limits<double>::quiet_NaN();
+      if (i >= batch.particles) continue;
+      double* lane = batch.block[i / core::block_lanes] + i % core::block_lanes;
+      ReferenceParticle p = read(*batch.layout, lane);
+      f(i, p);
+      write(*batch.layout, p, lane);
+      const double q = p.D < 0 ? material_.bq2 * p.c - material_.bq1 * batch.cell_size * p.D : 0.0;
+      batch.critical_speed[i] = q + std::sqrt(q * q + p.c * p.c);
+    }
+  }
+
+  std::string name_ = "oracle";
+  ReferenceMaterial material_;
+};
+
+inline core::Scheme scheme_of(ReferenceScheme s) {
+  return s == ReferenceScheme::usf ? core::Scheme::usf : s == ReferenceScheme::usl ? core::Scheme::usl : core::Scheme::musl;
+}
+
+/// One run of the production stepper. Bodies: particles [0, split) of the case are the first, the rest the second.
+struct SmallRun {
+  KeepFloatingPoint keep;
+  std::shared_ptr<core::Scene> scene = std::make_shared<core::Scene>();
+  core::SoloExchange solo;
+  core::Model model;
+  std::unique_ptr<core::Stepper> stepper;
+
+  /// `settle`: in the order of cells, as at a start; otherwise appended as they come. Call start() then.
+  explicit SmallRun(const ReferenceCase& c, std::size_t split = std::numeric_limits<std::size_t>::max()) {
+    scene->solution.scheme = scheme_of(c.scheme);
+    scene->solution.end_time = 1e30;
+    scene->solution.time_step.factor = c.dt_factor;
+    scene->solution.gravity = c.gravity;
+    model.scene = scene;
+    model.materials.push_back(std::make_unique<OracleLaw>(c.material));
+    core::GridGeometry g;
+    for (int a = 0; a < 3; ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      g.origin[a] = c.origin[i];
+      g.cell[a] = c.cell[i];
+      g.inverse_cell[a] = 1 / c.cell[i];
+      g.cells[i] = c.cells[i];
+    }
+    for (std::size_t f = 0; f < 6; ++f) g.boundary[f] = static_cast<core::Boundary>(c.boundary[f]);
+    g.mass_cutoff = c.mass_cutoff * c.material.density * g.cell_volume();
+    model.grid = std::make_unique<core::BrickGrid>(g);
+    core::ColumnSet columns = core::ColumnSet::mechanics();
+    columns.add(model.materials[0]->columns({}));
+    for (int b = 0; b < (split < c.particles.size() ? 2 : 1); ++b) {
+      core::Body& body = model.bodies.emplace_back();
+      body.name = "body";
+      body.model = model.materials[0].get();
+      body.pool = std::make_unique<core::BlockPool>(core::ColumnLayout(columns));
+    }
+    model.books.body_eroded.resize(model.bodies.size());
+    model.books.body_left.resize(model.bodies.size());
+
+    core::Travellers travellers;
+    std::vector<core::BrickCount> counts;
+    const core::ColumnLayout& layout = model.bodies[0].pool->layout();
+    std::vector<double> block(static_cast<std::size_t>(layout.block_doubles())), flat(static_cast<std::size_t>(layout.columns()));
+    double fastest = 0;
+    for (std::size_t n = 0; n < c.particles.size(); ++n) {
+      ReferenceParticle p = c.particles[n];
+      p.c = wave_speed(c.material, p);
+      OracleLaw::write(layout, p, block.data());
+      block[static_cast<std::size_t>(layout.offset(core::Column::identity))] = static_cast<double>(n);
+      for (std::size_t k = 0; k < flat.size(); ++k) flat[k] = block[core::block_lanes * k];
+      const core::BrickCoord to = g.brick_at({p.x[0], p.x[1], p.x[2]});
+      travellers.add(to, n < split ? 0 : 1, flat.data(), layout.columns());
+      counts.push_back({to, 1});
+      fastest = std::max(fastest, p.c + std::sqrt(p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2]));
+    }
+    solo.partition(*model.grid, counts, {});
+    core::insert_travellers(model, travellers);
+    for (core::Brick& brick : model.grid->bricks()) {
+      for (core::Cohort& cohort : brick.cohorts) {
+        core::sort_by_cell(*model.grid, brick.coord, *model.bodies[static_cast<std::size_t>(cohort.body)].pool, cohort);
+      }
+    }
+    model.clock.critical_dt = model.clock.first_critical_dt = core::critical_step(*model.grid, fastest);
+  }
+
+  void step(int n = 1) {
+    if (!stepper) stepper = std::make_unique<core::Stepper>(model, solo);
+    for (int i = 0; i < n; ++i) stepper->step();
+  }
+
+  /// Particles by identity.
+  std::map<std::int64_t, ReferenceParticle> particles() const {
+    std::map<std::int64_t, ReferenceParticle> all;
+    core::for_each_block(model, [&](int, const core::ColumnLayout& layout, const double* block, int used) {
+      for (int i = 0; i < used; ++i) {
+        all[static_cast<std::int64_t>(block[layout.offset(core::Column::identity) + i])] = OracleLaw::read(layout, block + i);
+      }
+    });
+    return all;
+  }
+
+  /// All columns of all particles by identity, for comparison to the last bit.
+  std::map<std::int64_t, std::vector<double>> columns() const {
+    std::map<std::int64_t, std::vector<double>> all;
+    core::for_each_block(model, [&](int, const core::ColumnLayout& layout, const double* block, int used) {
+      for (int i = 0; i < used; ++i) {
+        auto& values = all[static_cast<std::int64_t>(block[layout.offset(core::Column::identity) + i])];
+        for (int c = 0; c < layout.columns(); ++c) values.push_back(block[core::block_lanes * c + i]);
+      }
+    });
+    return all;
+  }
+
+  /// Identities in the order in which sums run: brick by brick in the order of keys, body by body.
+  std::vector<std::int64_t> order() const {
+    std::map<core::BrickKey, std::vector<std::int64_t>> bricks;
+    for (const core::Brick& brick : model.grid->bricks()) {
+      for (const core::Cohort& cohort : brick.cohorts) {
+        const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+        const int at = pool.layout().offset(core::Column::identity);
+        for (std::uint32_t i = 0; i < cohort.count; ++i) {
+          bricks[core::key_of(brick.coord)].push_back(
+              static_cast<std::int64_t>(pool.block(cohort.blocks[i / core::block_lanes])[at + static_cast<int>(i % core::block_lanes)]));
+        }
+      }
+    }
+    std::vector<std::int64_t> all;
+    for (const auto& [key, identities] : bricks) all.insert(all.end(), identities.begin(), identities.end());
+    return all;
+  }
+};
+
+/// A block of elastic particles, 2 per cell edge, on a grid of oblong cells whose origin is negative and whose last
+/// bricks are partial; it flies obliquely and turns, over several bricks.
+inline ReferenceCase tumbling_block() {
+  ReferenceCase c;
+  c.material.density = 2;
+  c.material.young = 900;
+  c.material.poisson = 0.3;
+  c.material.bq1 = 1.5;
+  c.material.bq2 = 0.06;
+  c.origin = {-3.1, -7.3, -5.2};
+  c.cell = {1, 0.8, 1.25};
+  c.cells = {14, 18, 11};
+  const Vector dx{0.5, 0.4, 0.625}, centre{2.4, 0.35, 1.1};
+  for (int k = 0; k < 8; ++k) {
+    for (int j = 0; j < 9; ++j) {
+      for (int i = 0; i < 10; ++i) {
+        ReferenceParticle p;
+        p.x = {centre[0] + dx[0] * (i - 4.5), centre[1] + dx[1] * (j - 4), centre[2] + dx[2] * (k - 3.5)};
+        const double x = p.x[0] - centre[0], y = p.x[1] - centre[1], z = p.x[2] - centre[2];
+        p.v = {6 - 0.9 * y, -5 + 0.9 * x - 0.4 * z, 4 + 0.4 * y};
+        p.V = dx[0] * dx[1] * dx[2];
+        p.m = c.material.density * p.V;
+        c.particles.push_back(p);
+      }
+    }
+  }
+  return c;
+}
+
+}  // namespace mpm::tests

@@ -1,0 +1,255 @@
+// Files that all ranks write and read together: the same contents on any number of ranks, and errors that all ranks
+// report alike.
+#include <bit>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/step/totals.hpp"
+#include "io/output/file.hpp"
+#include "io/output/h5part.hpp"
+#include "io/output/hdf5.hpp"
+#include "io/output/history_file.hpp"
+#include "io/output/particle_order.hpp"
+#include "io/output/status_file.hpp"
+#include "io/output/vtu.hpp"
+#include "io/restart/restart.hpp"
+#include "parallel/mpi_exchange.hpp"
+#include "tests/io/output/small_disk.hpp"
+#include "tests/io/output/small_model.hpp"
+#include "tests/parallel/world.hpp"
+
+using namespace mpm;
+using namespace mpm::tests;
+using namespace mpm::parallel::test;
+
+namespace {
+
+/// One folder for all ranks.
+class SharedFolder {
+ public:
+  SharedFolder(const std::string& name, core::Exchange& exchange) : exchange_(exchange) {
+    if (exchange.rank() == 0) mine_ = std::make_unique<Folder>(name);
+    path_ = exchange.gather(mine_ ? mine_->path() : "").front();
+  }
+  ~SharedFolder() {
+    exchange_.any(false);  // everybody is through
+  }
+  const std::string& path() const { return path_; }
+  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  core::Exchange& exchange_;
+  std::unique_ptr<Folder> mine_;
+  std::string path_;
+};
+
+/// f() throws a FileError with the same text on every rank; the text.
+template <class F>
+std::string common_error(F f) {
+  std::string text = "nothing was thrown";
+  try {
+    f();
+  } catch (const io::FileError& e) {
+    text = e.what();
+  }
+  CHECK(same_on_all(text));
+  return text;
+}
+
+std::string rows_of(const std::string& path) {
+  std::istringstream in(io::read_file(path));
+  std::string rows;
+  for (std::string line; std::getline(in, line);) {
+    if (line.front() != '#') rows += line + '\n';
+  }
+  return rows;
+}
+
+std::shared_ptr<core::Scene> scene_with_histories() {
+  auto scene = small_scene();
+  core::TimeHistoryInput& history = scene->output.histories.emplace_back();
+  history.variables = {"seqv", "kelv", "velocity_2"};
+  history.particles = {{1, 2, 3}, {11, 11, 11}, {6, 6, 6}};
+  history.points = {{2, 2, 2}, {5, 7, 3}};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("A restart file is the same on any number of ranks, and is read on any") {
+  parallel::MpiExchange exchange(world());
+  core::SoloExchange solo;
+  const SharedFolder folder("parallel_restart", exchange);
+  const core::Model together = small_model(exchange), alone = small_model(solo);
+  const std::uint64_t hash = io::state_hash(alone, solo);
+  CHECK(io::state_hash(together, exchange) == hash);
+  const std::string path = io::write_restart(folder.path(), "small", together, {"<PeneBlast/>", {4, 2}, {}}, exchange);
+  CHECK(io::restart_state_hash(path) == hash);
+  CHECK(io::read_restart_scene(path).text == "<PeneBlast/>");
+
+  core::Model by_one = prepared_model(small_scene());
+  io::read_restart(path, by_one, solo);
+  CHECK(io::state_hash(by_one, solo) == hash);
+  CHECK(by_one.books.external_work.value() == alone.books.external_work.value());
+  CHECK(by_one.books.eroded == 5);
+
+  core::Model by_all = prepared_model(small_scene());
+  const io::RestartResult result = io::read_restart(path, by_all, exchange);
+  CHECK(io::state_hash(by_all, exchange) == hash);
+  CHECK(result.extra.tracked == std::vector<std::uint64_t>{4, 2});
+  CHECK(core::compute_totals(by_all, exchange).eroded == 5);
+  CHECK(core::compute_totals(by_all, exchange).external_work == alone.books.external_work.value());
+  std::vector<std::string> notices;
+  CHECK(io::find_newest_restart(folder.path(), "small", exchange, notices).value_or("") == path);
+}
+
+TEST_CASE("On another grid the state is the same on any number of ranks") {
+  parallel::MpiExchange exchange(world());
+  core::SoloExchange solo;
+  const SharedFolder folder("parallel_regrid", exchange);
+  const std::string path = io::write_restart(folder.path(), "small", small_model(exchange), {}, exchange);
+  SmallSetup larger;
+  larger.cells = 20;
+  auto scene = small_scene();
+  scene->components[1].bodies[0].deactivated = true;
+  core::Model together = prepared_model(scene, larger), alone = prepared_model(scene, larger);
+  io::read_restart(path, together, exchange);
+  io::read_restart(path, alone, solo);
+  CHECK(io::state_hash(together, exchange) == io::state_hash(alone, solo));
+  const core::Totals a = core::compute_totals(together, exchange), b = core::compute_totals(alone, solo);
+  CHECK(a.removed_kinetic == b.removed_kinetic);
+  CHECK(a.removed_kinetic > 0);
+}
+
+TEST_CASE("Totals have the same bits on any number of ranks") {
+  parallel::MpiExchange exchange(world());
+  core::SoloExchange solo;
+  const core::Model together = small_model(exchange), alone = small_model(solo);
+  const core::Totals a = core::compute_totals(together, exchange), b = core::compute_totals(alone, solo);
+  const auto same = [](double x, double y) { return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y); };
+  CHECK(same(a.kinetic, b.kinetic));
+  CHECK(same(a.internal, b.internal));
+  CHECK(a.particles == b.particles);
+  CHECK(a.failed == b.failed);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(same(a.momentum[i], b.momentum[i]));
+    CHECK(same(a.angular_momentum[i], b.angular_momentum[i]));
+    CHECK(same(a.bodies[1].lower[i], b.bodies[1].lower[i]));
+    CHECK(same(a.bodies[0].centre[i], b.bodies[0].centre[i]));
+  }
+  CHECK(core::compute_energies(together, exchange).internal == b.internal);
+  CHECK(core::occupied_cells(together, exchange) == core::occupied_cells(alone, solo));
+}
+
+TEST_CASE("An .h5part file holds the same on any number of ranks") {
+  parallel::MpiExchange exchange(world());
+  core::SoloExchange solo;
+  const SharedFolder folder("parallel_h5part", exchange);
+  core::Model together = small_model(exchange), alone = small_model(solo);
+  together.bodies[0].no_output = alone.bodies[0].no_output = world().rank() >= 0;
+  const auto variables = io::variables_of({"tria", "com", "SigmaXY"});
+  io::H5PartWriter writer({folder / "all.h5part", variables, false, {}}, together, exchange);
+  for (int i = 0; i < 3; ++i) writer.write(together, exchange);
+  const io::H5PartWriter again({folder / "all.h5part", variables, false, 1.0}, together, exchange);
+  CHECK(again.times() == 3);
+  if (world().rank() == 0) {
+    io::H5PartWriter({folder / "one.h5part", variables, false, {}}, alone, solo).write(alone, solo);
+    const io::hdf5::Handle all = io::hdf5::open_file(folder / "all.h5part", io::hdf5::Access::read);
+    const io::hdf5::Handle one = io::hdf5::open_file(folder / "one.h5part", io::hdf5::Access::read);
+    for (const char* name : {"x", "y", "velocity_2", "id", "body", "tria", "com", "SigmaXY"}) {
+      const auto expected = io::hdf5::read_all_double(one, std::string("Step#0/") + name);
+      CHECK(expected.size() == 301);
+      CHECK(io::hdf5::read_all_double(all, std::string("Step#0/") + name) == expected);
+      CHECK(io::hdf5::read_all_double(all, std::string("Step#2/") + name) == expected);
+    }
+  }
+}
+
+TEST_CASE("Ranks without particles write no .vtu piece") {
+  parallel::MpiExchange exchange(world());
+  const SharedFolder folder("parallel_vtu", exchange);
+  const core::Model model = small_model(exchange);
+  io::VtuWriter({folder.path(), "small", true, {}, false, {}}, model, exchange).write(model, exchange);
+  // The last body is one particle.
+  const std::string index = io::read_file(folder / "small_vtu/small_dust_120.pvtu");
+  CHECK(index.find("<Piece") == index.rfind("<Piece"));
+  std::int64_t mine = std::filesystem::exists(
+      folder / ("small_vtu/small_dust_120_" + std::to_string(world().rank()) + ".vtu"));
+  exchange.sum(std::span(&mine, 1));
+  CHECK(mine == 1);
+}
+
+TEST_CASE("Tables have the same rows on any number of ranks") {
+  parallel::MpiExchange exchange(world());
+  core::SoloExchange solo;
+  const SharedFolder folder("parallel_tables", exchange);
+  const auto scene = scene_with_histories();
+  core::Model together = prepared_model(scene), alone = prepared_model(scene);
+  fill(together, exchange);
+  fill(alone, solo);
+  io::HistoryFile history(folder / "all_curv.dat", together, {}, exchange);
+  history.add(together, exchange);
+  history.flush(exchange);
+  io::StatusFile(folder / "all.sta", together, {}, exchange).add(together, core::compute_totals(together, exchange), exchange);
+  io::HistoryFile other(folder / ("one_curv.dat" + std::to_string(world().rank())), alone, {}, solo);
+  other.add(alone, solo);
+  other.flush(solo);
+  CHECK(history.tracked() == other.tracked());
+  io::StatusFile(folder / ("one.sta" + std::to_string(world().rank())), alone, {}, solo)
+      .add(alone, core::compute_totals(alone, solo), solo);
+  if (world().rank() == 0) {
+    CHECK(rows_of(folder / "all_curv.dat") == rows_of(folder / "one_curv.dat0"));
+    CHECK(rows_of(folder / "all.sta") == rows_of(folder / "one.sta0"));
+  }
+}
+
+TEST_CASE("A full disk is the same error on every rank, and the last good file stays") {
+  parallel::MpiExchange exchange(world());
+  const SharedFolder folder("parallel_full", exchange);
+  core::Model model = small_model(exchange);
+  const std::string good = io::write_restart(folder.path(), "small", model, {}, exchange);
+  io::H5PartWriter writer({folder / "small.h5part", {}, false, {}}, model, exchange);
+  writer.write(model, exchange);
+  const std::uint64_t hash = io::restart_state_hash(good);
+  model.clock.step = 240;
+  {
+    const SmallDisk disk(50000);
+    CHECK_THAT(common_error([&] { io::write_restart(folder.path(), "small", model, {}, exchange); }),
+               Catch::Contains("small_240.pe.part': File too large"));
+    CHECK_THAT(common_error([&] { writer.write(model, exchange); }), Catch::Contains("small.h5part': File too large"));
+  }
+  CHECK(io::restart_state_hash(good) == hash);
+  CHECK_FALSE(std::filesystem::exists(folder / "small_240.pe.part"));
+  writer.write(model, exchange);
+  CHECK(writer.times() == 2);
+  // On one rank alone.
+  io::VtuWriter vtu({folder.path(), "small", false, {}, false, {}}, model, exchange);
+  const bool last_has_particles = model.local_particles() > 0;
+  std::unique_ptr<SmallDisk> disk;
+  if (world().rank() == world().size() - 1) disk = std::make_unique<SmallDisk>(100);
+  if (exchange.any(disk && last_has_particles)) {
+    CHECK_THAT(common_error([&] { vtu.write(model, exchange); }),
+               Catch::Contains("_" + std::to_string(world().size() - 1) + ".vtu': File too large"));
+  }
+}
+
+TEST_CASE("A damaged or missing restart file is the same error on every rank") {
+  parallel::MpiExchange exchange(world());
+  const SharedFolder folder("parallel_damage", exchange);
+  const std::string path = io::write_restart(folder.path(), "small", small_model(exchange), {}, exchange);
+  const std::string bytes = io::read_file(path);
+  core::Model copy = prepared_model(small_scene());
+  const double x = small_particle(copy.bodies[0].pool->layout(), 7)[5];
+  std::string bad = bytes;
+  ++bad[bad.find(std::string(reinterpret_cast<const char*>(&x), sizeof x))];
+  exchange.any(false);  // all have read it
+  if (world().rank() == 0) std::ofstream(path, std::ios::binary) << bad;
+  exchange.any(false);
+  CHECK_THAT(common_error([&] { io::verify_restart(path, exchange); }), Catch::Contains("fail their checksum"));
+  CHECK_THAT(common_error([&] { io::read_restart(path, copy, exchange); }),
+             Catch::Contains("the particles of body 'bar' in brick ("));
+  CHECK_THAT(common_error([&] { io::read_restart(folder / "none.pe", copy, exchange); }),
+             Catch::Contains("none.pe': No such file"));
+}

@@ -1,0 +1,168 @@
+"""Bad input: the right exit code, one clear message however many ranks there are, soon, and nothing left behind."""
+
+import os
+import re
+
+import _mpm
+from _mpm import FILE_ERROR, INPUT_ERROR, Case
+
+ROOMY = _mpm.grid((0, 0, 0), (8, 8, 8))
+SHORT = _mpm.solution(0.1)
+BODY = _mpm.block("cube", (2, 2, 2), (4, 4, 4))
+GOOD = _mpm.scene([BODY], ROOMY, SHORT)
+DIMENSIONS = '<DomainDecomposition dimension0="3" dimension1="2" dimension2="1"/>'
+BOMB = ('<?xml version="1.0"?>\n<!DOCTYPE PeneBlast [<!ENTITY a0 "ha">'
+        + "".join(f'<!ENTITY a{i} "{10 * f"&a{i - 1};"}">' for i in range(1, 12)) + "]>\n"
+        + GOOD.split("\n", 1)[1].replace('name="cube"', 'name="&a11;"'))
+OUTSIDER = ('<?xml version="1.0"?>\n<!DOCTYPE PeneBlast [<!ENTITY secret SYSTEM "file:///etc/passwd">]>\n'
+            + GOOD.split("\n", 1)[1].replace('name="cube"', 'name="&secret;"'))
+
+
+def without(old, new):
+    """The good scene with one thing changed."""
+    assert old in GOOD, old
+    return GOOD.replace(old, new)
+
+
+def one_body(body):
+    return _mpm.scene([body], ROOMY, SHORT)
+
+
+# Name, text of the file, what the message has to say.
+SCENES = [
+    ("empty file", "", ["case.xmp", "empty"]),
+    ("text that is no XML", "Hello", ["case.xmp:1"]),
+    ("cut in half", GOOD[: len(GOOD) // 2], ["case.xmp:"]),
+    ("a tag that is not closed", without("</Component>", ""), ["case.xmp:", "Component"]),
+    ("zeros", b"\0" * 4096, ["case.xmp"]),
+    ("another root", '<?xml version="1.0"?><html/>', ["case.xmp:1", "PeneBlast"]),
+    ("entity bomb", BOMB, ["case.xmp:", "DOCTYPE"]),
+    ("external entity", OUTSIDER, ["case.xmp:", "DOCTYPE"]),
+    ("not a number", without('Young="1000"', 'Young="nan"'), ["Young", "nan"]),
+    ("infinite", without('vx="0"', 'vx="inf"'), ["vx", "inf"]),
+    ("a word for a number", without('Young="1000"', 'Young="stiff"'), ["Young", "stiff"]),
+    ("negative density", without('ReferenceDensity value="1.0"', 'ReferenceDensity value="-1"'), ["ReferenceDensity", "-1"]),
+    ("negative density of a body", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), attributes='density="-1"')), ["density", "-1"]),
+    ("dp 0", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), dp=0)), ["dp", "0"]),
+    ("dp below 0", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), dp=-0.5)), ["dp", "-0.5"]),
+    ("a body outside the grid", one_body(_mpm.block("far", (20, 2, 2), (4, 4, 4))), ["far", "outside", "grid", "20.25"]),
+    ("a body half outside", one_body(_mpm.block("half", (6, 2, 2), (4, 4, 4))), ["half", "outside", "256 particles"]),
+    ("a billion billion particles", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-6)), ["1e+18", "dp"]),
+    ("more particles than memory", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-4)), ["1e+12", "GiB", "dp"]),
+    ("a body without particles", one_body(_mpm.block("speck", (2, 2, 2), (4, 4, 4), dp=50)), ["speck", "dp"]),
+    ("unknown material", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), of="sofft")), ["sofft", '"soft"']),
+    ("unknown element", without("<EndTime", '<EndTim value="1"/><EndTime'), ["EndTim", "EndTime"]),
+    ("unknown attribute", without("Young=", 'Yuong="1" Young='), ["Yuong", "Young"]),
+    ("unknown strength model", without("IsoElastic", "IsoElastik"), ["IsoElastik", "IsoElastic"]),
+    ("missing attribute", without('Poisson="0.3"', ""), ["Poisson"]),
+    ("missing Grid", _mpm.scene([BODY], "", SHORT), ["Grid"]),
+    ("missing Material", GOOD.replace(_mpm.material(), ""), ["Material"]),
+    ("cells larger than the grid", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8, 8, 8), cell=10), SHORT), ["DCell", "10"]),
+    ("too many cells", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8, 8, 8), cell=1e-12), SHORT), ["cells"]),
+    ("a wall between nodes", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8.5, 8, 8), "020000"), SHORT), ["XMax", "8.5"]),
+    ("the end before the beginning", without('EndTime value="0.1"', 'EndTime value="-0.1"'), ["EndTime", "-0.1"]),
+    ("known, but not implemented", without("<Output>", '<Contact enable="1"/><Output>'), ["Contact", "not implemented"]),
+    ("a particle file that is not there", one_body(
+        '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'), ["grains.txt", "Body"]),
+    ("dimensions that are not the number of ranks", _mpm.scene([BODY], ROOMY, SHORT, more=DIMENSIONS), ["3", "6", "rank"]),
+]
+
+# Name, the command line behind the program's name, exit code, what the message has to say. {} is the test's folder,
+# which holds good.xmp and a file named `file`.
+LINES = [
+    ("nothing", [], INPUT_ERROR, ["job"]),
+    ("missing file", ["{}/none.xmp"], INPUT_ERROR, ["none.xmp", "no such file"]),
+    ("missing file, no ending", ["{}/none"], INPUT_ERROR, ["none", "no such file"]),
+    ("a folder", ["{}"], INPUT_ERROR, []),
+    ("unknown option", ["{}/good.xmp", "--ranks", "3"], INPUT_ERROR, ["--ranks"]),
+    ("two inputs", ["{}/good.xmp", "{}/good.xmp"], INPUT_ERROR, ["good.xmp"]),
+    ("-nsteps without a number", ["{}/good.xmp", "-nsteps"], INPUT_ERROR, ["nsteps"]),
+    ("-nsteps 0", ["{}/good.xmp", "-nsteps", "0"], INPUT_ERROR, ["nsteps", "0"]),
+    ("-nsteps many", ["{}/good.xmp", "-nsteps", "many"], INPUT_ERROR, ["nsteps", "many"]),
+    ("no wall time", ["{}/good.xmp", "--max-wall-time", "-1"], INPUT_ERROR, ["max-wall-time", "-1"]),
+    ("-rt with an input", ["{}/good.xmp", "-rt", "{}/good.xmp"], INPUT_ERROR, ["-rt", ".pe"]),
+    ("-h5pt of an input", ["{}/good.xmp", "-h5pt"], INPUT_ERROR, ["-h5pt", ".pe"]),
+    ("-lsdyna", ["{}/good.xmp", "-lsdyna"], INPUT_ERROR, ["-lsdyna", "not implemented"]),
+    ("output folder is a file", ["{}/good.xmp", "--output-dir", "{}/file"], FILE_ERROR, ["{}/file"]),
+    ("output folder below a file", ["{}/good.xmp", "--output-dir", "{}/file/out"], FILE_ERROR, ["{}/file"]),
+    ("output folder of the kernel's", ["{}/good.xmp", "--output-dir", "/proc/1/out"], FILE_ERROR, ["/proc/1/out"]),
+]
+
+
+class BadInput(Case):
+    def expect(self, arguments, code, words, ranks):
+        outcome = _mpm.run(arguments, ranks=ranks, timeout=20)
+        self.assertEqual(outcome.code, code, outcome)
+        self.assertLess(outcome.seconds, 5)
+        self.assertNotRegex(outcome.out + outcome.complaint, r"terminate called|Assertion|what\(\)|Segmentation")
+        lines = [line for line in (outcome.out + outcome.complaint).splitlines() if line.strip()]
+        for word in words:
+            self.assertTrue(any(word.lower() in line.lower() for line in lines), f"{word!r} is not in: {outcome}")
+        complaints = [line for line in lines if not re.match(r"(grid|particles|memory|body|step|time step|  ) ", line)]
+        self.assertGreater(len(complaints), 0, outcome)
+        self.assertEqual(len(complaints), len(set(complaints)), f"said more than once: {outcome}")
+        self.assertLess(len(complaints), 5, outcome)
+
+    def check_scene(self, name, text, words):
+        self.write(text)
+        for ranks in (1, 2):
+            with self.subTest(name, ranks=ranks):
+                self.expect([self.folder / "case.xmp", "--output-dir", self.folder / "out"], INPUT_ERROR, words, ranks)
+                self.assertEqual(_mpm.names(self.folder), ["case.xmp"], "something was left behind")
+
+    def test_scenes(self):
+        for scene in SCENES:
+            self.check_scene(*scene)
+
+    def test_all_faults_of_a_file_at_once(self):
+        text = without('Young="1000"', 'Young="nan"').replace('dp="0.5"', 'dp="0"').replace('material="soft"', 'material="sooft"')
+        self.check_scene("three faults", text, ['Young="nan"', 'dp="0"', 'material="sooft"'])
+
+    def test_command_lines(self):
+        here = str(self.folder)
+        self.write(GOOD, "good.xmp")
+        self.write("", "file")
+        for name, line, code, words in LINES:
+            for ranks in (1, 2):
+                with self.subTest(name, ranks=ranks):
+                    arguments = [word.format(here) for word in line]
+                    if "--output-dir" not in line:
+                        arguments += ["--output-dir", f"{here}/out"]
+                    self.expect(arguments, code, [word.format(here) for word in words], ranks)
+                    self.assertEqual(_mpm.names(self.folder), ["file", "good.xmp"], "something was left behind")
+
+    def test_folders_without_permission(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may write everywhere")
+        self.write(GOOD, "good.xmp")
+        closed = self.folder / "closed"
+        closed.mkdir(mode=0o500)
+        for folder in (closed, closed / "out"):
+            self.expect([self.folder / "good.xmp", "--output-dir", folder], FILE_ERROR, [str(closed), "ermission"], 1)
+
+    def test_bad_particle_files(self):
+        grains = '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'
+        self.write(one_body(grains))
+        for name, lines, words in [("not a number", "1 2 2 2\n1 3 nan 2\n", ["grains.txt:2"]),
+                                   ("too few", "1 2 2 2\n1 3 2\n", ["grains.txt:2"]),
+                                   ("mass below zero", "-1 2 2 2\n", ["grains.txt:1"]),
+                                   ("empty", "", ["grains.txt"]),
+                                   ("outside", "1 2 2 2\n1 30 2 2\n", ["grains", "outside"])]:
+            for ranks in (1, 2):
+                with self.subTest(name, ranks=ranks):
+                    self.write(lines, "grains.txt")
+                    self.expect([self.folder / "case.xmp", "--output-dir", self.folder / "out"], INPUT_ERROR, words, ranks)
+                    self.assertEqual(_mpm.names(self.folder), ["case.xmp", "grains.txt"], "something was left behind")
+
+    def test_files_of_an_earlier_run_stay(self):
+        """Bad input must not cost the results of the good input before it."""
+        self.write(GOOD)
+        self.run_in("out", [self.folder / "case.xmp"])
+        before = {name: (self.folder / "out" / name).read_bytes() for name in _mpm.names(self.folder / "out")}
+        self.write(one_body(_mpm.block("far", (20, 2, 2), (4, 4, 4))))
+        self.run_in("out", [self.folder / "case.xmp"], code=INPUT_ERROR)
+        self.assertEqual({name: (self.folder / "out" / name).read_bytes() for name in _mpm.names(self.folder / "out")}, before)
+
+
+if __name__ == "__main__":
+    _mpm.main()
