@@ -75,6 +75,13 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
   log.say("time step  critical {:.6g}, to {:.6g} at the end", model.clock.critical_dt, model.scene->solution.end_time);
 }
 
+/// What the input asks for that makes no difference to this run: said, so that nobody waits for it.
+void say_what_is_idle(const core::Scene& scene, io::Log& log) {
+  if (!scene.frictions.empty() && !scene.contact.enable) log.note("note       Friction acts in contact only, and Contact is off");
+  if (scene.grid.dynamic_cell.enable) log.note("note       DynamicCell changes nothing: only cells with particles are ever stored");
+  if (!scene.output.summary) log.note("note       no summary file: Summary enable=\"0\"");
+}
+
 /// One run in its stages; the members are in the order in which they come to life.
 class Run {
  public:
@@ -99,6 +106,7 @@ class Run {
     if (case_.restart) log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step, model_.clock.time);
     stepper_.emplace(model_, exchange_);
     describe(model_, *stepper_, exchange_, threads_, *log_);
+    say_what_is_idle(*case_.scene, *log_);
     setup_seconds_ = clock_.seconds();
   }
 

@@ -48,8 +48,7 @@ struct Batch {
   alignas(64) Row cell_volumetric_strain;
 
   // --- passed between the stages of the material update ---
-  alignas(64) Row strain[6];             ///< strain increment, in the order of Sym3
-  alignas(64) Row volumetric_strain;     ///< its trace
+  alignas(64) Row volumetric_strain;     ///< trace of the strain increment
   alignas(64) Row old_volume;            ///< V^n; the column holds V^{n+1} after the kinematic stage
   alignas(64) Row deviatoric_work;       ///< 1/2 (s^n + s^{n+1}) : strain increment, per current volume
   alignas(64) Row shear_modulus;         ///< for the wave speed, of the state reached

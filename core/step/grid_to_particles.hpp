@@ -13,7 +13,7 @@ namespace mpm::core {
 /// The nodal velocity whose gradient strains the particles.
 enum class StrainVelocity {
   second,      ///< components 4..6: USF's velocity at the start of the step, MUSL's re-mapped one
-  regularised  ///< USL: components 0..2 less record[7] times components 4..6
+  regularised  ///< USL: components 0..2 less record[7] times what stress did to them in 4..6
 };
 
 /// v += sum S dv, from node components 4..6.
@@ -36,9 +36,10 @@ inline void add_velocity_increment(const BrickFrame& frame, const CellCorners& c
 }
 
 /// Velocity gradient of the block's particles into rows 0..8 (order of Mat3), columns `at` .. `at` + 7.
+/// `fall`: the part of the velocity increment that is gravity's, which strains nobody.
 template <StrainVelocity which, class Rows>
 inline void velocity_gradient(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                              const double* nodes, const double* block, Rows& rows, int at) {
+                              const double* nodes, const Vec3<double>& fall, const double* block, Rows& rows, int at) {
   const auto col = [&](Column c) { return block + layout.offset(c); };
   for (int l = 0; l < block_lanes; l += real_width) {
     const auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
@@ -56,7 +57,7 @@ inline void velocity_gradient(const BrickFrame& frame, const CellCorners& corner
           ga = scaled_gradient(CornerValues(lowest + 4 + a, corners), p);
         } else {
           const CornerValues v(lowest + a, corners), dv(lowest + 4 + a, corners);
-          ga = scaled_gradient(v.plus(left_out, dv), p);
+          ga = scaled_gradient(v.plus(left_out, dv, fall[a]), p);
         }
         for (int j = 0; j < 3; ++j) g[3 * a + j] = select(here, ga[j], g[3 * a + j]);
       }

@@ -84,13 +84,17 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
     at[3] = m;
     at[7] = m < floor ? 1 - m / floor : 0;
   }
-  // Constrained nodes keep neither momentum nor force (thesis, below 2-41), so particles feel them through the
-  // stress alone. A rigid wall holds a node only while it would leave the grid.
+  // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel them
+  // through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the grid, and what
+  // stops it acts on the particles too: only so do they come to rest there, and can they leave again.
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     if (boundary == Boundary::fixed) {
       for (int a = 0; a < 3; ++a) at[a] = at[4 + a] = 0;
-    } else if (boundary == Boundary::symmetry || (boundary == Boundary::rigid_wall && sign * at[axis] > 0)) {
+    } else if (boundary == Boundary::symmetry) {
       at[axis] = at[4 + axis] = 0;
+    } else if (boundary == Boundary::rigid_wall && sign * at[axis] > 0) {
+      at[4 + axis] -= at[axis];
+      at[axis] = 0;
     }
   });
 }

@@ -31,14 +31,14 @@ struct Partial {
   Partial() { low.fill(infinity); }
   void merge(const Partial& other) {
     for (std::size_t i = 0; i < sums; ++i) sum[i] += other.sum[i];
-    for (std::size_t i = 0; i < lows; ++i) low[i] = std::fmin(low[i], other.low[i]);
+    for (std::size_t i = 0; i < lows; ++i) low[i] = std::min(low[i], other.low[i]);
     particles += other.particles;
     failed += other.failed;
   }
 };
 
 void note_lowest(const double* column, int used, double sign, double& low) {
-  for (int i = 0; i < used; ++i) low = std::fmin(low, sign * column[i]);
+  for (int i = 0; i < used; ++i) low = sign * column[i] < low ? sign * column[i] : low;
 }
 
 void add_block(const ColumnLayout& layout, const double* block, int used, double inverse_density, Partial& to) {

@@ -18,6 +18,25 @@ core::Mat3<T> load_gradient(const core::Batch& batch, int row) {
   return {get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8)};
 }
 
+/// sym(L) dt
+template <class T>
+core::Sym3<T> strain_increment(const core::Mat3<T>& l, double dt) {
+  const double half = 0.5 * dt;
+  return {dt * l.xx, dt * l.yy, dt * l.zz, half * (l.xy + l.yx), half * (l.yz + l.zy), half * (l.xz + l.zx)};
+}
+
+/// Adds to the accumulated strain, whose six columns are neighbours, and returns what it was before.
+template <class T>
+core::Sym3<T> accumulate_strain(double* columns, const core::Sym3<T>& increment) {
+  const T added[6] = {increment.xx, increment.yy, increment.zz, increment.xy, increment.yz, increment.xz};
+  T old[6];
+  for (int i = 0; i < 6; ++i) {
+    old[i] = core::load<T>(columns + core::block_lanes * i);
+    core::store(columns + core::block_lanes * i, old[i] + added[i]);
+  }
+  return {old[0], old[1], old[2], old[3], old[4], old[5]};
+}
+
 /// V^{n+1}/V^n. `strain` is the increment, `accumulated` its sum before it (update type 4 only).
 template <class T>
 T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::Sym3<T>& strain,
@@ -52,7 +71,7 @@ T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double re
   return held;
 }
 
-/// Fills strain, volumetric_strain and old_volume of the batch; updates the volume and, where the layout has
+/// Fills volumetric_strain and old_volume of the batch; updates the volume and, where the layout has
 /// them, the accumulated strains.
 template <class T>
 [[gnu::noinline, gnu::flatten]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
@@ -67,26 +86,10 @@ template <class T>
 
   for_each_vector<T>(batch, [&](double* block, int row) {
     const core::Mat3<T> l = load_gradient<T>(batch, row);
-    const core::Sym3<T> strain{dt * l.xx,
-                               dt * l.yy,
-                               dt * l.zz,
-                               (0.5 * dt) * (l.xy + l.yx),
-                               (0.5 * dt) * (l.yz + l.zy),
-                               (0.5 * dt) * (l.xz + l.zx)};
-    const T components[6] = {strain.xx, strain.yy, strain.zz, strain.xy, strain.yz, strain.xz};
-    for (int i = 0; i < 6; ++i) core::store(batch.strain[i] + row, components[i]);
+    const core::Sym3<T> strain = strain_increment(l, dt);
     core::store(batch.volumetric_strain + row, trace(strain));
-
     core::Sym3<T> accumulated{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    if (strain_at >= 0) {
-      T old[6];
-      for (int i = 0; i < 6; ++i) {
-        double* column = block + strain_at + core::block_lanes * i;  // the six columns are neighbours
-        old[i] = core::load<T>(column);
-        core::store(column, old[i] + components[i]);
-      }
-      accumulated = {old[0], old[1], old[2], old[3], old[4], old[5]};
-    }
+    if (strain_at >= 0) accumulated = accumulate_strain(block + strain_at, strain);
     const T cell_strain = type == 1 ? core::load<T>(batch.cell_volumetric_strain + row) : T(0.0);
 
     const T old_volume = core::load<T>(block + volume_at);

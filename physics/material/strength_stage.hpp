@@ -20,10 +20,9 @@ struct StrengthRules {
 
 /// Axial vector of the spin increment.
 template <class T>
-core::Vec3<T> spin_increment(const core::Batch& batch, int row) {
-  const double half = 0.5 * batch.dt;
-  const auto get = [&](int i) { return core::load<T>(batch.gradient[i] + row); };
-  return {half * (get(7) - get(5)), half * (get(2) - get(6)), half * (get(3) - get(1))};
+core::Vec3<T> spin_increment(const core::Mat3<T>& l, double dt) {
+  const double half = 0.5 * dt;
+  return {half * (l.zy - l.yz), half * (l.xz - l.zx), half * (l.yx - l.xy)};
 }
 
 /// R a R^T for a deviator a, whose third diagonal component follows from the others.
@@ -56,17 +55,13 @@ StrengthPoint<T> strength_point(const core::Batch& batch, const double* block, i
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const auto get = [&](Column c) { return core::load<T>(block + layout.offset(c)); };
-  const auto strain = [&](int i) { return core::load<T>(batch.strain[i] + row); };
-  const core::Vec3<T> spin = spin_increment<T>(batch, row);
-  const T tr = core::load<T>(batch.volumetric_strain + row);
-  const T mean = (1.0 / 3.0) * tr;
+  const core::Mat3<T> l = load_gradient<T>(batch, row);
+  const core::Vec3<T> spin = spin_increment(l, batch.dt);
 
   StrengthPoint<T> point;
   point.dt = batch.dt;
-  point.volumetric_strain = tr;
-  point.strain = turn_slightly(
-      T(0.5) * spin,
-      core::Sym3<T>{strain(0) - mean, strain(1) - mean, strain(2) - mean, strain(3), strain(4), strain(5)});
+  point.volumetric_strain = core::load<T>(batch.volumetric_strain + row);
+  point.strain = turn_slightly(T(0.5) * spin, deviator(strain_increment(l, batch.dt)));
   point.s = rotate_deviator(core::mid_point_rotation(spin), load_deviator<T>(block, layout));
   point.pressure = get(Column::pressure);
   point.density = get(Column::mass) / get(Column::volume);

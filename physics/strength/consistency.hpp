@@ -5,6 +5,7 @@
 // its result does not depend on its neighbours. Converged means |f| below 1e-12 of the yield stress.
 #pragma once
 
+#include "core/simd/math.hpp"
 #include "core/tensor/tensor.hpp"
 
 namespace mpm::physics {
@@ -15,14 +16,17 @@ struct FlowStress {
   T slope;  ///< with respect to the plastic strain increment
 };
 
-/// Zero in the lanes where the trial stress does not exceed `threshold`, the yield stress for a vanishing
-/// increment.
+/// `threshold` is the yield stress for a vanishing increment: where the trial stress does not exceed it the
+/// answer is zero. `start` is the stress at which flow starts: the greater of the threshold and the stress
+/// before the step; from there a steady flow is found at once.
 template <class T, class Flow>
-T plastic_increment(const T& trial, const T& threshold, double shear, const Flow& flow) {
+T plastic_increment(const T& trial, const T& threshold, const T& start, double shear, const Flow& flow) {
   using core::abs;
+  using core::exp;
+  using core::max;
   const double stiffness = 3 * shear;
   const core::MaskOf<T> plastic = trial > threshold;
-  T x = core::select(plastic, (trial - threshold) * (1 / stiffness), 0.0);
+  T x = core::select(plastic, max(trial - start, 1e-3 * (trial - threshold)) * (1 / stiffness), 0.0);
   if (!core::any(plastic)) return x;
   T low = 0.0, high = trial * (1 / stiffness);
   for (int iteration = 0; iteration < 100; ++iteration) {
@@ -32,8 +36,14 @@ T plastic_increment(const T& trial, const T& threshold, double shear, const Flow
     if (!core::any(open)) break;
     low = core::select(f > 0.0, x, low);
     high = core::select(f > 0.0, high, x);
-    const T newton = x + f / (stiffness + yield.slope);
-    const T next = core::select((newton > low) & (newton < high), newton, 0.5 * (low + high));
+    const T step = f / (stiffness + yield.slope);
+    T next = x + step;
+    const core::MaskOf<T> inside = (next > low) & (next < high);
+    if (core::any(open & !inside)) {
+      const T scaled = x * exp(step / x);
+      next = core::select(inside, next,
+                          core::select((scaled > low) & (scaled < high), scaled, 0.5 * (low + high)));
+    }
     x = core::select(open, next, x);
   }
   return x;

@@ -78,14 +78,14 @@ struct JohnsonCook : JohnsonCookPlasticity {
     const T threshold = power_hardening(yield0, b, n, strain).value * softening(point.temperature);
     const T start = core::max(before, threshold);
     const T heat = plastic_work_coefficient / (point.density * specific_heat);  // 3-5
-    const T increment = plastic_increment(trial, threshold, shear, [&](const T& x) {
+    const T increment = plastic_increment(trial, threshold, start, shear, [&](const T& x) {
       const T work = (0.5 * (start + trial) - (1.5 * shear) * x) * x;
       const T temperature = point.temperature + heat * work;
       const T heating = heat * (0.5 * (start + trial) - (3 * shear) * x);
       return power_hardening(yield0, b, n, T(strain + x)) * rate_factor(c, x, epso * point.dt) *
              softening(temperature, heating);
     });
-    return_to(point, trial, before, threshold, increment);
+    return_to(point, trial, start, threshold, increment);
     if (fails_by_damage()) accumulate_damage(point, increment);
   }
 

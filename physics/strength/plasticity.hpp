@@ -25,14 +25,14 @@ struct MisesPlasticity : IsotropicElasticity {
     point.plastic_work = 0.5 * (before + after) * increment;
   }
 
-  /// The same for an increment found by iteration: `old_stress` is the von Mises stress before the step and
-  /// `threshold` the yield stress for a vanishing increment. Flow starts at the greater of the two: a
-  /// material that flows fast is above its static yield stress already.
+  /// The same for an increment found by iteration. `start` is the stress at which flow starts: `threshold`,
+  /// the yield stress for a vanishing increment, or the stress before the step where that is greater, as in
+  /// fast flow.
   template <class T>
-  void return_to(StrengthPoint<T>& point, const T& trial, const T& old_stress, const T& threshold,
+  void return_to(StrengthPoint<T>& point, const T& trial, const T& start, const T& threshold,
                  const T& increment) const {
     const T after = core::select(increment > 0.0, trial - (3 * shear) * increment, threshold);
-    radial_return(point, trial, core::max(old_stress, threshold), after, increment);
+    radial_return(point, trial, start, after, increment);
   }
 };
 

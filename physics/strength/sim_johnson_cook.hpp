@@ -24,10 +24,11 @@ struct SimJohnsonCook : JohnsonCookPlasticity {
     elastic_step(point);
     const T trial = mises(point.s);
     const T threshold = power_hardening(yield0, b, n, strain).value;
-    const T increment = plastic_increment(trial, threshold, shear, [&](const T& x) {
+    const T start = core::max(before, threshold);
+    const T increment = plastic_increment(trial, threshold, start, shear, [&](const T& x) {
       return power_hardening(yield0, b, n, T(strain + x)) * rate_factor(c, x, epso * point.dt);
     });
-    return_to(point, trial, before, threshold, increment);
+    return_to(point, trial, start, threshold, increment);
   }
 };
 

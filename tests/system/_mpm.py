@@ -77,11 +77,29 @@ def command(arguments, ranks=1, mpirun=(), program="mpm_run"):
     return words if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks), *mpirun, *words]
 
 
-def start(arguments, ranks=1, threads=1, mpirun=(), program="mpm_run", **more):
-    """A running program, with its own process group and its output in pipes."""
+def start(arguments, ranks=1, threads=1, mpirun=(), program="mpm_run", drop=(), **more):
+    """A running program, with its own process group and its output in pipes; `drop` names parts of ENVIRONMENT."""
+    environment = {**ENVIRONMENT, "OMP_NUM_THREADS": str(threads)}
     return subprocess.Popen(command(arguments, ranks, mpirun, program), stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True,
-                            env={**ENVIRONMENT, "OMP_NUM_THREADS": str(threads)}, **more)
+                            env={key: value for key, value in environment.items() if key not in drop}, **more)
+
+
+def children(process):
+    """Process numbers of the ranks that an mpirun has started."""
+    path = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    return [int(word) for word in path.read_text().split()]
+
+
+def read_until(process, percent):
+    """Reads the progress table until the run is so far; returns what was read."""
+    read = ""
+    for line in process.stdout:
+        read += line
+        done = re.search(r" (\d+\.\d)% ", line)
+        if done and float(done.group(1)) >= percent:
+            break
+    return read
 
 
 def finish(process, begun=None, timeout=120):

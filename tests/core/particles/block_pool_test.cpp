@@ -1,0 +1,119 @@
+// Blocks and cohorts: what goes in comes out, blocks are reused, and unused lanes hold sound numbers.
+#include "core/particles/block_pool.hpp"
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+using namespace mpm::core;
+
+namespace {
+
+ColumnLayout layout_with(Column extra) {
+  ColumnSet set = ColumnSet::mechanics();
+  set.add(extra);
+  return ColumnLayout(set);
+}
+
+/// Columns of particle n: n + c / 100.
+std::vector<double> particle(const BlockPool& pool, int n) {
+  std::vector<double> columns;
+  for (int c = 0; c < pool.layout().columns(); ++c) columns.push_back(n + 0.01 * c);
+  return columns;
+}
+
+std::vector<double> numbers(const BlockPool& pool, const Cohort& cohort) {
+  std::vector<double> first, columns(static_cast<std::size_t>(pool.layout().columns()));
+  for (std::uint32_t i = 0; i < cohort.count; ++i) {
+    extract(pool, cohort, i, columns.data());
+    first.push_back(columns[0]);
+    REQUIRE(columns == particle(pool, static_cast<int>(columns[0])));
+  }
+  return first;
+}
+
+}  // namespace
+
+TEST_CASE("A layout has the columns of its set and no others, one cache line each") {
+  const ColumnLayout layout = layout_with(Column::damage);
+  CHECK(layout.columns() == ColumnSet::mechanics().size() + 1);
+  CHECK(layout.has(Column::identity));
+  CHECK_FALSE(layout.has(Column::yield_stress));
+  CHECK(layout.offset(Column::yield_stress) == -1);
+  std::set<int> offsets;
+  for (int c = 0; c < column_count; ++c) {
+    const int offset = layout.offset(static_cast<Column>(c));
+    if (offset < 0) continue;
+    CHECK(offset % block_lanes == 0);
+    CHECK(offset < layout.block_doubles());
+    offsets.insert(offset);
+  }
+  CHECK(offsets.size() == static_cast<std::size_t>(layout.columns()));
+}
+
+TEST_CASE("Particles come out of a cohort as they went in, in blocks full but for the last") {
+  BlockPool pool(layout_with(Column::damage));
+  Cohort cohort;
+  std::vector<double> expected;
+  for (int n = 0; n < 37; ++n) {
+    CHECK(append(pool, cohort, particle(pool, n).data()) == static_cast<std::uint32_t>(n));
+    expected.push_back(n);
+    CHECK(cohort.blocks.size() == static_cast<std::size_t>(n / 8 + 1));
+  }
+  CHECK(numbers(pool, cohort) == expected);
+  CHECK(pool.blocks_in_use() == 5);
+}
+
+TEST_CASE("The lanes beyond the last particle of a new block repeat its first") {
+  BlockPool pool(layout_with(Column::damage));
+  Cohort cohort;
+  for (int n = 0; n < 10; ++n) append(pool, cohort, particle(pool, n).data());
+  const double* block = pool.block(cohort.blocks[1]);
+  for (int c = 0; c < pool.layout().columns(); ++c) {
+    for (int lane = 2; lane < block_lanes; ++lane) CHECK(block[block_lanes * c + lane] == 8 + 0.01 * c);
+  }
+}
+
+TEST_CASE("Removing puts the last particle into the gap, and gives back empty blocks") {
+  BlockPool pool(layout_with(Column::damage));
+  Cohort cohort;
+  for (int n = 0; n < 17; ++n) append(pool, cohort, particle(pool, n).data());
+  remove_swapping(pool, cohort, 3);
+  CHECK(cohort.count == 16);
+  CHECK(cohort.blocks.size() == 2);
+  CHECK(pool.blocks_in_use() == 2);
+  CHECK(numbers(pool, cohort) == std::vector<double>{0, 1, 2, 16, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15});
+  remove_swapping(pool, cohort, 15);
+  CHECK(numbers(pool, cohort).back() == 14);
+  while (cohort.count > 0) remove_swapping(pool, cohort, 0);
+  CHECK(cohort.blocks.empty());
+  CHECK(pool.blocks_in_use() == 0);
+}
+
+TEST_CASE("Blocks keep their address while others come, lie on cache lines, and are zero when given out anew") {
+  BlockPool pool(layout_with(Column::damage));
+  std::vector<BlockIndex> blocks;
+  std::vector<const double*> addresses;
+  for (int i = 0; i < 9000; ++i) {  // more than two slabs
+    blocks.push_back(pool.allocate());
+    addresses.push_back(pool.block(blocks.back()));
+    pool.block(blocks.back())[0] = i;
+  }
+  bool steady = true, aligned = true;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    steady = steady && pool.block(blocks[i]) == addresses[i] && *addresses[i] == static_cast<double>(i);
+    aligned = aligned && reinterpret_cast<std::uintptr_t>(addresses[i]) % 64 == 0;
+  }
+  CHECK(steady);
+  CHECK(aligned);
+  CHECK(std::set<BlockIndex>(blocks.begin(), blocks.end()).size() == blocks.size());
+  const std::size_t bytes = pool.bytes_reserved();
+  for (const BlockIndex b : blocks) pool.release(b);
+  CHECK(pool.blocks_in_use() == 0);
+  bool zero = true;
+  for (std::size_t i = 0; i < blocks.size(); ++i) zero = zero && pool.block(pool.allocate())[0] == 0;
+  CHECK(zero);
+  CHECK(pool.bytes_reserved() == bytes);
+}

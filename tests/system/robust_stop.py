@@ -1,0 +1,195 @@
+"""Runs that are asked to stop write a restart file and leave with exit code 4; what continues has the same bits."""
+
+import os
+import signal
+
+import _mpm
+from _mpm import FILE_ERROR, INPUT_ERROR, STOPPED, Case
+
+# Two blocks that bounce between walls and off each other; at most a second or so.
+END = 9
+BODIES = [_mpm.block("left", (1, 2, 2), (6, 4, 4), (2, 1, 0)), _mpm.block("right", (9, 2, 2), (6, 4, 4), (-3, 0, 1))]
+
+
+def bounce(output="", end=END, bodies=BODIES):
+    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), (16, 8, 8), "222222"), _mpm.solution(end),
+                      output=f'<Console print_time="{END / 30}"/>' + output)
+
+
+def stopped_by(signals, ranks=1, target=lambda process: [process.pid], arguments=(), percent=20, **more):
+    """Outcome of a run that gets the signals when so much of it is done."""
+    process = _mpm.start(arguments, ranks=ranks, **more)
+    read = _mpm.read_until(process, percent)
+    for number in signals:
+        for pid in target(process):
+            os.kill(pid, number)
+    outcome = _mpm.finish(process)
+    outcome.out = read + outcome.out
+    return outcome
+
+
+class Stop(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.undisturbed = None
+
+    def setUp(self):
+        super().setUp()
+        self.case = self.write(bounce())
+        self.out = self.folder / "out"
+        self.line = [self.case, "--output-dir", self.out]
+        if not Stop.undisturbed:
+            outcome = self.run_in("undisturbed", [self.case])
+            Stop.undisturbed = outcome.state
+            Stop.rows = _mpm.table(self.folder / "undisturbed/case.sta")
+            self.assertIsNotNone(outcome.state)
+
+    def continue_and_compare(self, restart, **more):
+        self.case.unlink(missing_ok=True)  # a restart file needs no other
+        outcome = self.run_in("out", [restart], **more)
+        self.assertEqual(outcome.state, Stop.undisturbed)
+        rows = _mpm.table(self.out / "case.sta")
+        self.assertEqual(rows["step"], sorted(set(rows["step"])), "the .sta file goes on")
+        last = {head: column[-1] for head, column in rows.items()}
+        self.assertEqual(last, {head: column[-1] for head, column in Stop.rows.items()})
+        self.assertEqual(_mpm.summary(self.out)["status"], "completed")
+
+    def check_stopped(self, outcome, words, code=STOPPED):
+        self.assertEqual(outcome.code, code, outcome)
+        self.assertRegex(outcome.out, rf"stopped +{words}")
+        found = _mpm.summary(self.out)
+        self.assertEqual(found["status"], "stopped")
+        self.assertRegex(found["reason"], words)
+        self.assertLess(found["time"], END)
+        [restart] = _mpm.restarts(self.out)
+        self.assertEqual(restart.name, f"case_{found['steps']}.pe")
+        return restart
+
+    def test_signals_to_one_process(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1):
+            with self.subTest(number.name):
+                self.setUp()
+                restart = self.check_stopped(stopped_by([number], arguments=self.line), f"signal {int(number)}")
+                self.continue_and_compare(restart)
+
+    def test_interrupt_from_the_terminal(self):
+        """Ctrl+C reaches the daemon that the MPI library has started, too."""
+        outcome = stopped_by([signal.SIGINT], target=lambda process: [-process.pid], arguments=self.line,
+                             drop=["OMPI_MCA_ess_singleton_isolated"])
+        self.continue_and_compare(self.check_stopped(outcome, "signal 2"))
+
+    def test_user_signal_under_mpirun(self):
+        outcome = stopped_by([signal.SIGUSR1], ranks=2, arguments=self.line)
+        self.continue_and_compare(self.check_stopped(outcome, "signal 10"), ranks=3)
+
+    def test_user_signal_to_one_rank_of_two(self):
+        outcome = stopped_by([signal.SIGUSR1], ranks=2, target=lambda p: _mpm.children(p)[-1:], arguments=self.line)
+        self.continue_and_compare(self.check_stopped(outcome, "(signal|asked to stop)"))
+
+    def test_terminate_under_mpirun(self):
+        """Open MPI's mpirun passes SIGTERM on after a second, kills another second later, and ends with a code of its
+        own. The run has to be long enough for that."""
+        self.write(bounce(end=4 * END))
+        undisturbed = self.run_in("undisturbed", [self.case]).state
+        outcome = stopped_by([signal.SIGTERM], ranks=2, arguments=self.line, percent=2)
+        self.assertNotIn(outcome.code, (0, None), outcome)
+        [restart] = _mpm.restarts(self.out)
+        self.assertEqual(self.run_in("out", [restart]).state, undisturbed)
+
+    def test_wall_time(self):
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                self.setUp()
+                outcome = _mpm.run([*self.line, "--max-wall-time", "0.05"], ranks=ranks)
+                self.continue_and_compare(self.check_stopped(outcome, "asked to stop: .*--max-wall-time"))
+
+    def test_wall_time_of_a_run_that_is_faster(self):
+        outcome = _mpm.run([*self.line, "--max-wall-time", "1000"])
+        self.assertEqual(outcome.code, _mpm.DONE, outcome)
+        self.assertEqual(outcome.state, Stop.undisturbed)
+
+    def test_so_many_rows(self):
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                outcome = _mpm.run([*self.line, "-nsteps", "3"], ranks=ranks)
+                self.assertEqual(outcome.code, _mpm.DONE, outcome)
+                self.assertEqual(len(_mpm.table(self.out / "case.sta")["step"]), 3)
+                self.assertEqual(_mpm.summary(self.out)["status"], "stopped")
+
+    def test_stopped_twice(self):
+        self.check_stopped(stopped_by([signal.SIGUSR1], arguments=self.line), "signal 10")
+        again = stopped_by([signal.SIGUSR1], arguments=[self.out / "case.pe", *self.line[1:]])
+        self.assertEqual(again.code, STOPPED, again)
+        self.continue_and_compare(_mpm.restarts(self.out)[-1])
+
+
+class Restart(Case):
+    def setUp(self):
+        super().setUp()
+        self.case = self.write(bounce(f'<Restart time_interval="{END / 40}"/>', END / 10))
+        self.out = self.folder / "out"
+        self.state = self.run_in("out", [self.case]).state
+        self.files = _mpm.restarts(self.out)
+
+    def test_the_newest_two_are_kept(self):
+        self.assertEqual(len(self.files), 2)
+        self.assertEqual([name for name in _mpm.names(self.out) if ".part" in name], [])
+
+    def test_job_without_step_takes_the_newest(self):
+        self.files[1].unlink()
+        outcome = self.run_in("out", [self.out / "case.pe"])
+        self.assertIn(f"from {self.files[0]}", outcome.out)
+        self.assertEqual(outcome.state, self.state)
+
+    def test_from_the_folder_itself(self):
+        self.files[1].unlink()
+        for words in (["case.pe"], [self.files[0].name]):
+            self.assertEqual(_mpm.run(words, cwd=self.out).state, self.state)
+
+    def test_missing_file_does_not_start_anew(self):
+        before = {name: (self.out / name).read_bytes() for name in _mpm.names(self.out)}
+        for name, words in [("case_7.pe", [str(self.files[1])]), ("other.pe", ["nothing was started"]),
+                            ("other_7.pe", ["nothing was started"])]:
+            for ranks in (1, 2):
+                with self.subTest(name, ranks=ranks):
+                    outcome = self.run_in("out", [self.out / name], code=FILE_ERROR, ranks=ranks)
+                    for word in ["no such file", name, *words]:
+                        self.assertEqual(outcome.complaint.count(word), 1, outcome)
+                    self.assertEqual({name: (self.out / name).read_bytes() for name in _mpm.names(self.out)}, before)
+
+    def test_other_input_that_is_missing(self):
+        outcome = self.run_in("new", [self.files[0], "-rt", self.folder / "none.xmp"], code=INPUT_ERROR)
+        self.assertIn("none.xmp", outcome.complaint)
+        self.assertFalse((self.folder / "new").exists())
+
+    def test_other_input_of_the_same_name_goes_on_with_the_files(self):
+        """The manual's own example: edit Job.xmp, then `-rt Job.xmp`. The rows before the restart are kept."""
+        step = int(self.files[0].stem.split("_")[1])
+        before = [s for s in _mpm.table(self.out / "case.sta")["step"] if s <= step]
+        self.write(bounce(end=END / 8))
+        self.run_in("out", [self.files[0], "-rt", self.case])
+        rows = _mpm.table(self.out / "case.sta")
+        self.assertEqual(rows["step"][: len(before)], before)
+        self.assertEqual(rows["time"][-1], END / 8)
+
+    def test_other_input_of_another_name_writes_its_own_files(self):
+        before = {name: (self.out / name).read_bytes() for name in _mpm.names(self.out)}
+        longer = self.write(bounce(end=END / 8), "longer.xmp")
+        self.run_in("out", [self.files[0], "-rt", longer])
+        self.assertEqual({name: (self.out / name).read_bytes() for name in before}, before)
+        self.assertEqual(_mpm.table(self.out / "longer.sta")["time"][-1], END / 8)
+
+    def test_a_body_that_is_taken_out(self):
+        """-rt with Deactive="1": the body is gone, and the books say what it took along."""
+        left, right = BODIES
+        other = self.write(bounce(end=END / 8, bodies=[left, right.replace('type="Block"', 'type="Block" Deactive="1"')]), "other.xmp")
+        for ranks in (1, 2):
+            outcome = self.run_in("other", [self.files[0], "-rt", other], ranks=ranks)
+            found = _mpm.summary(self.folder / "other", "other")
+            self.assertEqual(found["particles"], 768)
+            self.assertEqual([body["name"] for body in found["bodies"]], ["left"])
+            self.assertLess(abs(found["energy"]["relative_drift"]), 0.05, outcome)
+
+
+if __name__ == "__main__":
+    _mpm.main()
