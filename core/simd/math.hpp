@@ -69,9 +69,9 @@ inline Lanes<L> log(Lanes<L> x) {
   const Lanes<L> y = select(x > 0.0, select(tiny, x * 0x1p54, x), 1.0);
   // x = 2^k m with m in [sqrt(1/2), sqrt(2)), so that k is 0 about x = 1.
   constexpr std::int64_t sqrt_half = 0x3fe6a09e667f3bcd;
-  const Bits<L> b = to_bits(y) - sqrt_half;
-  const Bits<L> exponent = (b >> 52);
-  const Lanes<L> m = from_bits<L>((b & 0x000fffffffffffff) + sqrt_half);
+  const Bits<L> shifted = to_bits(y) - sqrt_half;
+  const Bits<L> exponent = shifted >> 52;
+  const Lanes<L> m = from_bits<L>((shifted & 0x000fffffffffffff) + sqrt_half);
   const Lanes<L> k =
       from_bits<L>(exponent + 0x4338000000000000) - round_magic - select(tiny, 54.0, Lanes<L>(0.0));
   // log(1 + f) = 2 artanh(t) for t = f/(2 + f); as f - t (f - 2 t^2 (1/3 + t^2/5 + ...)) its leading term is

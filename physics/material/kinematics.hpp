@@ -1,5 +1,5 @@
-// First stage: strain increment and volume from the velocity gradient L (manual 3.10.5).
-//   de = sym(L) dt;   V: 0 V (1 + tr de), 1 as the background cell, 2 V exp(tr de), 3 V det(I + L dt),
+// First stage: the volume from the velocity gradient L (manual 3.10.5).
+//   de = sym(L) dt;   by type: 0 V (1 + tr de), 1 as the background cell, 2 V exp(tr de), 3 V det(I + L dt),
 //   4 V0 (1 + e_xx)(1 + e_yy)(1 + e_zz) of the accumulated strain, taken as a ratio from step to step.
 // A volume that would become zero, negative or no number keeps its old value and is counted; one outside the
 // bounds of Volume min/max is put on the bound and counted.
@@ -67,7 +67,8 @@ T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double re
   T held = volume;
   if (options.volume_min > 0) held = max(held, options.volume_min * reference);
   if (options.volume_max > 0) held = min(held, options.volume_max * reference);
-  batch.events.volume_limited += count<T>(held != volume, row, batch.particles);
+  const core::MaskOf<T> moved = held != volume;
+  if (core::any(moved)) batch.events.volume_limited += count<T>(moved, row, batch.particles);
   return held;
 }
 

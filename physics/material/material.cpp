@@ -21,7 +21,9 @@ StrengthPoint<T> rest(const Law& law, StrengthPoint<T> point) {
   return point;
 }
 
-/// Energy and pressure of a particle at the point's volume: E0, unless the equation says otherwise.
+/// Energy and pressure of a particle placed at the point's volume. The energy is E0 at that volume, whatever
+/// the volume: how the body came to its density is the user's matter. Only the elastic bulk, which has no E0,
+/// starts with the work of the way there, so that a body released to the reference density ends with none.
 template <class T, class Eos>
 EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0) {
   point.energy = e0;

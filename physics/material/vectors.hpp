@@ -19,9 +19,8 @@ inline void for_each_vector(const core::Batch& batch, F f) {
 /// Lanes of `mask` that hold particles, for a vector at `row` of a batch with `particles`.
 template <class T>
 [[gnu::noinline, gnu::cold]] long count(core::MaskOf<T> mask, int row, int particles) {
-  if (!core::any(mask)) return 0;
   if constexpr (core::LaneTraits<T>::width == 1) {
-    return row < particles ? 1 : 0;
+    return mask && row < particles ? 1 : 0;
   } else {
     long n = 0;
     for (int i = 0; i < core::LaneTraits<T>::width && row + i < particles; ++i) n += mask[i] ? 1 : 0;

@@ -13,26 +13,37 @@ import _mpm
 COPPER = {"density": 8.93e-3, "c0": 3940.0, "s1": 1.49, "gamma0": 1.96}
 
 
+def copper(strength, name="copper"):
+    """Copper with the shock Hugoniot of table 3.1 of the thesis and the given StrengthModel."""
+    eos = '<EquationOfState type="Gruneisen" C0="{c0}" S1="{s1}" gamma0="{gamma0}"/>'.format(**COPPER)
+    return _mpm.material(name, COPPER["density"], strength, eos)
+
+
 # What a run leaves -------------------------------------------------------------------------------------------------
 
 
 class States:
-    """The times in an H5Part file; columns in the order of the particles' identities, at which they never change."""
+    """The pictures of an H5Part file; columns in the order of the particles' identities."""
 
-    def __init__(self, path):
-        self.file = h5py.File(path)
+    def __init__(self, folder, job="case"):
+        self.file = h5py.File(pathlib.Path(folder) / f"{job}.h5part")
         names = sorted((n for n in self.file if n.startswith("Step#")), key=lambda n: int(n[5:]))
         self.steps = [self.file[name] for name in names]
         self.times = np.array([float(step.attrs["TimeValue"]) for step in self.steps])
 
-    def column(self, name, which):
+    def column(self, name, which=-1):
         step = self.steps[which]
         return step[name][:][np.argsort(step["id"][:])].astype(float)
 
 
 def status(folder, job="case"):
-    """Rows of the .sta file by column name."""
+    """Rows of the .sta file, as arrays by column name."""
     return {name: np.array(values) for name, values in _mpm.table(pathlib.Path(folder) / f"{job}.sta").items()}
+
+
+def order(sizes, errors):
+    """Observed order of convergence: the slope of log |error| over log size between neighbours."""
+    return np.diff(np.log(np.abs(errors))) / np.diff(np.log(sizes))
 
 
 # Plane shock -------------------------------------------------------------------------------------------------------
@@ -42,22 +53,19 @@ def status(folder, job="case"):
 class Shock:
     """A copper bar in uniaxial strain (symmetry planes at its sides) that hits a wall, a symmetry plane, at x = 0.
 
-    The copper has no strength (StrengthModel Null), so the jump conditions with Us = c0 + s1 up are its whole story:
+    The copper is without strength (Null), so that the jump conditions with Us = c0 + s1 up are the whole truth:
     p = rho0 Us up, rho/rho0 = Us/(Us - up), e = up^2/2 (thesis 2-60 to 2-62)."""
 
-    speed: float  # of the bar, and of the particles behind the shock seen from those before it
+    speed: float  # up: of the bar, and of the matter behind the shock as seen from that before it
     cell: float = 1.0
-    cells: int = 100  # along the bar
-    across: int = 2
-    split: int = 2  # particles along a cell
+    length: float = 100.0
+    across: int = 1  # cells
+    split: int = 6  # particles along a cell
     algorithm: str = "MUSL"
-    factor: float = 0.4
+    factor: float = 0.2
     bq1: float = 1.5
     bq2: float = 0.06
-
-    @property
-    def length(self):
-        return self.cells * self.cell
+    pictures: int = 32
 
     @property
     def shock_speed(self):
@@ -65,8 +73,7 @@ class Shock:
 
     @property
     def end(self):
-        """The shock has passed 0.8 of the bar; the wave from its free end, which starts then at the earliest at the
-        end, is still to come."""
+        """The shock has then run through 0.8 of the bar; nothing has come from the free end yet."""
         return 0.8 * self.length / self.shock_speed
 
     def exact(self):
@@ -74,51 +81,106 @@ class Shock:
         return {"Us": us, "p": rho0 * us * up, "rho": rho0 * us / (us - up), "e": up * up / 2}
 
     def text(self):
-        width, c = self.across * self.cell, COPPER
-        copper = _mpm.material("copper", c["density"], f'type="Null" bq1="{self.bq1}" bq2="{self.bq2}"',
-                               f'<EquationOfState type="Gruneisen" C0="{c["c0"]}" S1="{c["s1"]}" gamma0="{c["gamma0"]}"/>')
+        width = self.across * self.cell
         bar = _mpm.block("bar", (0, 0, 0), (self.length, width, width), (-self.speed, 0, 0), self.cell / self.split, "copper")
-        # Eight pictures on the second half of the way.
-        output = (f'<PostProcessing time_interval="{self.end / 16!r}" h5part="1" var="pres|density|engi|SigmaX"/>')
-        return _mpm.scene([bar], _mpm.grid((0, 0, 0), (self.length + 2 * self.cell, width, width), "202222", self.cell),
-                          _mpm.solution(self.end, self.algorithm, self.factor), [copper], output)
+        return _mpm.scene(
+            [bar],
+            _mpm.grid((0, 0, 0), (self.length + 2 * self.cell, width, width), "202222", self.cell),
+            _mpm.solution(self.end, self.algorithm, self.factor),
+            [copper(f'type="Null" bq1="{self.bq1}" bq2="{self.bq2}"')],
+            f'<PostProcessing time_interval="{self.end / self.pictures!r}" h5part="1" var="pres|density|engi|SigmaX"/>')
+
+    def profiles(self, states, which=-1):
+        """Columns over the layers of particles: X (first place, through which the shock runs at Us), x, pressure,
+        density, energy per mass and -SigmaX."""
+        first, layer = np.unique(np.round(states.column("x", 0), 4), return_inverse=True)
+        count = np.bincount(layer)
+        mean = {name: np.bincount(layer, states.column(name, which)) / count
+                for name in ("x", "velocity_0", "pres", "density", "engi", "SigmaX")}
+        mass = COPPER["density"] * (self.cell / self.split) ** 3
+        return {"X": first, "x": mean["x"], "v": mean["velocity_0"], "p": mean["pres"], "rho": mean["density"],
+                "e": mean["engi"] / mass, "stress": -mean["SigmaX"]}
 
     def measure(self, folder):
-        """Shock speed, mean state of the plateau, its oscillation and the width of the front, from the run's files.
-
-        Everything over the particles' first places X: the shock runs through them at Us."""
-        states = States(pathlib.Path(folder) / "case.h5part")
-        first = states.column("x", 0)
-        layers, layer = np.unique(np.round(first / self.cell, 3), return_inverse=True)
-        count = np.bincount(layer)
+        """Relative errors of the shock speed and of the plateau, its ripple, and the front's width in cells."""
+        states = States(folder)
         exact = self.exact()
-
-        def profile(values):
-            return np.bincount(layer, values) / count
-
-        mass = COPPER["density"] * (self.cell / self.split) ** 3
+        late = range(len(states.times) // 4, len(states.times))
         fronts = []
-        for which in range(len(states.times) // 2, len(states.times)):
-            fronts.append(crossing(layers, -profile(states.column("SigmaX", which)), 0.5 * exact["p"]) * self.cell)
-        speed = np.polyfit(states.times[len(states.times) // 2:], fronts, 1)[0]
+        for which in late:
+            at = self.profiles(states, which)
+            fronts.append(crossing(at["X"], at["v"] + self.speed, 0.5 * self.speed))
+        speed = np.polyfit(states.times[late], fronts, 1)[0]
 
-        last = len(states.times) - 1
-        stress, p, rho = -profile(states.column("SigmaX", last)), profile(states.column("pres", last)), profile(states.column("density", last))
-        e = profile(states.column("engi", last)) / mass
-        x = profile(states.column("x", last))
-        width = crossing(layers, stress, 0.1 * exact["p"]) - crossing(layers, stress, 0.9 * exact["p"])
-        # Clear of the first ten cells, which remember how the shock began, and of the front.
-        plateau = np.flatnonzero((layers > 10) & (layers < fronts[-1] / self.cell - 15))
-        v = 1 / rho
-        state = {"Us": speed, "p": (p * v)[plateau].sum() / v[plateau].sum(), "rho": 1 / v[plateau].mean(), "e": e[plateau].mean()}
-        a, b = plateau[0], plateau[-1]
-        geo = COPPER["density"] * (layers[b] - layers[a]) * self.cell / (x[b] - x[a])
-        return {"error": {name: state[name] / exact[name] - 1 for name in exact}, "width": width,
-                "ripple": p[plateau].std() / exact["p"], "peak": stress.max() / exact["p"] - 1,
-                "layers": layers, "pressure": p, "stress": stress, "geo": geo / exact["rho"] - 1, "pm": p[plateau].mean()/exact["p"]-1,"u":states.column("velocity_0",last)}
+        end = self.profiles(states)
+        # Clear of the first cells, which remember how the shock began, and of the front.
+        flat = (end["X"] > 10 * self.cell) & (end["X"] < fronts[-1] - 15 * self.cell)
+        volume = 1 / end["rho"][flat]  # of a unit of mass; all layers have the same mass
+        found = {"Us": speed, "p": (end["p"][flat] * volume).sum() / volume.sum(), "rho": 1 / volume.mean(),
+                 "e": end["e"][flat].mean()}
+        near, far = (crossing(end["X"], end["stress"], level * exact["p"]) for level in (0.9, 0.1))
+        return {"error": {name: found[name] / exact[name] - 1 for name in exact},
+                "width": (far - near) / self.cell,
+                "ripple": end["p"][flat].std() / exact["p"],
+                "overshoot": end["stress"][end["X"] > fronts[-1] - 15 * self.cell].max() / exact["p"] - 1}
 
 
 def crossing(x, values, level):
     """The largest x at which `values` falls through `level`, by linear interpolation."""
     i = np.flatnonzero(values >= level)[-1]
     return x[i] + (x[i + 1] - x[i]) * (values[i] - level) / (values[i] - values[i + 1])
+
+
+# Elastic bar -------------------------------------------------------------------------------------------------------
+
+
+@dataclasses.dataclass
+class ElasticBar:
+    """A bar, fixed at x = 0 and free at x = L, in its first mode: v = V sin(pi x/(2 L)) cos(omega t), omega =
+    pi c/(2 L), c^2 = E/rho (Poisson's ratio is zero). Each layer of particles is a body with a velocity of its own.
+
+    V is 1e-4 c: displacements are far below the particles' spacing, so nothing crosses a cell, and the laws' second
+    order terms, of the size of the strain V/c, stay below what is measured. No artificial viscosity: it would damp."""
+
+    cells: int
+    algorithm: str = "MUSL"
+    factor: float = 0.4
+    periods: int = 4
+    length: float = 25.0
+    modulus: float = 117e3
+    density: float = COPPER["density"]
+    rows: int = 200  # of the .sta file per period
+
+    @property
+    def wave_speed(self):
+        return (self.modulus / self.density) ** 0.5
+
+    @property
+    def period(self):
+        return 4 * self.length / self.wave_speed
+
+    def text(self):
+        h = self.length / self.cells
+        layers = []
+        for i in range(2 * self.cells):
+            speed = 1e-4 * self.wave_speed * np.sin(np.pi * (i + 0.5) / (4 * self.cells))
+            layers.append(_mpm.block(f"layer{i}", (i * h / 2, 0, 0), (h / 2, h, h), (speed, 0, 0), h / 2, "elastic"))
+        elastic = _mpm.material("elastic", self.density, f'type="IsoElastic" Young="{self.modulus}" Poisson="0" bq1="0" bq2="0"')
+        return _mpm.scene(layers, _mpm.grid((0, 0, 0), (self.length + 2 * h, h, h), "102222", h),
+                          _mpm.solution(self.periods * self.period, self.algorithm, self.factor), [elastic],
+                          f'<Console print_time="{self.period / self.rows!r}"/>')
+
+    def measure(self, folder):
+        """Relative error of the period, and the relative change of energy from one period to the next.
+
+        The period from the zeros of the momentum. The energy as its mean over a period: within one it swings by
+        about omega dt, because velocities stand half a step from stresses."""
+        rows = status(folder)
+        t, p = rows["time"], rows["px"]
+        fall = np.flatnonzero(p[:-1] * p[1:] < 0)
+        zeros = t[fall] - p[fall] * (t[fall + 1] - t[fall]) / (p[fall + 1] - p[fall])
+        period = 2 * (zeros[-1] - zeros[0]) / (len(zeros) - 1)
+        even = np.linspace(0, period, 400, endpoint=False)
+        start = np.arange(int(t[-1] / period)) * period
+        energy = np.array([np.interp(s + even, t, rows["total"]).mean() for s in start])
+        return {"period": period / self.period - 1, "drift": np.diff(energy) / energy[:-1]}

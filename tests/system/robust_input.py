@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 
 import _mpm
 from _mpm import FILE_ERROR, INPUT_ERROR, Case
@@ -32,25 +33,12 @@ def one_body(body):
 SCENES = [
     ("empty file", "", ["case.xmp", "empty"]),
     ("text that is no XML", "Hello", ["case.xmp:1"]),
-    ("cut in half", GOOD[: len(GOOD) // 2], ["case.xmp:"]),
-    ("a tag that is not closed", without("</Component>", ""), ["case.xmp:", "Component"]),
     ("zeros", b"\0" * 4096, ["case.xmp"]),
     ("another root", '<?xml version="1.0"?><html/>', ["case.xmp:1", "PeneBlast"]),
-    ("entity bomb", BOMB, ["case.xmp:", "DOCTYPE"]),
-    ("external entity", OUTSIDER, ["case.xmp:", "DOCTYPE"]),
-    ("not a number", without('Young="1000"', 'Young="nan"'), ["Young", "nan"]),
     ("infinite", without('vx="0"', 'vx="inf"'), ["vx", "inf"]),
     ("a word for a number", without('Young="1000"', 'Young="stiff"'), ["Young", "stiff"]),
-    ("negative density", without('ReferenceDensity value="1.0"', 'ReferenceDensity value="-1"'), ["ReferenceDensity", "-1"]),
     ("negative density of a body", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), attributes='density="-1"')), ["density", "-1"]),
-    ("dp 0", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), dp=0)), ["dp", "0"]),
     ("dp below 0", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), dp=-0.5)), ["dp", "-0.5"]),
-    ("a body outside the grid", one_body(_mpm.block("far", (20, 2, 2), (4, 4, 4))), ["far", "outside", "grid", "20.25"]),
-    ("a body half outside", one_body(_mpm.block("half", (6, 2, 2), (4, 4, 4))), ["half", "outside", "256 particles"]),
-    ("a billion billion particles", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-6)), ["1e+18", "dp"]),
-    ("more particles than memory", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-4)), ["1e+12", "GiB", "dp"]),
-    ("a body without particles", one_body(_mpm.block("speck", (2, 2, 2), (4, 4, 4), dp=50)), ["speck", "dp"]),
-    ("unknown material", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), of="sofft")), ["sofft", '"soft"']),
     ("unknown element", without("<EndTime", '<EndTim value="1"/><EndTime'), ["EndTim", "EndTime"]),
     ("unknown attribute", without("Young=", 'Yuong="1" Young='), ["Yuong", "Young"]),
     ("unknown strength model", without("IsoElastic", "IsoElastik"), ["IsoElastik", "IsoElastic"]),
@@ -63,8 +51,22 @@ SCENES = [
     ("the end before the beginning", without('EndTime value="0.1"', 'EndTime value="-0.1"'), ["EndTime", "-0.1"]),
     ("known, but not implemented", without("<Output>", '<Contact enable="1"/><Output>'), ["Contact", "not implemented"]),
     ("a particle file that is not there", one_body(
-        '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'), ["grains.txt", "Body"]),
-    ("dimensions that are not the number of ranks", _mpm.scene([BODY], ROOMY, SHORT, more=DIMENSIONS), ["3", "6", "rank"]),
+        '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'), ["grains.txt", "no such file"]),
+]
+SCENES_ON_TWO_RANKS_TOO = [
+    ("cut in half", GOOD[: len(GOOD) // 2], ["case.xmp:"]),
+    ("a tag that is not closed", without("</Component>", ""), ["case.xmp:", "Component"]),
+    ("entity bomb", BOMB, ["case.xmp:", "DOCTYPE"]),
+    ("external entity", OUTSIDER, ["case.xmp:", "DOCTYPE"]),
+    ("not a number", without('Young="1000"', 'Young="nan"'), ["Young", "nan"]),
+    ("negative density", without('ReferenceDensity value="1.0"', 'ReferenceDensity value="-1"'), ["ReferenceDensity", "-1"]),
+    ("dp 0", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), dp=0)), ["dp", "0"]),
+    ("a body outside the grid", one_body(_mpm.block("far", (20, 2, 2), (4, 4, 4))), ["far", "outside the grid", "x from 20 to 24"]),
+    ("a body half outside", one_body(_mpm.block("half", (6, 2, 2), (4, 4, 4))), ["half", "outside", "256 particles"]),
+    ("a billion billion particles", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-6)), ["1e+18", "dp"]),
+    ("more particles than memory", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-4)), ["1e+12", "GiB", "dp"]),
+    ("unknown material", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), of="sofft")), ["sofft", "did you mean 'soft'"]),
+    ("dimensions that are not the number of ranks", _mpm.scene([BODY], ROOMY, SHORT, more=DIMENSIONS), ["dimension0", "= 6", "number of ranks"]),
 ]
 
 # Name, the command line behind the program's name, exit code, what the message has to say. {} is the test's folder,
@@ -103,15 +105,24 @@ class BadInput(Case):
         self.assertEqual(len(complaints), len(set(complaints)), f"said more than once: {outcome}")
         self.assertLess(len(complaints), 5, outcome)
 
-    def check_scene(self, name, text, words):
+    def nothing_left(self, names):
+        found = _mpm.names(self.folder)
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        self.assertEqual(found, names, "something was left behind")
+
+    def check_scene(self, name, text, words, all_ranks=(1, 2)):
         self.write(text)
-        for ranks in (1, 2):
+        for ranks in all_ranks:
             with self.subTest(name, ranks=ranks):
                 self.expect([self.folder / "case.xmp", "--output-dir", self.folder / "out"], INPUT_ERROR, words, ranks)
-                self.assertEqual(_mpm.names(self.folder), ["case.xmp"], "something was left behind")
+                self.nothing_left(["case.xmp"])
 
     def test_scenes(self):
         for scene in SCENES:
+            self.check_scene(*scene, all_ranks=(1,))
+
+    def test_scenes_on_two_ranks_too(self):
+        for scene in SCENES_ON_TWO_RANKS_TOO:
             self.check_scene(*scene)
 
     def test_all_faults_of_a_file_at_once(self):
@@ -123,13 +134,13 @@ class BadInput(Case):
         self.write(GOOD, "good.xmp")
         self.write("", "file")
         for name, line, code, words in LINES:
-            for ranks in (1, 2):
+            for ranks in (1, 2) if name in ("missing file", "unknown option", "output folder is a file") else (1,):
                 with self.subTest(name, ranks=ranks):
                     arguments = [word.format(here) for word in line]
                     if "--output-dir" not in line:
                         arguments += ["--output-dir", f"{here}/out"]
                     self.expect(arguments, code, [word.format(here) for word in words], ranks)
-                    self.assertEqual(_mpm.names(self.folder), ["file", "good.xmp"], "something was left behind")
+                    self.nothing_left(["file", "good.xmp"])
 
     def test_folders_without_permission(self):
         if os.geteuid() == 0:
@@ -148,11 +159,11 @@ class BadInput(Case):
                                    ("mass below zero", "-1 2 2 2\n", ["grains.txt:1"]),
                                    ("empty", "", ["grains.txt"]),
                                    ("outside", "1 2 2 2\n1 30 2 2\n", ["grains", "outside"])]:
-            for ranks in (1, 2):
+            for ranks in (1, 2) if name == "outside" else (1,):
                 with self.subTest(name, ranks=ranks):
                     self.write(lines, "grains.txt")
                     self.expect([self.folder / "case.xmp", "--output-dir", self.folder / "out"], INPUT_ERROR, words, ranks)
-                    self.assertEqual(_mpm.names(self.folder), ["case.xmp", "grains.txt"], "something was left behind")
+                    self.nothing_left(["case.xmp", "grains.txt"])
 
     def test_files_of_an_earlier_run_stay(self):
         """Bad input must not cost the results of the good input before it."""

@@ -36,8 +36,11 @@ TEST_CASE("A point belongs to the cell above it, but for the grid's upper face")
   CHECK(g.cell_index(110, 2) == 4);
   CHECK(g.contains({-2.5, -1, 100}));
   CHECK(g.contains({2.5, 0, 110}));
-  CHECK_FALSE(g.contains({std::nextafter(2.5, 3.0), 0, 105}));
+  CHECK_FALSE(g.contains({2.5 + 1e-12, 0, 105}));
   CHECK_FALSE(g.contains({0, std::nextafter(-1.0, -2.0), 105}));
+  // What rounds to the upper face counts as on it, for both questions alike.
+  CHECK(g.contains({std::nextafter(2.5, 3.0), 0, 105}));
+  CHECK(g.cell_index(std::nextafter(2.5, 3.0), 0) == 9);
   CHECK_FALSE(g.contains({0, -0.5, std::numeric_limits<double>::quiet_NaN()}));
   CHECK_FALSE(g.contains({0, -0.5, std::numeric_limits<double>::infinity()}));
 }

@@ -13,7 +13,7 @@ using namespace mpm::tests;
 namespace {
 
 constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl};
-constexpr double usl_floor = 0.05;  // of core/step/passes.cpp
+constexpr double usl_floor = 0.2;  // of core/step/passes.cpp
 
 template <class Container>
 double norm(const Container& a) {
@@ -56,7 +56,8 @@ void compare(const SmallRun& run, const ReferenceStepper& oracle, double toleran
   CHECK(strain.relative() < tolerance);
 }
 
-/// Both take the oracle's steps; `same_dt`: the stepper would have chosen the same.
+/// Both take the oracle's steps. The stepper's own choice is the same in MUSL; USF and USL know the particles' speeds of
+/// before the step only, which is off by the share of dv in c + |v|.
 void run_both(ReferenceCase c, int steps, double tolerance) {
   c.usl_mass_floor = usl_floor;
   ReferenceStepper oracle(c);
@@ -69,8 +70,7 @@ void run_both(ReferenceCase c, int steps, double tolerance) {
     oracle.step();
     run.step();
   }
-  CAPTURE(worst_dt);
-  CHECK(worst_dt < 1e-9);
+  CHECK(worst_dt < (c.scheme == ReferenceScheme::musl ? tolerance : 0.2));
   compare(run, oracle, tolerance);
 }
 
@@ -85,17 +85,35 @@ TEST_CASE("A Taylor bar moves as the naive stepper moves it") {
   }
 }
 
-TEST_CASE("A block tumbles through bricks and against walls as the naive stepper moves it") {
-  for (const ReferenceScheme scheme : schemes) {
-    for (const int boundary : {0, 1, 2, 4}) {
-      INFO("scheme " << static_cast<int>(scheme) << ", boundary " << boundary);
-      ReferenceCase c = tumbling_block();
-      c.scheme = scheme;
-      c.boundary.fill(boundary);
-      if (scheme != ReferenceScheme::usl) c.gravity = {-30, 20, 40};
-      // It is thrown into the corner at the lower y and the upper x and z.
-      for (ReferenceParticle& p : c.particles) p.x = {p.x[0] + 5.9, p.x[1] - 5.6, p.x[2] + 4.9};
-      run_both(c, 40, 1e-9);
-    }
+namespace {
+
+/// The block in free space (boundary 0) or thrown into the corner of the lower y and the upper x and z.
+void tumble(ReferenceScheme scheme, int boundary) {
+  INFO("scheme " << static_cast<int>(scheme) << ", boundary " << boundary);
+  ReferenceCase c = tumbling_block();
+  c.scheme = scheme;
+  c.boundary.fill(boundary);
+  c.wall_reaction = true;
+  c.gravity = {-30, 20, 40};
+  for (ReferenceParticle& p : c.particles) {
+    if (boundary != 0) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
   }
+  run_both(c, 30, 1e-9);
+}
+
+}  // namespace
+
+TEST_CASE("A block tumbles through bricks as the naive stepper moves it") {
+  for (const ReferenceScheme scheme : schemes) tumble(scheme, 0);
+}
+
+TEST_CASE("USF and MUSL: a block hits walls as the naive stepper lets it") {
+  for (const int boundary : {1, 2, 4}) {
+    tumble(ReferenceScheme::usf, boundary);
+    tumble(ReferenceScheme::musl, boundary);
+  }
+}
+
+TEST_CASE("USL: a block hits walls as the naive stepper lets it") {
+  for (const int boundary : {1, 2, 4}) tumble(ReferenceScheme::usl, boundary);
 }

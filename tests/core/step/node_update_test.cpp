@@ -1,0 +1,238 @@
+// Nodes: sums over the bricks that share them, the equation of motion, and every boundary on every face.
+#include "core/step/node_update.hpp"
+
+#include <cstring>
+#include <map>
+#include <random>
+#include <set>
+#include <tuple>
+
+#include <catch2/catch.hpp>
+
+using namespace mpm::core;
+
+namespace {
+
+using Node = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
+
+GridGeometry geometry_of(std::array<std::int64_t, 3> cells) {
+  GridGeometry g;
+  g.cell = g.inverse_cell = {1, 1, 1};
+  g.cells = cells;
+  return g;
+}
+
+/// f(number in the brick's array, node of the grid) for the nodes of a brick's array.
+template <class F>
+void for_each_node(const NodeBlockShape& shape, BrickCoord b, F f) {
+  for (int k = -shape.halo; k < shape.side() - shape.halo; ++k) {
+    for (int j = -shape.halo; j < shape.side() - shape.halo; ++j) {
+      for (int i = -shape.halo; i < shape.side() - shape.halo; ++i) {
+        f(shape.index(i, j, k), Node{brick_cells * b.x + i, brick_cells * b.y + j, brick_cells * b.z + k});
+      }
+    }
+  }
+}
+
+/// Random contributions of all slots, masses not negative.
+void fill(BrickGrid& grid, NodeArray of, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const int width = record_doubles(of);
+  for (Slot s = 0; s < grid.owned(); ++s) {
+    for (int i = 0; i < width * grid.shape().nodes(); ++i) {
+      const double x = unit(random);
+      grid.contributions(of, s)[i] = i % width == 3 ? std::abs(x) : x * std::pow(10.0, 8 * x);
+    }
+  }
+}
+
+using Record = std::array<double, node_doubles>;
+
+/// The record of every node of the grid after work(slot, records); every copy must have the same bits.
+template <class W>
+std::map<Node, Record> agreed(const BrickGrid& grid, W work) {
+  std::map<Node, Record> nodes;
+  std::vector<double> records(static_cast<std::size_t>(node_doubles * grid.shape().nodes()));
+  int different = 0;
+  for (Slot s = 0; s < grid.owned(); ++s) {
+    work(s, records.data());
+    for_each_node(grid.shape(), grid.brick(s).coord, [&](int n, const Node& node) {
+      Record r;
+      std::memcpy(r.data(), records.data() + node_doubles * n, sizeof r);
+      const auto [at, is_new] = nodes.emplace(node, r);
+      different += !is_new && std::memcmp(at->second.data(), r.data(), sizeof r) != 0;
+    });
+  }
+  CHECK(different == 0);
+  return nodes;
+}
+
+std::vector<BrickCoord> random_bricks(std::mt19937& random, unsigned of_eight) {
+  std::vector<BrickCoord> bricks{{0, 0, 0}, {1, 1, 1}};  // a diagonal pair always
+  for (int i = 0; i < 64; ++i) {
+    const BrickCoord b{i % 4, i / 4 % 4, i / 16};
+    if (random() % 8 < of_eight && b != bricks[0] && b != bricks[1]) bricks.push_back(b);
+  }
+  return bricks;
+}
+
+}  // namespace
+
+TEST_CASE("Every copy of a node has the same sum and the same motion, to the last bit") {
+  std::mt19937 random(21);
+  for (const int halo : {0, 1}) {
+    for (unsigned density = 0; density <= 8; ++density) {
+      GridGeometry g = geometry_of({14, 13, 16});
+      g.boundary = {Boundary::fixed, Boundary::rigid_wall, Boundary::symmetry, Boundary::free, Boundary::rigid_wall,
+                    Boundary::symmetry};
+      BrickGrid grid(g, halo);
+      grid.reset(random_bricks(random, density), {});
+      fill(grid, NodeArray::first, random);
+      fill(grid, NodeArray::second, random);
+      const SharedNodes shared(grid.shape());
+      NodeForces forces;
+      forces.gravity = {1, -2, 3};
+      forces.damping = 0.1;
+      forces.strain_mass_floor = 0.5;
+      std::vector<double> sums(static_cast<std::size_t>(node_doubles * grid.shape().nodes()));
+      const auto nodes = agreed(grid, [&](Slot s, double* records) {
+        const BoundaryFaces faces(g, grid.shape(), grid.brick(s).coord);
+        sum_contributions<NodeArray::first>(grid, shared, s, records);
+        update_nodes(forces, 0.01, 1e-3, faces, shared.nodes(), records);
+        sum_contributions<NodeArray::second>(grid, shared, s, sums.data());
+        second_velocities(0, sums.data(), faces, shared.nodes(), records);
+      });
+      CHECK(nodes.size() >= 125);
+    }
+  }
+}
+
+TEST_CASE("A node's sum is that of all bricks which hold it") {
+  std::mt19937 random(22);
+  for (const int halo : {0, 1}) {
+    BrickGrid grid(geometry_of({16, 16, 16}), halo);
+    grid.reset(random_bricks(random, 4), {});
+    fill(grid, NodeArray::first, random);
+    fill(grid, NodeArray::second, random);
+    std::map<Node, Record> first, second, size;
+    for (Slot s = 0; s < grid.owned(); ++s) {
+      for_each_node(grid.shape(), grid.brick(s).coord, [&](int n, const Node& node) {
+        for (std::size_t c = 0; c < node_doubles; ++c) {
+          const double x = grid.contributions(NodeArray::first, s)[node_doubles * n + static_cast<int>(c)];
+          first[node][c] += x;
+          size[node][c] += std::abs(x);
+          if (c < 4) second[node][c] += grid.contributions(NodeArray::second, s)[4 * n + static_cast<int>(c)];
+        }
+      });
+    }
+    const SharedNodes shared(grid.shape());
+    // At most eight addends (27 with a halo), in another order: round-off of their sizes.
+    double worst = 0;
+    for (const auto& [node, r] : agreed(grid, [&](Slot s, double* r) { sum_contributions<NodeArray::first>(grid, shared, s, r); })) {
+      for (std::size_t c = 0; c < node_doubles; ++c) worst = std::max(worst, std::abs(r[c] - first[node][c]) / size[node][c]);
+    }
+    CHECK(worst < 4e-15);
+    const auto two = agreed(grid, [&](Slot s, double* r) {
+      std::fill_n(r, node_doubles * grid.shape().nodes(), 7.0);
+      sum_contributions<NodeArray::second>(grid, shared, s, r);
+    });
+    worst = 0;
+    bool rest_kept = true;
+    for (const auto& [node, r] : two) {
+      for (std::size_t c = 0; c < 4; ++c) worst = std::max(worst, std::abs(r[c] - second[node][c]));
+      for (std::size_t c = 4; c < node_doubles; ++c) rest_kept = rest_kept && r[c] == 7;
+    }
+    CHECK(worst < 1e8 * 4e-15);  // of the largest momentum
+    CHECK(rest_kept);
+  }
+}
+
+TEST_CASE("A free node moves by (f/m + g - c v) dt; one at the cutoff or below does not exist") {
+  NodeForces forces;
+  forces.gravity = {1, 2, -8};
+  forces.damping = 0.5;
+  forces.strain_mass_floor = 4;
+  const NodeBlockShape shape;
+  const BoundaryFaces faces(geometry_of({8, 8, 8}), shape, {0, 0, 0});
+  CHECK(faces.none());
+  std::vector<double> records(static_cast<std::size_t>(node_doubles * shape.nodes()));
+  const Record heavy{16, -8, 4, 8, 32, 8, -16, 0}, light{4, 0, 0, 2, 2, 0, 0, 0}, cut{1, 1, 1, 0.125, 1e9, 1, 1, 0};
+  std::copy(heavy.begin(), heavy.end(), records.begin());
+  std::copy(light.begin(), light.end(), records.begin() + node_doubles);
+  std::copy(cut.begin(), cut.end(), records.begin() + 2 * node_doubles);
+  update_nodes(forces, 0.25, 0.125, faces, shape.nodes(), records.data());
+  const auto record = [&](int n) {
+    Record r;
+    std::copy_n(records.begin() + node_doubles * n, node_doubles, r.begin());
+    return r;
+  };
+  // v = (2, -1, 0.5), a = (4 + 1 - 1, 1 + 2 + 0.5, -2 - 8 - 0.25)
+  CHECK(record(0) == Record{3, -0.125, -2.0625, 8, 1, 0.875, -2.5625, 0});
+  CHECK(record(1)[3] == 2);
+  CHECK(record(1)[7] == 0.5);  // half of the floor
+  CHECK(record(2) == Record{});
+  CHECK(record(3) == Record{});
+}
+
+TEST_CASE("Every boundary holds what it should on every face, also where the last brick is partial") {
+  for (const std::array<std::int64_t, 3> cells : {std::array<std::int64_t, 3>{8, 8, 8}, {6, 5, 7}, {3, 4, 1}}) {
+    for (int face = 0; face < 6; ++face) {
+      for (const Boundary boundary : {Boundary::fixed, Boundary::symmetry, Boundary::rigid_wall}) {
+        INFO("cells " << cells[0] << ", face " << face << ", boundary " << static_cast<int>(boundary));
+        GridGeometry g = geometry_of(cells);
+        g.boundary[static_cast<std::size_t>(face)] = boundary;
+        BrickGrid grid(g);
+        std::vector<BrickCoord> bricks;
+        for (int i = 0; i < 8; ++i) {
+          const BrickCoord b{i % 2, i / 2 % 2, i / 4};
+          if (4 * b.x < cells[0] && 4 * b.y < cells[1] && 4 * b.z < cells[2]) bricks.push_back(b);
+        }
+        grid.reset(bricks, {});
+        std::mt19937 random(31);
+        fill(grid, NodeArray::first, random);
+        fill(grid, NodeArray::second, random);
+        const SharedNodes shared(grid.shape());
+        const double dt = 0.5;
+        std::vector<double> sums(static_cast<std::size_t>(node_doubles * grid.shape().nodes()));
+        const auto before = agreed(grid, [&](Slot s, double* r) { sum_contributions<NodeArray::first>(grid, shared, s, r); });
+        const auto second = agreed(grid, [&](Slot s, double* r) { sum_contributions<NodeArray::second>(grid, shared, s, r); });
+        const auto moved = [&](Slot s, double* r) {
+          sum_contributions<NodeArray::first>(grid, shared, s, r);
+          update_nodes({}, dt, 0, BoundaryFaces(g, grid.shape(), grid.brick(s).coord), shared.nodes(), r);
+        };
+        const auto after = agreed(grid, moved);
+        const auto mapped = agreed(grid, [&](Slot s, double* r) {
+          moved(s, r);
+          sum_contributions<NodeArray::second>(grid, shared, s, sums.data());
+          second_velocities(0, sums.data(), BoundaryFaces(g, grid.shape(), grid.brick(s).coord), shared.nodes(), r);
+        });
+        const auto axis = static_cast<std::size_t>(face / 2);
+        const double outward = face % 2 == 0 ? -1 : 1;
+        int wrong = 0, held = 0;
+        for (const auto& [node, r] : after) {
+          const std::int64_t at[3] = {std::get<0>(node), std::get<1>(node), std::get<2>(node)};
+          if (at[0] > cells[0] || at[1] > cells[1] || at[2] > cells[2]) continue;  // no particle touches it
+          const bool on_face = at[axis] == (face % 2 == 0 ? 0 : cells[axis]);
+          const Record& b = before.at(node);
+          for (std::size_t a = 0; a < 3; ++a) {
+            const double v = (b[a] + dt * b[4 + a]) / b[3], w = second.at(node)[a] / b[3];
+            const auto stops = [&](double velocity) {
+              if (!on_face) return false;
+              return boundary == Boundary::fixed || (a == axis && (boundary == Boundary::symmetry || outward * velocity > 0));
+            };
+            // A wall takes away the velocity that the node had; the others leave the particles' velocity alone.
+            const double reaction = boundary == Boundary::rigid_wall ? -b[a] / b[3] : 0;
+            const double size = std::abs(b[a] / b[3]) + std::abs(dt * b[4 + a] / b[3]);
+            wrong += !(std::abs(r[a] - (stops(v) ? 0 : v)) <= 1e-14 * size);
+            wrong += !(std::abs(r[4 + a] - (stops(v) ? reaction : dt * b[4 + a] / b[3])) <= 1e-14 * size);
+            wrong += stops(v) && r[a] != 0;
+            wrong += !(std::abs(mapped.at(node)[4 + a] - (stops(w) ? 0 : w)) <= 1e-14 * std::abs(w));
+            held += stops(v);
+          }
+        }
+        CHECK(wrong == 0);
+        CHECK(held > 0);
+      }
+    }
+  }
+}

@@ -1,0 +1,106 @@
+// What particles add to nodes, against a plain loop over particles and nodes. Tolerance: both add up to some ten
+// products per node, in different orders, each rounded to 1e-16 of the largest. A particle on the face between two
+// cells may be in either by round-off; what a node gets of it differs by 1e-14 of it then, as S or its jump vanishes
+// for mass and momentum; for forces the cell decides, so both sides ask for it in the same way.
+#include "core/step/particles_to_grid.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/core/step/transfer.hpp"
+
+using namespace mpm::core;
+using mpm::tests::TransferCase;
+
+namespace {
+
+template <Mapped what>
+std::vector<double> mapped(const TransferCase& c) {
+  constexpr int width = record_doubles(array_of(what));
+  std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
+  const CellCorners corners(c.shape.side());
+  CellSums<what> sums;
+  sums.clear();
+  for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
+    const int used = static_cast<int>(std::min<std::size_t>(block_lanes, c.cohort.count - block_lanes * b));
+    add_block<what>(c.frame(), corners, c.pool.layout(), c.pool.block(c.cohort.blocks[b]), used, sums, nodes.data());
+  }
+  sums.flush(nodes.data(), corners);
+  return nodes;
+}
+
+template <Mapped what>
+std::vector<double> plain(const TransferCase& c) {
+  constexpr int width = record_doubles(array_of(what));
+  std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
+  for (const std::vector<double>& p : c.particles) {
+    const double v[3] = {p[3], p[4], p[5]}, m = p[6], volume = p[7], total = p[14] + p[15];
+    const double sigma[3][3] = {{p[8] - total, p[11], p[13]}, {p[11], p[9] - total, p[12]}, {p[13], p[12], p[10] - total}};
+    c.for_each_node(p, [&](int node, double s, const Vec3<double>& g) {
+      double* at = nodes.data() + width * node;
+      for (int a = 0; a < 3; ++a) {
+        if (maps_momentum(what)) at[a] += m * v[a] * s;
+        if constexpr (maps_force(what)) {
+          for (int b = 0; b < 3; ++b) at[4 + a] -= volume * sigma[a][b] * g[b];
+        }
+      }
+      if (maps_mass(what)) at[3] += m * s;
+    });
+  }
+  return nodes;
+}
+
+template <Mapped what>
+void compare(const TransferCase& c) {
+  const std::vector<double> one = mapped<what>(c), two = plain<what>(c);
+  double worst = 0, scale = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    worst = std::max(worst, std::abs(one[i] - two[i]));
+    scale = std::max(scale, std::abs(two[i]));
+  }
+  CHECK(worst <= 1e-14 * scale);
+}
+
+}  // namespace
+
+TEST_CASE("All that is mapped to the nodes is what a plain loop maps") {
+  for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {1, 0, 1}, {2, 2, 2}}) {
+    for (const int halo : {0, 1}) {
+      for (const int count : {0, 1, 7, 8, 9, 200}) {
+        INFO("brick " << brick.x << brick.y << brick.z << ", halo " << halo << ", particles " << count);
+        const TransferCase c(brick, halo, count, 7u * static_cast<unsigned>(count) + 1);
+        compare<Mapped::momentum_mass_force>(c);
+        compare<Mapped::momentum_mass>(c);
+        compare<Mapped::momentum>(c);
+        compare<Mapped::force>(c);
+      }
+    }
+  }
+}
+
+TEST_CASE("The nodes get all the mass and momentum there is, and forces that balance each other") {
+  const TransferCase c({1, 1, 1}, 0, 333, 5);
+  const std::vector<double> nodes = mapped<Mapped::momentum_mass_force>(c);
+  double sum[8] = {}, size[8] = {}, all[4] = {};
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    sum[i % 8] += nodes[i];
+    size[i % 8] += std::abs(nodes[i]);
+  }
+  for (const auto& p : c.particles) {
+    for (std::size_t a = 0; a < 3; ++a) all[a] += p[6] * p[3 + a];
+    all[3] += p[6];
+  }
+  // Sums over 125 nodes, rounded to 1e-16 of what is summed.
+  for (int a = 0; a < 4; ++a) CHECK(std::abs(sum[a] - all[a]) < 1e-14 * size[a]);
+  for (int a = 4; a < 7; ++a) CHECK(std::abs(sum[a]) < 1e-14 * size[a]);
+  CHECK(size[7] == 0);
+}
+
+TEST_CASE("Lanes out of use add nothing, whatever is in them") {
+  TransferCase c({1, 0, 1}, 0, 11, 6);
+  const std::vector<double> before = mapped<Mapped::momentum_mass_force>(c);
+  double* block = c.pool.block(c.cohort.blocks[1]);
+  for (int column = 0; column < c.pool.layout().columns(); ++column) {
+    for (int lane = 3; lane < block_lanes; ++lane) block[block_lanes * column + lane] = std::nan("");
+  }
+  CHECK(mapped<Mapped::momentum_mass_force>(c) == before);
+}

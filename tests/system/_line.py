@@ -1,0 +1,98 @@
+"""The explicit material point method on a line, written for itself from the thesis: the oracle for uniaxial strain.
+
+One material: no strength, Mie-Grueneisen pressure, artificial viscosity. A wall without velocity at x = 0. Nothing is
+shared with the solver; the equations are thesis 2-26 to 2-43 (step), 2-57, 2-69, 2-73, 2-74 (viscosity, time step)
+and 2-82 to 2-92 (energy and pressure together), in the form that physics/material/pressure_stage.hpp states."""
+
+import numpy as np
+
+# Share of a cell's mass below which USL's strain leaves out part of a node's increment: 0.05 in core/step/passes.cpp. A
+# column one cell wide between symmetry planes has its nodes on the four edges, each with a quarter of the line's mass.
+USL_MASS_FLOOR = 4 * 0.05
+
+
+class Line:
+    def __init__(self, length, cell, split, speed, algorithm, factor, density, c0, s1, gamma0, bq1, bq2):
+        self.cell, self.algorithm, self.factor = cell, algorithm, factor
+        self.density, self.c0, self.s1, self.gamma0, self.bq1, self.bq2 = density, c0, s1, gamma0, bq1, bq2
+        count = round(length / cell) * split
+        size = cell / split
+        self.x = (np.arange(count) + 0.5) * size
+        self.v = np.full(count, float(speed))
+        self.mass = np.full(count, density * size)
+        self.first_volume = np.full(count, size)
+        self.volume = self.first_volume.copy()
+        self.p, self.q, self.energy = np.zeros(count), np.zeros(count), np.zeros(count)
+        self.nodes = round(length / cell) + 4
+        self.critical = cell / (c0 + abs(speed))
+        self.steps = 0
+
+    def run(self, end):
+        time = 0.0
+        while time < end * (1 - 1e-12):
+            dt = min(self.factor * self.critical, end - time)
+            self.step(dt)
+            time += dt
+            self.steps += 1
+
+    def step(self, dt):
+        lower = np.floor(self.x / self.cell).astype(int)
+        s = self.x / self.cell - lower
+        node, share, slope = np.stack([lower, lower + 1]), np.stack([1 - s, s]), np.array([[-1], [1]]) / self.cell
+
+        def to_nodes(values):
+            return np.bincount(node.ravel(), (values + 0 * share).ravel(), self.nodes)
+
+        def at_wall(velocity):
+            velocity[0] = 0
+            return velocity
+
+        def velocity_of(momentum):
+            return at_wall(np.divide(momentum, mass, out=np.zeros(self.nodes), where=mass > 0))
+
+        def rate(velocity):
+            return (slope * velocity[node]).sum(axis=0)
+
+        mass, momentum = to_nodes(share * self.mass), to_nodes(share * self.mass * self.v)
+        if self.algorithm == "USF":
+            signal = self.stress(rate(velocity_of(momentum)), dt) + np.abs(self.v)
+        dv = dt * velocity_of(to_nodes(slope * self.volume * (self.p + self.q)))
+        velocity = at_wall(velocity_of(momentum) + dv)
+        if self.algorithm == "USL":
+            left_out = np.maximum(0, 1 - mass / (USL_MASS_FLOOR * self.density * self.cell))
+            signal = self.stress(rate(velocity - left_out * dv), dt) + np.abs(self.v)
+        self.v += (share * dv[node]).sum(axis=0)
+        if self.algorithm == "MUSL":
+            signal = self.stress(rate(velocity_of(to_nodes(share * self.mass * self.v))), dt) + np.abs(self.v)
+        self.x += dt * (share * velocity[node]).sum(axis=0)
+        self.critical = self.cell / signal.max()
+
+    def stress(self, rate, dt):
+        """Pressure, viscosity and energy after a step at this rate of strain; the speed for the next time step."""
+        volume = self.volume * (1 + rate * dt)
+        rho = self.mass / volume
+        mu = rho / self.density - 1
+        a, slope = self.cold(mu)
+        h = (volume - self.volume) / (2 * self.first_volume)
+
+        def sound(p):
+            return np.sqrt(np.maximum((1 + mu) * slope + self.gamma0 * p / (1 + mu), 0) / rho)
+
+        squeeze = np.maximum(-rate, 0)
+        c = sound(self.p)
+        q = rho * self.cell * squeeze * (self.bq1 * self.cell * squeeze + self.bq2 * c)
+        star = self.energy - h * (self.p + self.q + q)
+        self.p = (a + self.gamma0 * star) / (1 + self.gamma0 * h)
+        self.energy = star - h * self.p
+        self.q, self.volume = q, volume
+        damping = np.where(squeeze > 0, self.bq2 * c + self.bq1 * self.cell * squeeze, 0)
+        return damping + np.sqrt(damping**2 + sound(self.p) ** 2)
+
+    def cold(self, mu):
+        """p = a + gamma0 E: a and da/dmu. In tension a is linear."""
+        stiffness, m = self.density * self.c0**2, np.maximum(mu, 0)
+        pole = 1 - (self.s1 - 1) * m
+        top = m * (1 + (1 - self.gamma0 / 2) * m)
+        top_slope = 1 + (2 - self.gamma0) * m
+        slope = (top_slope + 2 * (self.s1 - 1) * top / pole) / pole**2
+        return stiffness * (top / pole**2 + np.minimum(mu, 0)), stiffness * np.where(mu > 0, slope, 1)

@@ -1,0 +1,27 @@
+"""Period, energy and order of convergence of a fixed-free elastic bar in its first mode."""
+
+import _cases
+import _mpm
+
+
+class ElasticBar(_mpm.Case):
+    def test_period_and_energy(self):
+        cells = (8, 16, 32)
+        for algorithm in ("MUSL", "USF"):
+            with self.subTest(algorithm=algorithm):
+                errors = []
+                for count in cells:
+                    bar = _cases.ElasticBar(count, algorithm, rows=100)
+                    folder = f"{algorithm}{count}"
+                    self.run_in(folder, [self.write(bar.text())])
+                    found = bar.measure(self.folder / folder)
+                    errors.append(found["period"])
+                    self.assertLess(max(abs(found["drift"])), 1e-3)  # asked for, per period
+                self.assertLess(max(map(abs, errors)), 0.005)  # asked for; dispersion: (k h)^2/8 = 0.5 % at 8 cells
+                # Second order in space, and the time step goes with the cell: 2 but for terms of fourth order.
+                for observed in _cases.order([1 / c for c in cells], errors):
+                    self.assertGreater(observed, 1.9)
+                    self.assertLess(observed, 2.1)
+
+
+_mpm.main()

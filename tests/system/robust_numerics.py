@@ -1,0 +1,250 @@
+"""Guards, walls and what is prescribed: runs that go wrong end with exit code 3 and a message that names the particle;
+particles that leave are booked; walls, limits, damping and prescribed motion do what the input says."""
+
+import json
+import math
+
+import h5py
+
+import _mpm
+from _mpm import DONE, NUMERICAL_FAILURE, STOPPED, Case
+
+ROOM = (16, 8, 8)
+YOUNG, POISSON, DENSITY = 1000.0, 0.3, 1.0  # of _mpm.material()
+BOUNCE = [_mpm.block("left", (1, 2, 2), (6, 4, 4), (2, 1, 0)), _mpm.block("right", (9, 2, 2), (6, 4, 4), (-3, 0, 1))]
+FLIGHT = [_mpm.block("bird", (9, 2, 2), (4, 4, 4), (10, 0, 0))]  # leaves through the face at x = 16 until t = 0.7
+
+
+def refuse(constant):
+    raise ValueError(f"{constant} is no JSON")
+
+
+def strict_summary(folder):
+    return json.loads((folder / "case.summary.json").read_text(), parse_constant=refuse)
+
+
+def scene(bodies, more="", end=1.0, faces="222222", room=ROOM, output="", attributes=""):
+    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), room, faces), _mpm.solution(end, attributes=attributes, more=more),
+                      output=f'<Console print_time="{end / 10}"/>' + output)
+
+
+class Failures(Case):
+    def check_failure(self, text, pattern, ranks=(1, 2, 3)):
+        """The same message on any ranks, on standard error, in the log and in the summary."""
+        self.write(text)
+        complaints = set()
+        for n in ranks:
+            outcome = self.run_in(f"out{n}", [self.folder / "case.xmp"], code=NUMERICAL_FAILURE, ranks=n)
+            complaints.add(outcome.complaint)
+            self.assertRegex(outcome.complaint, rf"^{pattern}$")
+            found = strict_summary(self.folder / f"out{n}")
+            self.assertEqual((found["status"], found["reason"]), ("failed", outcome.complaint))
+            log = (self.folder / f"out{n}/case.out").read_text()
+            self.assertIn(f"FAILED     {outcome.complaint}", log)
+            self.assertIn(f"FAILED     {outcome.complaint}", outcome.out)
+        self.assertEqual(len(complaints), 1, complaints)
+
+    PARTICLE = r'step \d+, time [\d.e+-]+: .*particle \d+ of body "(left|right|bird)" at \([^)]*\).*'
+
+    def test_step_that_is_far_too_long(self):
+        for steps in (4, 10):
+            with self.subTest(f"{steps} times the critical step"):
+                step = f'<TimeStep specified="{steps * 0.025}"/>'
+                self.check_failure(scene(BOUNCE, end=50).replace('<TimeStep factor="0.5"/>', step), self.PARTICLE)
+
+    def test_energy_fraction(self):
+        self.check_failure(scene(BOUNCE, '<EnergyFraction value="1e-4"/>', end=9),
+                           r"step \d+, time [\d.]+: the total energy is off by .*, more than EnergyFraction 0\.0001")
+
+    def test_particle_outside_at_level_2(self):
+        self.check_failure(scene(FLIGHT, '<Warn type="grid" level="2"/>', faces="000000"), self.PARTICLE)
+
+    def test_last_good_restart_file_is_named(self):
+        self.write(scene(FLIGHT, '<Warn type="grid" level="2"/>', faces="000000", output='<Restart time_interval="0.1"/>'))
+        outcome = self.run_in("out", [self.folder / "case.xmp"], code=NUMERICAL_FAILURE)
+        newest = _mpm.restarts(self.folder / "out")[-1]
+        self.assertIn(f"the last good state is in {newest}", outcome.out)
+        self.assertEqual(_mpm.run([newest, "--output-dir", self.folder / "out"]).code, NUMERICAL_FAILURE)
+
+
+class Leaving(Case):
+    def fly(self, more="", **changes):
+        self.write(scene(FLIGHT, more, faces="000000", **changes))
+        return self.run_in("out", [self.folder / "case.xmp"])
+
+    def test_booked(self):
+        """The whole body leaves stressless, so that the books have to balance to round-off."""
+        for end, gone in [(0.55, lambda n: 0 < n < 512), (1.0, lambda n: n == 512)]:
+            outcome = self.fly(end=end)
+            found = strict_summary(self.folder / "out")
+            left = 512 - found["particles"]
+            self.assertTrue(gone(left), outcome)
+            self.assertIn(f"{left} particle(s) left the grid", outcome.out)
+            self.assertLess(abs(found["energy"]["relative_drift"]), 1e-12)
+            self.assertAlmostEqual(found["bodies"][0]["mass"], 64 - left / 8, delta=1e-9)
+            self.assertAlmostEqual(found["momentum"][0], 10 * (64 - left / 8), delta=1e-9)
+            self.assertEqual(found["bodies"][0]["centre"][0] is None, left == 512)
+
+    def test_warnings(self):
+        steps = [line for line in self.fly('<Warn type="grid"/>').out.splitlines() if line.startswith("warning: ")]
+        self.assertGreaterEqual(len(steps), 8, "one for each step in which a layer of particles leaves")
+        for line in steps:
+            self.assertRegex(line, r'step \d+, time .*: \d+ particle\(s\) left the grid; the first: particle \d+ of body "bird"')
+        self.assertEqual(sum(int(line.split(": ")[2].split()[0]) for line in steps), 512)
+        self.assertEqual(len([line for line in self.fly('<Warn type="grid" level="1"/>').out.splitlines() if "warning" in line]), 1)
+        self.assertNotIn("warning", self.fly().out)
+
+    def test_stop_near_the_boundary(self):
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                self.write(scene(FLIGHT, faces="000000", attributes='near_boundary_stop="1"'))
+                outcome = self.run_in("out", [self.folder / "case.xmp"], code=STOPPED, ranks=ranks)
+                self.assertRegex(outcome.out, "stopped +a particle is next to an open boundary")
+                found = strict_summary(self.folder / "out")
+                self.assertEqual(found["particles"], 512)
+                self.assertEqual(math.floor(found["bodies"][0]["upper"][0]), 15)
+                self.assertEqual(len(_mpm.restarts(self.folder / "out")), 1)
+
+    def test_walls_are_no_open_boundary(self):
+        self.write(scene(BOUNCE, end=0.2, attributes='near_boundary_stop="1"'))
+        self.run_in("out", [self.folder / "case.xmp"])
+
+
+class Walls(Case):
+    """Six blocks in one room, each before its own face, moving along the face at a fifth of the speed across it."""
+
+    SPEED = 5.0
+
+    def run_blocks(self, boundary, gap, outward, end):
+        """What has become of each block: `gap` cells from its face and thrown at it (outward 1) or away (-1)."""
+        bodies = []
+        for face in range(6):
+            axis, upper = face // 2, face % 2
+            lower, velocity = [8.0, 8.0, 8.0], [0.0, 0.0, 0.0]
+            lower[axis] = 16 - gap if upper else gap
+            velocity[axis] = outward * self.SPEED * (1 if upper else -1)
+            velocity[(axis + 1) % 3] = self.SPEED / 5
+            bodies.append(_mpm.block(f"face{face}", lower, (4, 4, 4), velocity))
+        self.write(scene(bodies, end=end, faces=6 * str(boundary), room=(20, 20, 20)))
+        self.run_in("out", [self.folder / "case.xmp"], ranks=2)
+        blocks = []
+        for face, body in enumerate(strict_summary(self.folder / "out")["bodies"]):
+            axis, upper = face // 2, face % 2
+            blocks.append({"particles": body["particles"],
+                           "gap": 20 - body["upper"][axis] if upper else body["lower"][axis],
+                           "outward": body["velocity"][axis] * (1 if upper else -1),
+                           "along": body["velocity"][(axis + 1) % 3],
+                           "internal": body["internal"]})
+        for block in blocks[1:]:  # all six do the same
+            for key, value in block.items():
+                self.assertAlmostEqual(value, blocks[0][key], delta=1e-6, msg=key)
+        return blocks[0]
+
+    def throw(self, boundary, end=0.9):
+        return self.run_blocks(boundary, 1.5, 1, end)
+
+    def pull(self, boundary):
+        return self.run_blocks(boundary, 0, -1, 0.3)
+
+    def check_stopped(self, block):
+        """Nothing got through; the block is on its way back, without more energy than it had."""
+        self.assertEqual(block["particles"], 512)
+        self.assertGreater(block["gap"], 1)
+        self.assertLess(block["outward"], -0.5 * self.SPEED)
+        self.assertGreater(block["outward"], -1.01 * self.SPEED)
+
+    def test_free(self):
+        """The front layers have left, the rest goes on as before."""
+        block = self.throw(0, end=0.7)
+        self.assertTrue(0 < block["particles"] < 512)
+        self.assertAlmostEqual(block["outward"], self.SPEED, delta=1e-9)
+        self.assertAlmostEqual(block["along"], self.SPEED / 5, delta=1e-9)
+
+    def test_fixed(self):
+        """Holds everything, along the wall too, and does not let go."""
+        block = self.throw(1)
+        self.check_stopped(block)
+        self.assertLess(block["along"], 0.5 * self.SPEED / 5)
+        block = self.pull(1)
+        self.assertGreater(block["outward"], -0.95 * self.SPEED)
+        self.assertLess(block["along"], 0.95 * self.SPEED / 5)
+
+    def test_symmetry(self):
+        """Holds the velocity across the wall, both ways, and none along it."""
+        block = self.throw(2)
+        self.check_stopped(block)
+        self.assertAlmostEqual(block["along"], self.SPEED / 5, delta=1e-9)
+        block = self.pull(2)
+        self.assertGreater(block["outward"], -0.95 * self.SPEED)
+        self.assertAlmostEqual(block["along"], self.SPEED / 5, delta=1e-9)
+
+    def test_rigid_wall(self):
+        """Lets nothing through; what moves away from it does so freely."""
+        block = self.throw(4)
+        self.check_stopped(block)
+        self.assertAlmostEqual(block["along"], self.SPEED / 5, delta=1e-9)
+        block = self.pull(4)
+        self.assertAlmostEqual(block["outward"], -self.SPEED, delta=1e-9)
+        self.assertAlmostEqual(block["along"], self.SPEED / 5, delta=1e-9)
+        self.assertLess(block["internal"], 1e-12)
+
+
+class Prescribed(Case):
+    def test_limit_of_the_velocity(self):
+        more = '<LimitVelocity max="2"/><Gravity ax="30" ay="40" az="0"/>'
+        body = _mpm.block("cube", (1, 1, 1), (2, 2, 2))
+        self.write(scene([body], more, faces="000000"))
+        self.run_in("out", [self.folder / "case.xmp"])
+        velocity = strict_summary(self.folder / "out")["bodies"][0]["velocity"]
+        self.assertLessEqual(math.hypot(*velocity), 2 * (1 + 1e-12))
+        for found, expected in zip(velocity, (1.2, 1.6, 0)):
+            self.assertAlmostEqual(found, expected, delta=1e-9, msg="slower, in the same direction")
+
+    def test_prescribed_velocity(self):
+        """A body in prescribed motion pushes another one before it and is not slowed."""
+        piston = _mpm.block("piston", (1, 2, 2), (3, 4, 4), more='<PrescribedVelocity vx="3" vy="0.5" vz="-0.25"/>')
+        freight = _mpm.block("freight", (5, 2, 2), (3, 4, 4))
+        self.write(scene([piston, freight], faces="000000"))
+        for ranks in (1, 2):
+            self.run_in("out", [self.folder / "case.xmp"], ranks=ranks)
+            found, pushed = strict_summary(self.folder / "out")["bodies"]
+            for axis, (start, speed) in enumerate([(2.5, 3), (4, 0.5), (4, -0.25)]):
+                self.assertAlmostEqual(found["velocity"][axis], speed, delta=1e-12)
+                self.assertAlmostEqual(found["centre"][axis], start + speed, delta=1e-10)
+            self.assertGreater(pushed["velocity"][0], 1)
+
+    def test_energy_of_a_prescribed_motion(self):
+        """The books hold the work that the motion takes."""
+        piston = _mpm.block("piston", (1, 2, 2), (3, 4, 4), more='<PrescribedVelocity vx="1" vy="0" vz="0"/>')
+        self.write(scene([piston, _mpm.block("freight", (4, 2, 2), (4, 4, 4))], faces="000000"))
+        self.run_in("out", [self.folder / "case.xmp"])
+        energy = strict_summary(self.folder / "out")["energy"]
+        self.assertGreater(energy["external_work"], 10)
+        self.assertLess(abs(energy["relative_drift"]), 0.02)
+
+    def test_dynamic_relaxation(self):
+        """A column under its own weight, between walls without friction. At rest (linear elasticity, uniaxial strain,
+        M the modulus): sigma_zz = -rho g (H - z), mean settlement rho g H^2 / (3 M). The damping is critical for the
+        first mode, 2 pi c / (2 H)."""
+        height, gravity = 8.0, 1.0
+        modulus = YOUNG * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON))
+        damping = math.pi * math.sqrt(modulus / DENSITY) / height
+        more = f'<DynamicRelax damping="{damping}"/><Gravity ax="0" ay="0" az="{-gravity}"/>'
+        output = '<PostProcessing time_interval="9" h5part="1" var="SigmaZ"/>'
+        self.write(scene([_mpm.block("column", (0, 0, 0), (2, 2, height))], more, 2.0, "222220", (2, 2, 9), output))
+        self.run_in("out", [self.folder / "case.xmp"])
+        found = strict_summary(self.folder / "out")
+        body = found["bodies"][0]
+        settlement = DENSITY * gravity * height**2 / (3 * modulus)
+        self.assertAlmostEqual(height / 2 - body["centre"][2], settlement, delta=0.02 * settlement)
+        self.assertLess(found["energy"]["kinetic"], 1e-6 * found["energy"]["internal"])
+        with h5py.File(self.folder / "out/case.h5part") as file:
+            last = file[f"Step#{len(file) - 1}"]
+            errors = last["SigmaZ"][()] + DENSITY * gravity * (height - last["z"][()])
+        # Stress is constant over a cell, whose two layers of particles lie a quarter of it from its middle.
+        self.assertLess(math.sqrt((errors**2).mean()), 1.05 * DENSITY * gravity / 4)
+        self.assertLess(abs(found["energy"]["relative_drift"]), 0.02)
+
+
+if __name__ == "__main__":
+    _mpm.main()
