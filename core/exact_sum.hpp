@@ -1,9 +1,9 @@
 // A sum of doubles that does not depend on their order: every addend is added without rounding into a wide
 // fixed-point number. Energies and momenta are therefore the same bits on any ranks, threads and partition.
 //
-// The number is held in 68 limbs of 32 bits, each in a 64-bit integer, from 2^-1088 up; the spare bits take 2^30
-// additions before carries must be passed on, and ranks are combined by adding limbs as integers.
-// After U. Kulisch's long accumulator (Computer Arithmetic and Validity, de Gruyter, 2008).
+// The number is held in 68 limbs of 32 bits, each in a 64-bit integer, from 2^-1088 up; the spare bits take
+// 2^30 additions before carries must be passed on, and ranks are combined by adding limbs as integers. After
+// U. Kulisch's long accumulator (Computer Arithmetic and Validity, de Gruyter, 2008).
 #pragma once
 
 #include <array>

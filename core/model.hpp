@@ -21,18 +21,18 @@ namespace mpm::core {
 /// A body that takes part in the run. Bodies are numbered in the order of the input.
 struct Body {
   std::string name;
-  int component = 0;                                   ///< index into the scene's components
-  int material = 0;                                    ///< index into the scene's materials
+  int component = 0;  ///< index into the scene's components
+  int material = 0;   ///< index into the scene's materials
   const ConstitutiveModel* model = nullptr;
   std::optional<Vec3<double>> prescribed_velocity;
   bool no_output = false;
-  std::unique_ptr<BlockPool> pool;                     ///< this rank's particles of the body
+  std::unique_ptr<BlockPool> pool;  ///< this rank's particles of the body
 };
 
 struct Clock {
-  std::int64_t step = 0;    ///< steps done
-  double time = 0;          ///< of the state that the particles hold
-  double dt = 0;            ///< of the last step
+  std::int64_t step = 0;  ///< steps done
+  double time = 0;        ///< of the state that the particles hold
+  double dt = 0;          ///< of the last step
   /// Largest stable step for the state reached, factor not included; 0 before the first estimate.
   double critical_dt = 0;
   double first_critical_dt = 0;  ///< for TimeStep const="1"
@@ -40,15 +40,15 @@ struct Clock {
 
 /// What has come in and gone out since time zero. Exact sums: the same on any ranks.
 struct Books {
-  ExactSum external_work;                  ///< by gravity, prescribed velocities and damping; energy
-  ExactSum removed_mass;                   ///< of particles that left the grid or were eroded
+  ExactSum external_work;  ///< by gravity, prescribed velocities and damping; energy
+  ExactSum removed_mass;   ///< of particles that left the grid or were eroded
   ExactSum removed_kinetic;
   ExactSum removed_internal;
-  std::int64_t left_grid = 0;              ///< particles; on this rank
+  std::int64_t left_grid = 0;  ///< particles; on this rank
   std::int64_t eroded = 0;
   std::int64_t failed = 0;
   std::int64_t velocity_limited = 0;
-  MaterialEvents events;                   ///< since time zero, on this rank
+  MaterialEvents events;                             ///< since time zero, on this rank
   std::vector<std::int64_t> body_eroded, body_left;  ///< per body, on this rank
 };
 
@@ -60,7 +60,7 @@ struct Model {
   std::unique_ptr<BrickGrid> grid;
   Clock clock;
   Books books;
-  double initial_energy = 0;               ///< kinetic + internal at time zero
+  double initial_energy = 0;  ///< kinetic + internal at time zero
   std::uint64_t next_identity = 0;
 
   std::size_t local_particles() const {

@@ -31,14 +31,16 @@ std::string find_restart(const std::string& named, const parallel::Communicator&
     for (const std::string& notice : notices) std::fprintf(stderr, "%s\n", notice.c_str());
   }
   if (newest && job == path.stem().string()) return *newest;
-  throw io::FileError("cannot read " + named + ": no such file" +
-                      (newest ? "; the newest restart file of the job is " + *newest : "; nothing was started"));
+  throw io::FileError(
+      "cannot read " + named + ": no such file" +
+      (newest ? "; the newest restart file of the job is " + *newest : "; nothing was started"));
 }
 
 Case parsed(const std::string& bytes, const std::string& path) {
   Case c;
   c.bytes = bytes;
-  c.scene = std::make_shared<const core::Scene>(io::parse_scene(bytes, path, physics::catalogue(), {.check_files = false}));
+  c.scene = std::make_shared<const core::Scene>(
+      io::parse_scene(bytes, path, physics::catalogue(), {.check_files = false}));
   return c;
 }
 
@@ -59,7 +61,8 @@ Case from_input(const std::string& job, const parallel::Communicator& world) {
 Case load_case(const RunOptions& options, const parallel::Communicator& world) {
   if (!is_restart(options.job)) {
     if (options.restart_input) {
-      throw core::InputErrors(core::SourceLocation{options.job, 0}, "-rt", "needs a restart file (Job_<step>.pe) to start from");
+      throw core::InputErrors(core::SourceLocation{options.job, 0}, "-rt",
+                              "needs a restart file (Job_<step>.pe) to start from");
     }
     return from_input(options.job, world);
   }
@@ -89,14 +92,17 @@ std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core:
 
 ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world) {
   if (!is_restart(options.job)) {
-    throw core::InputErrors(core::SourceLocation{options.job, 0}, "-h5pt", "converts a restart file: name a Job_<step>.pe");
+    throw core::InputErrors(core::SourceLocation{options.job, 0}, "-h5pt",
+                            "converts a restart file: name a Job_<step>.pe");
   }
   const std::string restart = find_restart(options.job, world);
   const Case c = load_case(options, world);
   std::vector<io::Variable> variables;
-  if (c.scene->output.post_processing) variables = io::variables_of(c.scene->output.post_processing->variables);
+  if (c.scene->output.post_processing)
+    variables = io::variables_of(c.scene->output.post_processing->variables);
   parallel::MpiExchange exchange(world);
-  const std::string target = options.output_dir + "/" + std::filesystem::path(restart).stem().string() + ".h5part";
+  const std::string target =
+      options.output_dir + "/" + std::filesystem::path(restart).stem().string() + ".h5part";
   io::together(exchange, [&] {
     if (exchange.rank() == 0) io::make_folder(options.output_dir);
   });

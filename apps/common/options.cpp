@@ -1,9 +1,10 @@
 #include "apps/common/options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <sstream>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "core/version.hpp"
 
@@ -37,17 +38,24 @@ ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
   ParsedOptions parsed;
   RunOptions& o = parsed.options;
   CLI::App app("Material point method for extreme deformation.", "mpm_run");
-  app.footer("Exit codes: 0 done, 2 wrong input, 3 numerical failure, 4 stopped early (a restart file is there), 5 file error.\n"
-             "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and leave.");
+  app.footer(
+      "Exit codes: 0 done, 2 wrong input, 3 numerical failure, 4 stopped early (a restart file is there), 5 "
+      "file error.\n"
+      "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and leave.");
   app.set_version_flag("--version", std::string(core::version) + " (" + std::string(core::git_hash) + ")");
-  app.add_option("job", o.job, "input file Job.xmp (the ending may be left out) or restart file Job_<step>.pe")->required();
+  app.add_option("job", o.job,
+                 "input file Job.xmp (the ending may be left out) or restart file Job_<step>.pe")
+      ->required();
   app.add_option("--output-dir", o.output_dir, "folder for all files")->capture_default_str();
   app.add_flag("--dry-run", o.dry_run, "read, check, discretise, report what the run needs, and leave");
   app.add_flag("--h5pt", o.to_h5part, "(-h5pt) convert a restart file to H5Part and leave");
   app.add_flag("--lsdyna", o.lsdyna, "(-lsdyna) write the particles as LS-DYNA SPH data too");
-  app.add_option("--rt", o.restart_input, "(-rt) restart with another Grid, Solution, Output, Deactive from this .xmp");
-  app.add_option("--nsteps", o.status_rows, "(-nsteps) stop after so many rows of the .sta file")->check(more_than_zero());
-  app.add_option("--max-wall-time", o.max_wall_time, "seconds after which a restart file is written and the run stops")
+  app.add_option("--rt", o.restart_input,
+                 "(-rt) restart with another Grid, Solution, Output, Deactive from this .xmp");
+  app.add_option("--nsteps", o.status_rows, "(-nsteps) stop after so many rows of the .sta file")
+      ->check(more_than_zero());
+  app.add_option("--max-wall-time", o.max_wall_time,
+                 "seconds after which a restart file is written and the run stops")
       ->check(more_than_zero());
   try {
     app.parse(words);

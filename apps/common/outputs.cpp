@@ -1,9 +1,9 @@
 #include "apps/common/outputs.hpp"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "io/output/variables.hpp"
 
@@ -18,7 +18,8 @@ double wall() {
 std::string duration(double seconds) {
   if (!std::isfinite(seconds)) return "-";
   const auto s = static_cast<long>(seconds + 0.5);
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
 std::optional<double> time_of(const std::optional<Continuation>& from, const core::Model& model) {
@@ -50,13 +51,15 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
   using Vtk = core::PostProcessingInput::Vtk;
   pictures_ = Interval(post.time_interval, model.clock.time);
   if (post.h5part) {
-    h5part_.emplace(io::H5PartWriter::Settings{stem_ + ".h5part", variables, false, time_of(from, model)}, model, exchange);
+    h5part_.emplace(io::H5PartWriter::Settings{stem_ + ".h5part", variables, false, time_of(from, model)},
+                    model, exchange);
     if (!h5part_->notice().empty()) log_.warn("{}", h5part_->notice());
   }
   if (post.vtk != Vtk::none) {
-    vtu_.emplace(io::VtuWriter::Settings{folder, model.scene->provenance.job_name, post.vtk == Vtk::file_per_body, variables,
-                                         false, time_of(from, model)},
-                 model, exchange);
+    vtu_.emplace(
+        io::VtuWriter::Settings{folder, model.scene->provenance.job_name, post.vtk == Vtk::file_per_body,
+                                variables, false, time_of(from, model)},
+        model, exchange);
   }
 }
 
@@ -90,16 +93,17 @@ const core::Totals& Outputs::report(const core::Model& model, core::Exchange& ex
   const double end = model.scene->solution.end_time;
   const core::EnergyBalance balance = core::energy_balance(totals_, model.initial_energy);
   if (report_step_ < 0) {
-    log_.say("{:>9} {:>12} {:>10} {:>14} {:>14} {:>10} {:>9} {:>6} {:>8}", "step", "time", "dt", "kinetic", "internal",
-             "drift", "particles", "done", "left");
+    log_.say("{:>9} {:>12} {:>10} {:>14} {:>14} {:>10} {:>9} {:>6} {:>8}", "step", "time", "dt", "kinetic",
+             "internal", "drift", "particles", "done", "left");
   }
   const double part = (clock.time - start_time_) / (end - start_time_);
   const double left = part > 0 ? (wall() - wall_start_) * (1 - part) / part : std::nan("");
-  log_.say("{:>9} {:>12.5g} {:>10.3g} {:>14.8g} {:>14.8g} {:>10.2e} {:>9} {:>5.1f}% {:>8}", clock.step, clock.time, clock.dt,
-           totals_.kinetic, totals_.internal, balance.relative_drift, totals_.particles, 100 * clock.time / end,
-           duration(left));
+  log_.say("{:>9} {:>12.5g} {:>10.3g} {:>14.8g} {:>14.8g} {:>10.2e} {:>9} {:>5.1f}% {:>8}", clock.step,
+           clock.time, clock.dt, totals_.kinetic, totals_.internal, balance.relative_drift, totals_.particles,
+           100 * clock.time / end, duration(left));
   if (momentum_) {
-    log_.say("{:>9} momentum {:.10g} {:.10g} {:.10g}", "", totals_.momentum.x, totals_.momentum.y, totals_.momentum.z);
+    log_.say("{:>9} momentum {:.10g} {:.10g} {:.10g}", "", totals_.momentum.x, totals_.momentum.y,
+             totals_.momentum.z);
   }
   log_.flush(exchange);
   report_.done(clock.time);

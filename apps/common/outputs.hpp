@@ -1,5 +1,5 @@
-// Everything that a run writes while it goes on, each at its own interval of simulated time. What a scene does not
-// ask for is not created.
+// Everything that a run writes while it goes on, each at its own interval of simulated time. What a scene
+// does not ask for is not created.
 #pragma once
 
 #include <optional>

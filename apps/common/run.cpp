@@ -1,14 +1,14 @@
 #include "apps/common/run.hpp"
 
-#include <fmt/format.h>
-#include <omp.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+
+#include <fmt/format.h>
+#include <omp.h>
 
 #include "apps/common/case.hpp"
 #include "apps/common/outputs.hpp"
@@ -29,7 +29,8 @@ namespace mpm::apps {
 
 namespace {
 
-/// Threads per rank: the scene's word, else the environment's, else one; so many ranks on few cores stay quick.
+/// Threads per rank: the scene's word, else the environment's, else one; so many ranks on few cores stay
+/// quick.
 int choose_threads(const core::Scene& scene) {
   const bool environment = std::getenv("OMP_NUM_THREADS") != nullptr;
   const int threads = scene.solution.threads.value_or(environment ? omp_get_max_threads() : 1);
@@ -38,12 +39,14 @@ int choose_threads(const core::Scene& scene) {
 }
 
 std::string bytes_in_words(double bytes) {
-  return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3)
-                     : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
+  return bytes < 1e6   ? fmt::format("{:.1f} kB", bytes / 1e3)
+         : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6)
+                       : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
 /// What the scene pays for, in the words of a dry run and of the log's head.
-void describe(const core::Model& model, const core::Stepper& stepper, core::Exchange& exchange, int threads, io::Log& log) {
+void describe(const core::Model& model, const core::Stepper& stepper, core::Exchange& exchange, int threads,
+              io::Log& log) {
   const core::GridGeometry& g = model.grid->geometry();
   std::int64_t counts[2] = {static_cast<std::int64_t>(model.local_particles()), model.grid->owned()};
   const auto particles = exchange.spread(static_cast<double>(counts[0]));
@@ -53,10 +56,10 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
   }
   const auto memory = exchange.spread(state + static_cast<double>(model.grid->node_bytes()));
   exchange.sum(std::span<std::int64_t>(counts));
-  log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use", g.cells[0],
-          g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
-  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0], exchange.size(), threads,
-          particles.min, particles.max);
+  log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use",
+          g.cells[0], g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
+  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0], exchange.size(),
+          threads, particles.min, particles.max);
   log.say("memory     {} for state and nodes on the fullest rank", bytes_in_words(memory.max));
   const int common = core::ColumnSet::mechanics().size();
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -64,32 +67,38 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
     const core::ColumnLayout& layout = body.pool->layout();
     std::string more;
     for (int c = common; c < core::column_count; ++c) {
-      if (layout.has(static_cast<core::Column>(c))) more += fmt::format(" {}", core::name_of(static_cast<core::Column>(c)));
+      if (layout.has(static_cast<core::Column>(c)))
+        more += fmt::format(" {}", core::name_of(static_cast<core::Column>(c)));
     }
-    log.say("body       \"{}\" of \"{}\": {} bytes a particle{}{}", body.name, body.model->name(), layout.bytes_per_particle(),
-            more.empty() ? "" : ", beyond the mechanics", more);
+    log.say("body       \"{}\" of \"{}\": {} bytes a particle{}{}", body.name, body.model->name(),
+            layout.bytes_per_particle(), more.empty() ? "" : ", beyond the mechanics", more);
   }
   std::string phases;
   for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
   log.say("step       {}", phases);
-  log.say("time step  critical {:.6g}, to {:.6g} at the end", model.clock.critical_dt, model.scene->solution.end_time);
+  log.say("time step  critical {:.6g}, to {:.6g} at the end", model.clock.critical_dt,
+          model.scene->solution.end_time);
 }
 
 /// What the input asks for that makes no difference to this run: said, so that nobody waits for it.
 void say_what_is_idle(const core::Scene& scene, io::Log& log) {
-  if (!scene.frictions.empty() && !scene.contact.enable) log.note("note       Friction acts in contact only, and Contact is off");
-  if (scene.grid.dynamic_cell.enable) log.note("note       DynamicCell changes nothing: only cells with particles are ever stored");
+  if (!scene.frictions.empty() && !scene.contact.enable)
+    log.note("note       Friction acts in contact only, and Contact is off");
+  if (scene.grid.dynamic_cell.enable)
+    log.note("note       DynamicCell changes nothing: only cells with particles are ever stored");
   if (!scene.output.summary) log.note("note       no summary file: Summary enable=\"0\"");
 }
 
 /// One run in its stages; the members are in the order in which they come to life.
 class Run {
  public:
-  Run(const RunOptions& options, const parallel::Communicator& world) : options_(options), exchange_(world), case_(load_case(options, world)) {
+  Run(const RunOptions& options, const parallel::Communicator& world)
+      : options_(options), exchange_(world), case_(load_case(options, world)) {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
     core::check_decomposition(case_.scene->decomposition, exchange_.size());
-    model_ = core::prepare_model(case_.scene, make_materials(*case_.scene), io::columns_for(case_.scene->output));
+    model_ =
+        core::prepare_model(case_.scene, make_materials(*case_.scene), io::columns_for(case_.scene->output));
     std::vector<std::string> notices;
     if (case_.restart) {
       const io::RestartResult state = io::read_restart(*case_.restart, model_, exchange_);
@@ -103,7 +112,9 @@ class Run {
     // Nothing is written before all that can be wrong with the input is known not to be.
     open_log();
     for (const std::string& notice : notices) log_->warn("{}", notice);
-    if (case_.restart) log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step, model_.clock.time);
+    if (case_.restart)
+      log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step,
+                model_.clock.time);
     stepper_.emplace(model_, exchange_);
     describe(model_, *stepper_, exchange_, threads_, *log_);
     say_what_is_idle(*case_.scene, *log_);
@@ -148,7 +159,8 @@ class Run {
     io::together(exchange_, [&] {
       if (exchange_.rank() != 0) return;
       io::make_folder(options_.output_dir);
-      if (!options_.dry_run) io::remove_file(file(".summary.json"));  // of an earlier run, should this one not get so far
+      if (!options_.dry_run)
+        io::remove_file(file(".summary.json"));  // of an earlier run, should this one not get so far
     });
     log_.emplace(file(".out"), continues_files() || options_.dry_run, true, exchange_);
     for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
@@ -159,10 +171,12 @@ class Run {
     return options_.output_dir + "/" + case_.scene->provenance.job_name + ending;
   }
 
-  /// A restart goes on with the job's own files; with the input of another job (-rt) it writes under that one's name.
+  /// A restart goes on with the job's own files; with the input of another job (-rt) it writes under that
+  /// one's name.
   bool continues_files() const {
     return case_.restart && !options_.dry_run &&
-           (!options_.restart_input || io::job_of_restart(*case_.restart) == case_.scene->provenance.job_name);
+           (!options_.restart_input ||
+            io::job_of_restart(*case_.restart) == case_.scene->provenance.job_name);
   }
 
   bool status_rows_reached() const {
@@ -189,9 +203,12 @@ class Run {
         save();
         restart_.done(model_.clock.time);
       }
-      if (stepper_->stop_agreed()) return noted_signal() != 0 ? fmt::format("signal {}", noted_signal()) : "asked to stop: signal or --max-wall-time";
+      if (stepper_->stop_agreed())
+        return noted_signal() != 0 ? fmt::format("signal {}", noted_signal())
+                                   : "asked to stop: signal or --max-wall-time";
       if (status_rows_reached()) return fmt::format("{} rows in the .sta file", outputs_->status_rows());
-      if (watch_->near_boundary(model_, exchange_)) return "a particle is next to an open boundary of the grid";
+      if (watch_->near_boundary(model_, exchange_))
+        return "a particle is next to an open boundary of the grid";
     }
     return {};
   }
@@ -212,14 +229,19 @@ class Run {
     report.seconds_setup = setup_seconds_;
     report.seconds_loop = loop_seconds;
     report.seconds_output = outputs_->seconds();
-    for (const core::Phase& p : stepper_->phases()) report.phases.emplace_back(p.name, exchange_.spread(p.seconds));
+    for (const core::Phase& p : stepper_->phases())
+      report.phases.emplace_back(p.name, exchange_.spread(p.seconds));
     report.particle_steps = exchange_.spread(particle_steps_).mean * exchange_.size();
     const core::Totals totals = core::compute_totals(model_, exchange_);
     log_->say("\n{}", io::timing_table(report));
-    log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads", io::state_hash(model_, exchange_));
+    log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads",
+              io::state_hash(model_, exchange_));
     if (totals.left_grid > 0 || totals.eroded > 0) {
-      log_->say("{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal energy {:.6g} went with them",
-                totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic, totals.removed_internal);
+      log_->say(
+          "{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal "
+          "energy {:.6g} went with them",
+          totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic,
+          totals.removed_internal);
     }
     if (status == "failed") {
       log_->say("FAILED     {}", reason);
@@ -260,8 +282,9 @@ class Run {
 
 ExitCode run(const RunOptions& options, const parallel::Communicator& world) {
   if (options.lsdyna) {
-    throw core::InputErrors(core::SourceLocation{options.job, 0}, "-lsdyna",
-                            "known, but not implemented yet: leave the option out; .h5part and .vtu files hold the particles");
+    throw core::InputErrors(
+        core::SourceLocation{options.job, 0}, "-lsdyna",
+        "known, but not implemented yet: leave the option out; .h5part and .vtu files hold the particles");
   }
   if (options.to_h5part) return convert_restart(options, world);
   if (!options.dry_run) watch_signals();

@@ -1,26 +1,25 @@
 #include "apps/common/watch.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace mpm::apps {
 
-void Watch::after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Exchange& exchange,
-                       io::Log& log) {
+void Watch::after_step(const core::Model& model, const core::Stepper::Incidents& mine,
+                       core::Exchange& exchange, io::Log& log) {
   if (!warn_.negative_internal_energy && !warn_.negative_volume && !warn_.outside_grid) return;
   std::int64_t counts[3] = {warn_.negative_internal_energy ? mine.events.negative_energy : 0,
                             warn_.negative_volume ? mine.events.negative_volume : 0,
                             warn_.outside_grid ? mine.left_grid : 0};
   exchange.sum(std::span<std::int64_t>(counts));
-  static constexpr const char* words[3] = {"with internal energy below zero", "whose volume would have vanished",
-                                           "left the grid"};
+  static constexpr const char* words[3] = {"with internal energy below zero",
+                                           "whose volume would have vanished", "left the grid"};
   for (int i = 0; i < 3; ++i) {
     if (counts[i] == 0) continue;
-    std::string text = fmt::format("step {}, time {:.6g}: {} particle(s) {}", model.clock.step, model.clock.time, counts[i], words[i]);
-    if (i == 2) {
-      text += "; the first: " + core::first_of_all(exchange, mine.first_left).words;
-    }
+    std::string text = fmt::format("step {}, time {:.6g}: {} particle(s) {}", model.clock.step,
+                                   model.clock.time, counts[i], words[i]);
+    if (i == 2) { text += "; the first: " + core::first_of_all(exchange, mine.first_left).words; }
     if (warn_.level == core::WarnInput::Level::stop) throw core::NumericalFailure(text);
     if (warn_.level == core::WarnInput::Level::per_particle && warned_[i]) continue;
     warned_[i] = true;
@@ -32,8 +31,9 @@ void Watch::after_report(const core::Model& model, const core::Totals& totals) c
   if (!scene_.solution.energy_fraction) return;
   const double drift = core::energy_balance(totals, model.initial_energy).relative_drift;
   if (std::abs(drift) <= *scene_.solution.energy_fraction) return;
-  throw core::NumericalFailure(fmt::format("step {}, time {:.6g}: the total energy is off by {:.3g} of itself, more than EnergyFraction {:.3g}",
-                                           model.clock.step, model.clock.time, drift, *scene_.solution.energy_fraction));
+  throw core::NumericalFailure(fmt::format(
+      "step {}, time {:.6g}: the total energy is off by {:.3g} of itself, more than EnergyFraction {:.3g}",
+      model.clock.step, model.clock.time, drift, *scene_.solution.energy_fraction));
 }
 
 bool Watch::near_boundary(const core::Model& model, core::Exchange& exchange) const {

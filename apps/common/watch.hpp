@@ -16,11 +16,12 @@ class Watch {
   explicit Watch(const core::Scene& scene) : warn_(scene.solution.warn), scene_(scene) {}
 
   /// Warnings of the step just done. Throws core::NumericalFailure at level 2, on every rank. Collective.
-  void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Exchange& exchange, io::Log& log);
+  void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Exchange& exchange,
+                  io::Log& log);
   /// Throws core::NumericalFailure if the energy error exceeds EnergyFraction, on every rank.
   void after_report(const core::Model& model, const core::Totals& totals) const;
-  /// True, on all ranks, if the scene wants to stop near the boundary and a particle is in the outermost cells of an
-  /// open face. Collective.
+  /// True, on all ranks, if the scene wants to stop near the boundary and a particle is in the outermost
+  /// cells of an open face. Collective.
   bool near_boundary(const core::Model& model, core::Exchange& exchange) const;
 
  private:

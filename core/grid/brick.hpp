@@ -1,8 +1,9 @@
 // Bricks: blocks of 4 x 4 x 4 cells of the background grid. Only bricks with particles exist.
 //
 // A brick owns a copy of every node that its particles touch: 5 x 5 x 5 with linear shape functions, more by
-// `halo` on each side with wider ones. Nodes on the faces exist in every brick that shares them; all copies are
-// summed from the same contributions in the same order, so they agree to the last bit without being exchanged.
+// `halo` on each side with wider ones. Nodes on the faces exist in every brick that shares them; all copies
+// are summed from the same contributions in the same order, so they agree to the last bit without being
+// exchanged.
 #pragma once
 
 #include <array>
@@ -45,12 +46,12 @@ constexpr BrickCoord neighbour_offset(int n) { return {n % 3 - 1, (n / 3) % 3 - 
 
 /// The regular background grid: where nodes are, and what its faces do.
 struct GridGeometry {
-  Vec3<double> origin{};                    ///< lower corner, length
-  Vec3<double> cell{};                      ///< cell edges, length
+  Vec3<double> origin{};  ///< lower corner, length
+  Vec3<double> cell{};    ///< cell edges, length
   Vec3<double> inverse_cell{};
-  std::array<std::int64_t, 3> cells{};      ///< along each axis; nodes are one more
-  std::array<Boundary, 6> boundary{};       ///< x lower, x upper, y lower, ...
-  double mass_cutoff = 0;                   ///< mass below which a node is left out
+  std::array<std::int64_t, 3> cells{};  ///< along each axis; nodes are one more
+  std::array<Boundary, 6> boundary{};   ///< x lower, x upper, y lower, ...
+  double mass_cutoff = 0;               ///< mass below which a node is left out
 
   double smallest_cell() const { return std::fmin(cell.x, std::fmin(cell.y, cell.z)); }
   double cell_volume() const { return cell.x * cell.y * cell.z; }
@@ -95,10 +96,13 @@ struct NodeBlockShape {
   int index(int i, int j, int k) const { return (i + halo) + side() * ((j + halo) + side() * (k + halo)); }
 };
 
-/// A scheme maps to the nodes twice per step at most, and the first sums are still wanted after the second map:
-/// so there are two arrays. Records of the first: momentum 3, mass, force 3, (free); of the second: momentum 3, mass.
+/// A scheme maps to the nodes twice per step at most, and the first sums are still wanted after the second
+/// map: so there are two arrays. Records of the first: momentum 3, mass, force 3, (free); of the second:
+/// momentum 3, mass.
 enum class NodeArray { first, second };
 inline constexpr int node_doubles = 8;
-constexpr int record_doubles(NodeArray of) { return of == NodeArray::first ? node_doubles : node_doubles / 2; }
+constexpr int record_doubles(NodeArray of) {
+  return of == NodeArray::first ? node_doubles : node_doubles / 2;
+}
 
 }  // namespace mpm::core

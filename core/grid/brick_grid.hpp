@@ -1,7 +1,7 @@
 // The bricks of one rank: which exist, who their neighbours are, and what each adds to its nodes.
 //
-// Slots 0 .. owned()-1 are this rank's bricks, those that touch another rank's first; slots from owned() on are
-// ghosts: other ranks' bricks next to ours, of which only the contributions to shared nodes are kept.
+// Slots 0 .. owned()-1 are this rank's bricks, those that touch another rank's first; slots from owned() on
+// are ghosts: other ranks' bricks next to ours, of which only the contributions to shared nodes are kept.
 #pragma once
 
 #include <array>
@@ -75,7 +75,9 @@ class BrickGrid {
   void reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts);
 
   /// What the slot's own particles add to its nodes: shape().nodes() records of record_doubles(of).
-  double* contributions(NodeArray of, Slot s) { return array(of).data() + stride(of) * static_cast<std::size_t>(s); }
+  double* contributions(NodeArray of, Slot s) {
+    return array(of).data() + stride(of) * static_cast<std::size_t>(s);
+  }
   const double* contributions(NodeArray of, Slot s) const {
     return array(of).data() + stride(of) * static_cast<std::size_t>(s);
   }
@@ -84,7 +86,9 @@ class BrickGrid {
   std::uint64_t revision() const { return revision_; }
 
  private:
-  std::size_t stride(NodeArray of) const { return static_cast<std::size_t>(shape_.nodes() * record_doubles(of)); }
+  std::size_t stride(NodeArray of) const {
+    return static_cast<std::size_t>(shape_.nodes() * record_doubles(of));
+  }
   AlignedDoubles& array(NodeArray of) { return of == NodeArray::first ? first_ : second_; }
   const AlignedDoubles& array(NodeArray of) const { return of == NodeArray::first ? first_ : second_; }
 

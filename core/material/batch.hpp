@@ -16,12 +16,12 @@ using Row = double[batch_particles];
 
 /// What a material adds to the counts of a step. Summed over batches, so integers.
 struct MaterialEvents {
-  long failed = 0;             ///< particles that failed in this step
-  long negative_energy = 0;    ///< internal energy below zero (Warn ie)
-  long negative_volume = 0;    ///< volume that would have become <= 0 (Warn vol)
-  long volume_limited = 0;     ///< volumes held by Volume min/max
-  long not_finite = 0;         ///< stress, energy or volume that is no number
-  long undefined_root = 0;     ///< squares of the sound speed below zero, and the like
+  long failed = 0;           ///< particles that failed in this step
+  long negative_energy = 0;  ///< internal energy below zero (Warn ie)
+  long negative_volume = 0;  ///< volume that would have become <= 0 (Warn vol)
+  long volume_limited = 0;   ///< volumes held by Volume min/max
+  long not_finite = 0;       ///< stress, energy or volume that is no number
+  long undefined_root = 0;   ///< squares of the sound speed below zero, and the like
   MaterialEvents& operator+=(const MaterialEvents& o) {
     failed += o.failed;
     negative_energy += o.negative_energy;
@@ -36,26 +36,26 @@ struct MaterialEvents {
 struct Batch {
   // --- set by the caller ---
   const ColumnLayout* layout = nullptr;
-  int blocks = 0;                        ///< blocks in use
-  int particles = 0;                     ///< lanes in use; the rest of the last block repeats lane 0's kinematics
-  double* block[batch_blocks] = {};      ///< start of each block
-  double time = 0;                       ///< at the end of the step
+  int blocks = 0;                    ///< blocks in use
+  int particles = 0;                 ///< lanes in use; the rest of the last block repeats lane 0's kinematics
+  double* block[batch_blocks] = {};  ///< start of each block
+  double time = 0;                   ///< at the end of the step
   double dt = 0;
-  double cell_size = 0;                  ///< characteristic length of the artificial viscosity
+  double cell_size = 0;  ///< characteristic length of the artificial viscosity
   /// Velocity gradient, row i column j = d v_i / d x_j, in the order of Mat3.
   alignas(64) Row gradient[9];
   /// Volumetric strain increment of the particle's cell; read for volume update 1 only.
   alignas(64) Row cell_volumetric_strain;
 
   // --- passed between the stages of the material update ---
-  alignas(64) Row volumetric_strain;     ///< trace of the strain increment
-  alignas(64) Row old_volume;            ///< V^n; the column holds V^{n+1} after the kinematic stage
-  alignas(64) Row deviatoric_work;       ///< 1/2 (s^n + s^{n+1}) : strain increment, per current volume
-  alignas(64) Row shear_modulus;         ///< for the wave speed, of the state reached
-  alignas(64) Row shear_viscosity;       ///< for the critical step, s = 2 viscosity D'
+  alignas(64) Row volumetric_strain;  ///< trace of the strain increment
+  alignas(64) Row old_volume;         ///< V^n; the column holds V^{n+1} after the kinematic stage
+  alignas(64) Row deviatoric_work;    ///< 1/2 (s^n + s^{n+1}) : strain increment, per current volume
+  alignas(64) Row shear_modulus;      ///< for the wave speed, of the state reached
+  alignas(64) Row shear_viscosity;    ///< for the critical step, s = 2 viscosity D'
   // --- results beside the columns ---
-  alignas(64) Row sound_speed;           ///< longitudinal wave speed c; filled where the layout has that column
-  alignas(64) Row critical_speed;        ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is not to count
+  alignas(64) Row sound_speed;     ///< longitudinal wave speed c; filled where the layout has that column
+  alignas(64) Row critical_speed;  ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is not to count
   MaterialEvents events;
 
   double* column(Column c, int b) { return block[b] + layout->offset(c); }

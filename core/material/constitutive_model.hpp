@@ -1,5 +1,5 @@
-// What the step knows of a material: which columns it needs, how to start a particle and how to update a batch.
-// The laws themselves live in `physics`; `mpm_point` drives them through this same door.
+// What the step knows of a material: which columns it needs, how to start a particle and how to update a
+// batch. The laws themselves live in `physics`; `mpm_point` drives them through this same door.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace mpm::core {
 
 /// Settings of the run that reach into the update of a material point.
 struct UpdateOptions {
-  int volume_update = 0;              ///< Volume@update_type, 0..4
-  double volume_min = 0;              ///< times the volume at reference density; 0: off
-  double volume_max = 0;              ///< as volume_min
+  int volume_update = 0;                ///< Volume@update_type, 0..4
+  double volume_min = 0;                ///< times the volume at reference density; 0: off
+  double volume_max = 0;                ///< as volume_min
   bool viscosity_in_wave_speed = true;  ///< false for TimeStep@NotConsiderVisForCp
-  bool keep_strain = false;           ///< accumulate the strain columns (volume update 4, outputs exx..)
+  bool keep_strain = false;             ///< accumulate the strain columns (volume update 4, outputs exx..)
 };
 
 class ConstitutiveModel {

@@ -1,9 +1,9 @@
 #include "core/particles/block_pool.hpp"
 
-#include <sys/mman.h>
-
 #include <cstring>
 #include <new>
+
+#include <sys/mman.h>
 
 namespace mpm::core {
 
@@ -24,7 +24,8 @@ BlockIndex BlockPool::allocate() {
     free_.pop_back();
   } else {
     if (next_ % slab_blocks == 0) {
-      const std::size_t bytes = sizeof(double) * slab_blocks * static_cast<std::size_t>(layout_.block_doubles());
+      const std::size_t bytes =
+          sizeof(double) * slab_blocks * static_cast<std::size_t>(layout_.block_doubles());
       constexpr std::size_t alignment = std::size_t{1} << 21;  // a huge page
       void* p = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
       if (p == nullptr) throw std::bad_alloc();
@@ -69,9 +70,7 @@ void remove_swapping(BlockPool& pool, Cohort& cohort, std::uint32_t index) {
   const std::uint32_t last = cohort.count - 1;
   double* to = pool.block(cohort.blocks[index / block_lanes]) + index % block_lanes;
   double* from = pool.block(cohort.blocks[last / block_lanes]) + last % block_lanes;
-  for (int c = 0; c < pool.layout().columns(); ++c) {
-    to[block_lanes * c] = from[block_lanes * c];
-  }
+  for (int c = 0; c < pool.layout().columns(); ++c) { to[block_lanes * c] = from[block_lanes * c]; }
   cohort.count = last;
   if (last % block_lanes == 0) {
     pool.release(cohort.blocks.back());

@@ -1,13 +1,13 @@
 #include "core/setup/build_model.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <map>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include "core/discretise/seeds.hpp"
 #include "core/step/migration.hpp"
@@ -18,10 +18,11 @@ namespace mpm::core {
 
 namespace {
 
-constexpr std::int64_t most_cells = std::int64_t{brick_cells} << 20;  // brick coordinates have 21 bits, one of them spare
-constexpr std::uint64_t units_in_run = 16;                            // of a body, that one rank makes in one go
-constexpr std::size_t seeds_in_piece = 1 << 16;                       // seeds that a rank makes between two sends
-constexpr double exact_integers = 9007199254740992.0;                  // identities are kept in doubles, 2^53
+constexpr std::int64_t most_cells = std::int64_t{brick_cells}
+                                    << 20;             // brick coordinates have 21 bits, one of them spare
+constexpr std::uint64_t units_in_run = 16;             // of a body, that one rank makes in one go
+constexpr std::size_t seeds_in_piece = 1 << 16;        // seeds that a rank makes between two sends
+constexpr double exact_integers = 9007199254740992.0;  // identities are kept in doubles, 2^53
 
 /// The bodies of the scene that take part, in the order of the input.
 template <class F>
@@ -45,7 +46,8 @@ void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
   const std::uint64_t units = source.units();
   const auto stride = units_in_run * static_cast<std::uint64_t>(ranks);
   std::vector<Seed> seeds;
-  for (std::uint64_t first = units_in_run * static_cast<std::uint64_t>(rank); first < units; first += stride) {
+  for (std::uint64_t first = units_in_run * static_cast<std::uint64_t>(rank); first < units;
+       first += stride) {
     source.generate(first, std::min(first + units_in_run, units), seeds);
     if (seeds.size() >= seeds_in_piece || first + stride >= units) {
       f(seeds);
@@ -57,10 +59,13 @@ void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
 void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
                   double identity, std::vector<double>& columns) {
   columns.assign(static_cast<std::size_t>(layout.columns()), 0.0);
-  const auto set = [&](Column c, double v) { columns[static_cast<std::size_t>(layout.offset(c) / block_lanes)] = v; };
+  const auto set = [&](Column c, double v) {
+    columns[static_cast<std::size_t>(layout.offset(c) / block_lanes)] = v;
+  };
   for (int a = 0; a < 3; ++a) {
     set(next(Column::position_x, a), seed.position[static_cast<std::size_t>(a)]);
-    const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a] : input.initial_velocity[static_cast<std::size_t>(a)];
+    const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a]
+                                              : input.initial_velocity[static_cast<std::size_t>(a)];
     set(next(Column::velocity_x, a), v);
   }
   set(Column::mass, seed.mass);
@@ -89,8 +94,9 @@ Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSou
         }
         ++census.outside;
         if (census.first_outside.empty()) {
-          census.first_outside = fmt::format("{}:{}: <Body name=\"{}\">: a particle at ({:.6g}, {:.6g}, {:.6g})",
-                                             inputs[b]->source.file, inputs[b]->source.line, inputs[b]->name, x.x, x.y, x.z);
+          census.first_outside =
+              fmt::format("{}:{}: <Body name=\"{}\">: a particle at ({:.6g}, {:.6g}, {:.6g})",
+                          inputs[b]->source.file, inputs[b]->source.line, inputs[b]->name, x.x, x.y, x.z);
         }
       }
     });
@@ -107,29 +113,33 @@ void refuse_outside(const Model& model, const Census& census, Exchange& exchange
   for (const std::string& line : exchange.gather(census.first_outside)) {
     if (first.empty()) first = line;
   }
-  throw InputErrors(model.scene->grid.source, "Grid",
-                    fmt::format("{} particles lie outside the grid [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]; "
-                                "enlarge the grid or move the body. The first: {}",
-                                outside[0], g.origin.x, g.origin.x + double(g.cells[0]) * g.cell.x, g.origin.y,
-                                g.origin.y + double(g.cells[1]) * g.cell.y, g.origin.z,
-                                g.origin.z + double(g.cells[2]) * g.cell.z, first));
+  throw InputErrors(
+      model.scene->grid.source, "Grid",
+      fmt::format("{} particles lie outside the grid [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]; "
+                  "enlarge the grid or move the body. The first: {}",
+                  outside[0], g.origin.x, g.origin.x + double(g.cells[0]) * g.cell.x, g.origin.y,
+                  g.origin.y + double(g.cells[1]) * g.cell.y, g.origin.z,
+                  g.origin.z + double(g.cells[2]) * g.cell.z, first));
 }
 
 void refuse_too_large(const Model& model, const ModelPlan& plan, double identities, Exchange& exchange) {
   if (identities >= exact_integers) {
-    throw InputErrors(model.scene->components.front().source, "Component",
-                      fmt::format("the bodies ask for about {:.3g} particles, more than can be told apart (2^53); "
-                                  "use a larger dp", plan.particles));
+    throw InputErrors(
+        model.scene->components.front().source, "Component",
+        fmt::format("the bodies ask for about {:.3g} particles, more than can be told apart (2^53); "
+                    "use a larger dp",
+                    plan.particles));
   }
   // State, and half as much again for nodes and what is on its way.
   const double needed = 1.5 * plan.state_bytes / exchange.size();
   double shortest[1] = {available_memory() / std::max(1.0, exchange.spread(1).mean * exchange.size())};
   exchange.minimum(shortest);
   if (needed > shortest[0]) {
-    throw InputErrors(model.scene->components.front().source, "Component",
-                      fmt::format("about {:.3g} particles need {:.3g} GiB per rank, but only {:.3g} GiB are free; "
-                                  "use a larger dp or more machines",
-                                  plan.particles, needed / 1073741824.0, shortest[0] / 1073741824.0));
+    throw InputErrors(
+        model.scene->components.front().source, "Component",
+        fmt::format("about {:.3g} particles need {:.3g} GiB per rank, but only {:.3g} GiB are free; "
+                    "use a larger dp or more machines",
+                    plan.particles, needed / 1073741824.0, shortest[0] / 1073741824.0));
   }
 }
 
@@ -190,8 +200,10 @@ void for_each_batch(Model& model, F f) {
         batch.layout = &body.pool->layout();
         batch.cell_size = grid.geometry().smallest_cell();
         batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
-        batch.particles = static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
-        for (int b = 0; b < batch.blocks; ++b) batch.block[b] = body.pool->block(cohort.blocks[first + static_cast<std::size_t>(b)]);
+        batch.particles =
+            static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+        for (int b = 0; b < batch.blocks; ++b)
+          batch.block[b] = body.pool->block(cohort.blocks[first + static_cast<std::size_t>(b)]);
         f(body, batch);
       }
     }
@@ -203,7 +215,8 @@ void for_each_batch(Model& model, F f) {
 GridGeometry geometry_of(const Scene& scene) {
   GridGeometry g;
   double density = 0;
-  for (const MaterialInput& m : scene.materials) density += m.reference_density / static_cast<double>(scene.materials.size());
+  for (const MaterialInput& m : scene.materials)
+    density += m.reference_density / static_cast<double>(scene.materials.size());
   for (int a = 0; a < 3; ++a) {
     const GridAxis& axis = scene.grid.axes[static_cast<std::size_t>(a)];
     g.origin[a] = axis.min;
@@ -213,9 +226,10 @@ GridGeometry geometry_of(const Scene& scene) {
     g.boundary[static_cast<std::size_t>(2 * a)] = axis.lower;
     g.boundary[static_cast<std::size_t>(2 * a + 1)] = axis.upper;
     if (static_cast<std::int64_t>(axis.cells) > most_cells) {
-      throw InputErrors(scene.grid.source, "Grid",
-                        fmt::format("{} cells along {} are more than the {} that a grid may have; use larger cells",
-                                    axis.cells, "xyz"[a], most_cells));
+      throw InputErrors(
+          scene.grid.source, "Grid",
+          fmt::format("{} cells along {} are more than the {} that a grid may have; use larger cells",
+                      axis.cells, "xyz"[a], most_cells));
     }
   }
   g.mass_cutoff = scene.grid.mass_cutoff * density * g.cell_volume();
@@ -233,7 +247,8 @@ double available_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-Model prepare_model(std::shared_ptr<const Scene> scene, std::vector<std::unique_ptr<ConstitutiveModel>> materials,
+Model prepare_model(std::shared_ptr<const Scene> scene,
+                    std::vector<std::unique_ptr<ConstitutiveModel>> materials,
                     const ColumnSet& output_columns) {
   Model model;
   model.scene = scene;
@@ -243,7 +258,8 @@ Model prepare_model(std::shared_ptr<const Scene> scene, std::vector<std::unique_
   model.options.volume_min = solution.volume.min.value_or(0);
   model.options.volume_max = solution.volume.max.value_or(0);
   model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
-  model.options.keep_strain = solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
+  model.options.keep_strain =
+      solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
   model.grid = std::make_unique<BrickGrid>(geometry_of(*scene));
   for_each_body(*scene, [&](int component, const BodyInput& input) {
     Body body;
@@ -314,7 +330,8 @@ void start_clock(Model& model, Exchange& exchange) {
     for (int i = 0; i < batch.particles; ++i) {
       const double* lane = batch.block[i / block_lanes] + i % block_lanes;
       const double* v = lane + layout.offset(Column::velocity_x);
-      const double vv = v[0] * v[0] + v[block_lanes] * v[block_lanes] + v[2 * block_lanes] * v[2 * block_lanes];
+      const double vv =
+          v[0] * v[0] + v[block_lanes] * v[block_lanes] + v[2 * block_lanes] * v[2 * block_lanes];
       const double m = lane[layout.offset(Column::mass)];
       fastest = std::max(fastest, batch.critical_speed[i] + std::sqrt(vv));
       energy.add(0.5 * m * vv);

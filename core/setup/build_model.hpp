@@ -24,12 +24,13 @@ struct BodyPlan {
 struct ModelPlan {
   std::vector<BodyPlan> bodies;
   double particles = 0;
-  double state_bytes = 0;                 ///< all ranks
+  double state_bytes = 0;  ///< all ranks
 };
 
-/// Bodies without particles, an empty grid: enough to know the columns. `output_columns`: what outputs ask for.
-/// Throws InputErrors for what does not fit the grid's limits.
-Model prepare_model(std::shared_ptr<const Scene> scene, std::vector<std::unique_ptr<ConstitutiveModel>> materials,
+/// Bodies without particles, an empty grid: enough to know the columns. `output_columns`: what outputs ask
+/// for. Throws InputErrors for what does not fit the grid's limits.
+Model prepare_model(std::shared_ptr<const Scene> scene,
+                    std::vector<std::unique_ptr<ConstitutiveModel>> materials,
                     const ColumnSet& output_columns);
 
 ModelPlan plan_of(const Model& model);
@@ -37,8 +38,8 @@ ModelPlan plan_of(const Model& model);
 /// Bytes of main memory that this machine has free, shared by the ranks on it.
 double available_memory();
 
-/// Make the particles. Throws InputErrors on every rank together for a body outside the grid, an identity or a
-/// memory range exceeded, and a decomposition that does not fit. Collective.
+/// Make the particles. Throws InputErrors on every rank together for a body outside the grid, an identity or
+/// a memory range exceeded, and a decomposition that does not fit. Collective.
 void discretise(Model& model, Exchange& exchange);
 
 /// First critical step and total energy, from the particles' first state; fills the clock. Collective.

@@ -1,5 +1,5 @@
-// Numbers below 2^-1022 count as zero. Ahead of a wave a stress falls by a factor per cell and step until it is
-// that small, and the processor then takes a hundred times longer for each operation on it.
+// Numbers below 2^-1022 count as zero. Ahead of a wave a stress falls by a factor per cell and step until it
+// is that small, and the processor then takes a hundred times longer for each operation on it.
 #pragma once
 
 #if defined(__SSE2__)

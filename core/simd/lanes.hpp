@@ -71,10 +71,22 @@ struct Lanes {
   friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
   friend Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
   friend Lanes operator-(Lanes a) { return -a.v; }
-  Lanes& operator+=(Lanes b) { v += b.v; return *this; }
-  Lanes& operator-=(Lanes b) { v -= b.v; return *this; }
-  Lanes& operator*=(Lanes b) { v *= b.v; return *this; }
-  Lanes& operator/=(Lanes b) { v /= b.v; return *this; }
+  Lanes& operator+=(Lanes b) {
+    v += b.v;
+    return *this;
+  }
+  Lanes& operator-=(Lanes b) {
+    v -= b.v;
+    return *this;
+  }
+  Lanes& operator*=(Lanes b) {
+    v *= b.v;
+    return *this;
+  }
+  Lanes& operator/=(Lanes b) {
+    v /= b.v;
+    return *this;
+  }
 
   friend Mask operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
   friend Mask operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
@@ -186,9 +198,13 @@ inline Lanes<L> max(Lanes<L> a, Lanes<L> b) {
   return a.v > b.v ? a.v : b.v;
 }
 template <int L>
-inline Lanes<L> min(Lanes<L> a, double b) { return min(a, Lanes<L>(b)); }
+inline Lanes<L> min(Lanes<L> a, double b) {
+  return min(a, Lanes<L>(b));
+}
 template <int L>
-inline Lanes<L> max(Lanes<L> a, double b) { return max(a, Lanes<L>(b)); }
+inline Lanes<L> max(Lanes<L> a, double b) {
+  return max(a, Lanes<L>(b));
+}
 template <int L>
 inline Lanes<L> abs(Lanes<L> a) {
   return max(a, -a);

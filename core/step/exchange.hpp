@@ -47,9 +47,9 @@ class Exchange {
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
-  /// Send our boundary bricks' contributions to shared nodes, components [first, first + count) of the array's
-  /// records, and receive the ghosts'. Between begin and end the boundary bricks' contributions stay untouched.
-  /// Collective.
+  /// Send our boundary bricks' contributions to shared nodes, components [first, first + count) of the
+  /// array's records, and receive the ghosts'. Between begin and end the boundary bricks' contributions stay
+  /// untouched. Collective.
   virtual void begin_halo(BrickGrid& grid, NodeArray of, int first, int count) = 0;
   virtual void end_halo(BrickGrid& grid) = 0;
 
@@ -61,24 +61,26 @@ class Exchange {
   virtual void sum(std::span<std::int64_t> values) = 0;
   virtual void sum(std::span<ExactSum> values) = 0;
 
-  /// Decide who owns which brick, from the number of particles that every rank found in each (several ranks may
-  /// count in one brick), and set up `grid` with the owned and ghost bricks. A decomposition that does not fit
-  /// the ranks throws InputErrors on every rank. Collective.
-  virtual void partition(BrickGrid& grid, std::span<const BrickCount> counts, const DecompositionInput& how) = 0;
+  /// Decide who owns which brick, from the number of particles that every rank found in each (several ranks
+  /// may count in one brick), and set up `grid` with the owned and ghost bricks. A decomposition that does
+  /// not fit the ranks throws InputErrors on every rank. Collective.
+  virtual void partition(BrickGrid& grid, std::span<const BrickCount> counts,
+                         const DecompositionInput& how) = 0;
   /// As migrate, but from anywhere to anywhere. Collective.
   virtual void scatter(const BrickGrid& grid, Travellers& travellers, std::span<const int> columns_of) = 0;
 
-  /// Who owns these bricks, that some rank's particles want to enter and that may not exist yet: bricks that do
-  /// not are given to a rank, the same one whatever the number of askers. All ranks call it with their own list
-  /// (possibly empty); afterwards the owned and ghost bricks of `grid` are up to date. Collective.
+  /// Who owns these bricks, that some rank's particles want to enter and that may not exist yet: bricks that
+  /// do not are given to a rank, the same one whatever the number of askers. All ranks call it with their own
+  /// list (possibly empty); afterwards the owned and ghost bricks of `grid` are up to date. Collective.
   virtual void claim(BrickGrid& grid, std::span<const BrickCoord> wanted) = 0;
   /// Forget these empty bricks of ours, and whatever other ranks forget. Collective.
   virtual void retire(BrickGrid& grid, std::span<const BrickCoord> empty) = 0;
   /// True if the brick exists, on whatever rank.
   virtual bool exists(const BrickGrid& grid, BrickCoord b) const = 0;
 
-  /// Hand over the travellers that another rank's bricks await and receive ours; on return `travellers` holds all
-  /// that enter our bricks, in no particular order. `columns_of[body]` is the number of columns. Collective.
+  /// Hand over the travellers that another rank's bricks await and receive ours; on return `travellers` holds
+  /// all that enter our bricks, in no particular order. `columns_of[body]` is the number of columns.
+  /// Collective.
   virtual void migrate(const BrickGrid& grid, Travellers& travellers, std::span<const int> columns_of) = 0;
 
   /// One line per rank to all ranks, in the order of ranks; for messages that name a particle. Collective.

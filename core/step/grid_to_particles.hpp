@@ -17,8 +17,8 @@ enum class StrainVelocity {
 };
 
 /// v += sum S dv, from node components 4..6.
-inline void add_velocity_increment(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                                   const double* nodes, double* block) {
+inline void add_velocity_increment(const BrickFrame& frame, const CellCorners& corners,
+                                   const ColumnLayout& layout, const double* nodes, double* block) {
   const auto col = [&](Column c) { return block + layout.offset(c); };
   for (int l = 0; l < block_lanes; l += real_width) {
     const auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
@@ -26,7 +26,8 @@ inline void add_velocity_increment(const BrickFrame& frame, const CellCorners& c
     Real dv[3] = {Real(0.0), Real(0.0), Real(0.0)};
     for_each_cell(p, [&](int node, MaskOf<Real> here) {
       const double* lowest = nodes + node_doubles * node + 4;
-      for (int a = 0; a < 3; ++a) dv[a] = select(here, interpolate(CornerValues(lowest + a, corners), p), dv[a]);
+      for (int a = 0; a < 3; ++a)
+        dv[a] = select(here, interpolate(CornerValues(lowest + a, corners), p), dv[a]);
     });
     for (int a = 0; a < 3; ++a) {
       double* v = col(next(Column::velocity_x, a)) + l;
@@ -39,7 +40,8 @@ inline void add_velocity_increment(const BrickFrame& frame, const CellCorners& c
 /// `fall`: the part of the velocity increment that is gravity's, which strains nobody.
 template <StrainVelocity which, class Rows>
 inline void velocity_gradient(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                              const double* nodes, const Vec3<double>& fall, const double* block, Rows& rows, int at) {
+                              const double* nodes, const Vec3<double>& fall, const double* block, Rows& rows,
+                              int at) {
   const auto col = [&](Column c) { return block + layout.offset(c); };
   for (int l = 0; l < block_lanes; l += real_width) {
     const auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
@@ -68,11 +70,13 @@ inline void velocity_gradient(const BrickFrame& frame, const CellCorners& corner
   }
 }
 
-/// Volumetric strain of the cells that hold the block's particles: dt times the mean of div v over each cell, which
-/// for trilinear functions is its value at the centre. `component`: first of the velocity in the node records.
+/// Volumetric strain of the cells that hold the block's particles: dt times the mean of div v over each cell,
+/// which for trilinear functions is its value at the centre. `component`: first of the velocity in the node
+/// records.
 template <class Row>
 inline void cell_strain(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                        const double* nodes, int component, double dt, const double* block, Row& row, int at) {
+                        const double* nodes, int component, double dt, const double* block, Row& row,
+                        int at) {
   const auto col = [&](Column c) { return block + layout.offset(c); };
   for (int l = 0; l < block_lanes; l += real_width) {
     auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
@@ -101,7 +105,8 @@ inline void move_with_grid(const BrickFrame& frame, const CellCorners& corners, 
     Real v[3] = {Real(0.0), Real(0.0), Real(0.0)};
     for_each_cell(p, [&](int node, MaskOf<Real> here) {
       const double* lowest = nodes + node_doubles * node;
-      for (int a = 0; a < 3; ++a) v[a] = select(here, interpolate(CornerValues(lowest + a, corners), p), v[a]);
+      for (int a = 0; a < 3; ++a)
+        v[a] = select(here, interpolate(CornerValues(lowest + a, corners), p), v[a]);
     });
     for (int a = 0; a < 3; ++a) {
       double* x = col(next(Column::position_x, a)) + l;
@@ -111,7 +116,8 @@ inline void move_with_grid(const BrickFrame& frame, const CellCorners& corners, 
 }
 
 /// Bits of the lanes that are no longer in the brick (or nowhere: not-a-number counts as outside).
-inline unsigned lanes_outside(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {
+inline unsigned lanes_outside(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
+                              int used) {
   unsigned outside = 0;
   const double* x[3] = {block + layout.offset(Column::position_x), block + layout.offset(Column::position_y),
                         block + layout.offset(Column::position_z)};

@@ -1,12 +1,12 @@
 #include "core/step/migration.hpp"
 
-#include <fmt/format.h>
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+
+#include <fmt/format.h>
+#include <omp.h>
 
 namespace mpm::core {
 
@@ -50,7 +50,8 @@ void reorder(BlockPool& pool, Cohort& cohort, const std::vector<std::uint32_t>& 
     const double* source = sorted.data() + b * block_doubles;
     const auto used = static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
     for (int c = 0; c < layout.columns(); ++c) {
-      for (int l = 0; l < block_lanes; ++l) block[block_lanes * c + l] = source[block_lanes * c + (l < used ? l : 0)];
+      for (int l = 0; l < block_lanes; ++l)
+        block[block_lanes * c + l] = source[block_lanes * c + (l < used ? l : 0)];
     }
   }
 }
@@ -81,12 +82,14 @@ void Migration::dispose(std::size_t body_index, const double* columns, bool erod
   const double* v = columns + place(layout, Column::velocity_x);
   books.removed_mass.add(m);
   books.removed_kinetic.add(0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-  books.removed_internal.add(columns[place(layout, Column::internal_energy)] * m / body.model->reference_density());
+  books.removed_internal.add(columns[place(layout, Column::internal_energy)] * m /
+                             body.model->reference_density());
   ++(eroded ? books.eroded : books.left_grid);
   ++(eroded ? books.body_eroded : books.body_left)[body_index];
   if (eroded) return;
   ++harvest.left;
-  harvest.first_left.offer(columns[place(layout, Column::identity)], [&] { return describe_particle(body, columns); });
+  harvest.first_left.offer(columns[place(layout, Column::identity)],
+                           [&] { return describe_particle(body, columns); });
 }
 
 void Migration::collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& harvest) {
@@ -210,8 +213,8 @@ void insert_travellers(Model& model, const Travellers& travellers) {
   for (std::size_t g = 0; g < groups.size() - 1; ++g) {
     for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
       const Arrival& a = arrivals[i];
-      append(*model.bodies[static_cast<std::size_t>(a.body)].pool, cohort_of(model.grid->brick(a.slot), a.body),
-             &travellers.columns[travellers.offsets[a.index]]);
+      append(*model.bodies[static_cast<std::size_t>(a.body)].pool,
+             cohort_of(model.grid->brick(a.slot), a.body), &travellers.columns[travellers.offsets[a.index]]);
     }
   }
 }
@@ -227,8 +230,11 @@ void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Coho
     const double* block = pool.block(cohort.blocks[b]);
     for (int l = 0; l < block_lanes && block_lanes * b + static_cast<std::size_t>(l) < cohort.count; ++l) {
       const auto at = [&](Column c) { return block + layout.offset(c) + l; };
-      const int node = locate<double>(frame, at(Column::position_x), at(Column::position_y), at(Column::position_z)).node[0];
-      const int i = node % frame.side, j = node / frame.side % frame.side, k = node / (frame.side * frame.side);
+      const int node =
+          locate<double>(frame, at(Column::position_x), at(Column::position_y), at(Column::position_z))
+              .node[0];
+      const int i = node % frame.side, j = node / frame.side % frame.side,
+                k = node / (frame.side * frame.side);
       const auto c = static_cast<std::uint8_t>(i + brick_cells * (j + brick_cells * k));
       cell[block_lanes * b + static_cast<std::size_t>(l)] = c;
       ++start[c + 1u];
@@ -244,10 +250,13 @@ void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Coho
 
 void sort_by_identity(BlockPool& pool, Cohort& cohort) {
   const int offset = pool.layout().offset(Column::identity);
-  const auto identity = [&](std::uint32_t p) { return pool.block(cohort.blocks[p / block_lanes])[offset + static_cast<int>(p % block_lanes)]; };
+  const auto identity = [&](std::uint32_t p) {
+    return pool.block(cohort.blocks[p / block_lanes])[offset + static_cast<int>(p % block_lanes)];
+  };
   std::vector<std::uint32_t> order(cohort.count);
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return identity(a) < identity(b); });
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return identity(a) < identity(b); });
   reorder(pool, cohort, order);
 }
 

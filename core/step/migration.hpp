@@ -1,7 +1,8 @@
 // Particles that leave their brick: out of the old cohort, into the new one, on this rank or another.
 //
 // The order inside a cohort decides the order of sums, so it must not depend on who carried a particle where:
-// those that leave are taken out in descending order, those that arrive are appended in the order of identities.
+// those that leave are taken out in descending order, those that arrive are appended in the order of
+// identities.
 #pragma once
 
 #include <string>
@@ -25,7 +26,8 @@ class Migration {
   /// Bring everybody home. `claim`: some rank wants new bricks. Collective.
   void deliver(bool claim);
 
-  /// Every now and then: particles in the order of their cells, bricks without particles forgotten. Collective.
+  /// Every now and then: particles in the order of their cells, bricks without particles forgotten.
+  /// Collective.
   void tidy();
 
   /// A problem of the last collect() that ends the run; empty if there is none.

@@ -57,15 +57,16 @@ BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape&
     const Boundary lower = geometry.boundary[static_cast<std::size_t>(2 * axis)];
     const Boundary upper = geometry.boundary[static_cast<std::size_t>(2 * axis + 1)];
     const std::int64_t last = geometry.cells[static_cast<std::size_t>(axis)] - first[axis];
-    if (lower != Boundary::free && first[axis] <= shape.halo) face_[count_++] = {axis, -first[axis], -1, lower};
+    if (lower != Boundary::free && first[axis] <= shape.halo)
+      face_[count_++] = {axis, -first[axis], -1, lower};
     if (upper != Boundary::free && last <= brick_cells + shape.halo) {
       face_[count_++] = {axis, static_cast<int>(last), 1, upper};
     }
   }
 }
 
-void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces, int nodes,
-                  double* record) {
+void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
+                  int nodes, double* record) {
   const Half gravity(Half::vector{forces.gravity.x, forces.gravity.y, forces.gravity.z, 0});
   const double floor = forces.strain_mass_floor;
   for (int n = 0; n < nodes; ++n) {
@@ -84,9 +85,10 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
     at[3] = m;
     at[7] = m < floor ? 1 - m / floor : 0;
   }
-  // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel them
-  // through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the grid, and what
-  // stops it acts on the particles too: only so do they come to rest there, and can they leave again.
+  // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel
+  // them through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the
+  // grid, and what stops it acts on the particles too: only so do they come to rest there, and can they leave
+  // again.
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     if (boundary == Boundary::fixed) {
       for (int a = 0; a < 3; ++a) at[a] = at[4 + a] = 0;
@@ -105,14 +107,16 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     if (boundary == Boundary::fixed) {
       for (int a = 0; a < 3; ++a) at[4 + a] = 0;
-    } else if (boundary == Boundary::symmetry || (boundary == Boundary::rigid_wall && sign * at[4 + axis] > 0)) {
+    } else if (boundary == Boundary::symmetry ||
+               (boundary == Boundary::rigid_wall && sign * at[4 + axis] > 0)) {
       at[4 + axis] = 0;
     }
   });
 }
 }  // namespace
 
-void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes, double* record) {
+void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
+                       double* record) {
   for (int n = 0; n < nodes; ++n) {
     double* at = record + node_doubles * n;
     const double m = at[3];

@@ -1,8 +1,9 @@
 // Nodes of one brick: summing the contributions of all bricks that share them, and the equation of motion on
 // them with its boundary conditions (thesis 2-26, 2-33, 2-41).
 //
-// Every brick works on its own copy of shared nodes. The copies are summed in one order, that of the neighbours'
-// coordinates, and updated by the same instructions, so they stay equal to the last bit on any rank.
+// Every brick works on its own copy of shared nodes. The copies are summed in one order, that of the
+// neighbours' coordinates, and updated by the same instructions, so they stay equal to the last bit on any
+// rank.
 #pragma once
 
 #include "core/grid/brick_grid.hpp"
@@ -21,7 +22,8 @@ class SharedNodes {
   int nodes() const { return static_cast<int>(first_.size()) - 1; }
   std::span<const Share> of(int node) const {
     return {shares_.data() + first_[static_cast<std::size_t>(node)],
-            static_cast<std::size_t>(first_[static_cast<std::size_t>(node) + 1] - first_[static_cast<std::size_t>(node)])};
+            static_cast<std::size_t>(first_[static_cast<std::size_t>(node) + 1] -
+                                     first_[static_cast<std::size_t>(node)])};
   }
 
  private:
@@ -30,16 +32,17 @@ class SharedNodes {
 };
 
 /// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
-/// node_doubles for the second array, all of them for the first. A brick that does not exist counts as zeros, so
-/// every copy of a node adds up the same numbers.
+/// node_doubles for the second array, all of them for the first. A brick that does not exist counts as zeros,
+/// so every copy of a node adds up the same numbers.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
 
 /// What acts on nodes beside the particles' stress.
 struct NodeForces {
-  Vec3<double> gravity{};         ///< acceleration
-  double damping = 0;             ///< 1/time: force per mass and velocity, against the velocity
-  /// USL: nodes lighter than this take only the share m / floor of their velocity increment into the strain rate.
+  Vec3<double> gravity{};  ///< acceleration
+  double damping = 0;      ///< 1/time: force per mass and velocity, against the velocity
+  /// USL: nodes lighter than this take only the share m / floor of their velocity increment into the strain
+  /// rate.
   double strain_mass_floor = 0;
 };
 
@@ -63,12 +66,13 @@ class BoundaryFaces {
 };
 
 /// [p, m, f] -> [v^{k+1}, m, dv, share left out]: velocity at the end of the step and its increment.
-void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces, int nodes,
-                  double* record);
+void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
+                  int nodes, double* record);
 
 /// Components 4..6 become the velocity of `momenta` (0..2 of each record) over the masses in component 3 of
 /// `record`: USF's velocity at the start of the step (momenta = record), MUSL's re-mapped one.
-void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes, double* record);
+void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
+                       double* record);
 
 template <class F>
 void BoundaryFaces::for_each_node(double* nodes, F f) const {

@@ -1,8 +1,9 @@
 // Particles to grid (thesis 2-31, 2-32, 2-38): what one block of particles adds to its brick's nodes.
 //
-// The eight nodes of a cell ride in the lanes of one vector; a particle adds itself to seven of them (momentum,
-// mass, force), and only when the cell changes are they turned into node records and written. Particles are
-// kept in approximate cell order, so that is once in about eight. Oracle: tests/support/reference_stepper.
+// The eight nodes of a cell ride in the lanes of one vector; a particle adds itself to seven of them
+// (momentum, mass, force), and only when the cell changes are they turned into node records and written.
+// Particles are kept in approximate cell order, so that is once in about eight. Oracle:
+// tests/support/reference_stepper.
 #pragma once
 
 #include "core/particles/columns.hpp"
@@ -95,8 +96,10 @@ inline void add_block(const BrickFrame& frame, const CellCorners& corners, const
     }
     if constexpr (maps_force(what)) {
       const Real v = -load<Real>(col(Column::volume) + l);
-      const Real p_total = load<Real>(col(Column::pressure) + l) + load<Real>(col(Column::viscous_pressure) + l);
-      for (int a = 0; a < 3; ++a) store(q[4 + a] + l, v * (load<Real>(col(next(Column::s_xx, a)) + l) - p_total));
+      const Real p_total =
+          load<Real>(col(Column::pressure) + l) + load<Real>(col(Column::viscous_pressure) + l);
+      for (int a = 0; a < 3; ++a)
+        store(q[4 + a] + l, v * (load<Real>(col(next(Column::s_xx, a)) + l) - p_total));
       for (int a = 3; a < 6; ++a) store(q[4 + a] + l, v * load<Real>(col(next(Column::s_xx, a)) + l));
     }
   }
@@ -109,7 +112,8 @@ inline void add_block(const BrickFrame& frame, const CellCorners& corners, const
       sums.clear();
       sums.node = node[i];
     }
-    const N wx = one_x + sign_x * N(f[0][i]), wy = one_y + sign_y * N(f[1][i]), wz = one_z + sign_z * N(f[2][i]);
+    const N wx = one_x + sign_x * N(f[0][i]), wy = one_y + sign_y * N(f[1][i]),
+            wz = one_z + sign_z * N(f[2][i]);
     const N wyz = wy * wz;
     if constexpr (maps_momentum(what)) {
       const N w = wx * wyz;

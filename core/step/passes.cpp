@@ -1,8 +1,8 @@
 #include "core/step/passes.hpp"
 
-#include <omp.h>
-
 #include <limits>
+
+#include <omp.h>
 
 #include "core/simd/denormals.hpp"
 
@@ -32,9 +32,9 @@ void keep_sound_speed(Batch& batch) {
 }
 
 /// Share of a full cell's mass below which a node's increment is scaled down in USL's strain rate. The nodal
-/// acceleration f/m grows without bound as a particle enters a cell (thesis 2-49); what reaches the particle's
-/// own velocity stays bounded, what reaches its strain does not. Below 0.05 the Taylor bar still diverges; at 1 the
-/// scaling feeds oscillations instead; 0.2 is good for time step factors up to 0.7.
+/// acceleration f/m grows without bound as a particle enters a cell (thesis 2-49); what reaches the
+/// particle's own velocity stays bounded, what reaches its strain does not. Below 0.05 the Taylor bar still
+/// diverges; at 1 the scaling feeds oscillations instead; 0.2 is good for time step factors up to 0.7.
 constexpr double usl_mass_floor = 0.2;
 
 }  // namespace
@@ -64,7 +64,8 @@ Passes::Passes(Model& model, Exchange& exchange)
 template <class F>
 void Passes::for_bricks(int first, int last, F f) {
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int s = first; s < last; ++s) f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]);
+  for (int s = first; s < last; ++s)
+    f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]);
 }
 
 // --- particles to grid ------------------------------------------------------------------------------------
@@ -83,8 +84,8 @@ void Passes::map_brick(Slot s) {
     const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       prefetch(pool, cohort, b + 2, Column::position_x, maps_force(what) ? 16 : 7);
-      add_block<what>(frame, corners, pool.layout(), pool.block(cohort.blocks[b]), used_lanes(cohort, b), sums,
-                      contributions);
+      add_block<what>(frame, corners, pool.layout(), pool.block(cohort.blocks[b]), used_lanes(cohort, b),
+                      sums, contributions);
     }
   }
   sums.flush(contributions, corners);
@@ -127,8 +128,9 @@ template void Passes::map_to_grid<Mapped::momentum_mass>();
 void Passes::move_nodes(Slot s, Workplace& at) {
   const BrickGrid& grid = *model_.grid;
   sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
-  update_nodes(forces_, dt, grid.geometry().mass_cutoff, BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
-               shared_.nodes(), at.nodes.data());
+  update_nodes(forces_, dt, grid.geometry().mass_cutoff,
+               BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
+               at.nodes.data());
 }
 
 // --- particles --------------------------------------------------------------------------------------------
@@ -167,7 +169,8 @@ void Passes::velocities_of_brick(Slot s, Workplace& at) {
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       prefetch(*body.pool, cohort, b + 2, Column::position_x, 7);
-      add_velocity_increment(frame, corners, body.pool->layout(), at.nodes.data(), body.pool->block(cohort.blocks[b]));
+      add_velocity_increment(frame, corners, body.pool->layout(), at.nodes.data(),
+                             body.pool->block(cohort.blocks[b]));
     }
     if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
       hold_velocities(body, frame, cohort, at);
@@ -214,21 +217,22 @@ void Passes::stress_of_brick(Slot s, StrainVelocity which, Workplace& at) {
     batch.layout = &pool.layout();
     for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
       batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
-      batch.particles = static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+      batch.particles =
+          static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
         prefetch(pool, cohort, at_block + 2, Column::position_x, pool.layout().columns());
         batch.block[b] = pool.block(cohort.blocks[at_block]);
         if (which == StrainVelocity::second) {
-          velocity_gradient<StrainVelocity::second>(frame, corners, pool.layout(), at.nodes.data(), fall, batch.block[b],
-                                                    batch.gradient, block_lanes * b);
+          velocity_gradient<StrainVelocity::second>(frame, corners, pool.layout(), at.nodes.data(), fall,
+                                                    batch.block[b], batch.gradient, block_lanes * b);
         } else {
-          velocity_gradient<StrainVelocity::regularised>(frame, corners, pool.layout(), at.nodes.data(), fall, batch.block[b],
-                                                         batch.gradient, block_lanes * b);
+          velocity_gradient<StrainVelocity::regularised>(frame, corners, pool.layout(), at.nodes.data(), fall,
+                                                         batch.block[b], batch.gradient, block_lanes * b);
         }
         if (model_.options.volume_update == static_cast<int>(VolumeUpdate::cell)) {
-          cell_strain(frame, corners, pool.layout(), at.nodes.data(), which == StrainVelocity::second ? 4 : 0, dt,
-                      batch.block[b], batch.cell_volumetric_strain, block_lanes * b);
+          cell_strain(frame, corners, pool.layout(), at.nodes.data(), which == StrainVelocity::second ? 4 : 0,
+                      dt, batch.block[b], batch.cell_volumetric_strain, block_lanes * b);
         }
       }
       batch.events = {};
@@ -284,19 +288,25 @@ void Passes::move_brick(Slot s, Workplace& at) {
                               (layout.has(Column::failed) && block[layout.offset(Column::failed) + i] >= 2);
           if (!eroded) continue;
           gone |= 1u << i;
-          leavers.push_back({static_cast<int>(c), static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(i), true});
+          leavers.push_back({static_cast<int>(c),
+                             static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(i),
+                             true});
         }
       }
       unsigned outside = lanes_outside(frame, layout, block, used) & ~gone;
       for (; outside != 0; outside &= outside - 1) {
-        leavers.push_back({static_cast<int>(c), static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(__builtin_ctz(outside)), false});
+        leavers.push_back(
+            {static_cast<int>(c),
+             static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(__builtin_ctz(outside)),
+             false});
       }
     }
   }
   if (work != 0) at.found.work.add(work);
 }
 
-// --- what the schemes are made of ---------------------------------------------------------------------------
+// --- what the schemes are made of
+// ---------------------------------------------------------------------------
 
 void Passes::update_velocities_and_map_back() {
   map_after<Mapped::momentum>([&](Slot s, Workplace& at) {
@@ -309,11 +319,12 @@ void Passes::update_stress_and_move() {
   const BrickGrid& grid = *model_.grid;
   leavers_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Workplace& at) {
-    // The nodes' motion is computed again: that costs less than keeping it in memory from one pass to the next.
+    // The nodes' motion is computed again: that costs less than keeping it in memory from one pass to the
+    // next.
     move_nodes(s, at);
     sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
-    second_velocities(0, at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
-                      at.nodes.data());
+    second_velocities(0, at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
+                      shared_.nodes(), at.nodes.data());
     stress_of_brick(s, StrainVelocity::second, at);
     move_brick(s, at);
   });
@@ -324,7 +335,8 @@ void Passes::update_stress_and_map_forces() {
   map_after<Mapped::force>([&](Slot s, Workplace& at) {
     sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
     second_velocities(grid.geometry().mass_cutoff, at.nodes.data(),
-                      BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(), at.nodes.data());
+                      BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
+                      at.nodes.data());
     stress_of_brick(s, StrainVelocity::second, at);
   });
 }
@@ -333,10 +345,12 @@ void Passes::update_velocities_and_move() {
   const BrickGrid& grid = *model_.grid;
   leavers_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Workplace& at) {
-    sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());   // forces; momenta and masses are zero
+    sum_contributions<NodeArray::first>(grid, shared_, s,
+                                        at.nodes.data());  // forces; momenta and masses are zero
     sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());  // overwrites those
-    update_nodes(forces_, dt, grid.geometry().mass_cutoff, BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
-                 shared_.nodes(), at.nodes.data());
+    update_nodes(forces_, dt, grid.geometry().mass_cutoff,
+                 BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
+                 at.nodes.data());
     velocities_of_brick(s, at);
     move_brick(s, at);
   });

@@ -1,6 +1,6 @@
 // The passes over bricks that a time step is made of. Each is one loop over this rank's bricks, shared by its
-// threads; a scheme is a list of them (schemes.cpp). A brick is worked on by one thread from its first particle
-// to its last, so sums inside it have one order.
+// threads; a scheme is a list of them (schemes.cpp). A brick is worked on by one thread from its first
+// particle to its last, so sums inside it have one order.
 #pragma once
 
 #include <vector>
@@ -22,10 +22,10 @@ struct Leaver {
 
 /// What a rank learns in the course of a step, to be agreed with the others at its end.
 struct StepFindings {
-  double fastest = 0;           ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
-  std::int64_t limited = 0;     ///< velocities held by LimitVelocity
+  double fastest = 0;        ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
+  std::int64_t limited = 0;  ///< velocities held by LimitVelocity
   MaterialEvents events;
-  ExactSum work;                ///< external work
+  ExactSum work;  ///< external work
 };
 
 class Passes {

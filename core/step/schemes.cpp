@@ -9,7 +9,9 @@ std::vector<Phase> phases_of(Stepper& s, Scheme scheme) {
   using enum Mapped;
 
   std::vector<Phase> step{{"choose time step", [&] { s.choose_time_step(); }}};
-  const auto then = [&](const char* name, std::function<void()> run) { step.push_back({name, std::move(run)}); };
+  const auto then = [&](const char* name, std::function<void()> run) {
+    step.push_back({name, std::move(run)});
+  };
 
   switch (scheme) {
     case Scheme::musl:

@@ -24,7 +24,8 @@ struct BrickFrame {
         halo(shape.halo) {}
 
   int node_of_cell(double i, double j, double k) const {
-    return (static_cast<int>(i) + halo) + side * ((static_cast<int>(j) + halo) + side * (static_cast<int>(k) + halo));
+    return (static_cast<int>(i) + halo) +
+           side * ((static_cast<int>(j) + halo) + side * (static_cast<int>(k) + halo));
   }
 };
 

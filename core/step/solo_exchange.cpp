@@ -22,7 +22,8 @@ void check_decomposition(const DecompositionInput& how, int ranks) {
                         "; start that many ranks, change the dimensions, or remove the element");
 }
 
-void SoloExchange::partition(BrickGrid& grid, std::span<const BrickCount> counts, const DecompositionInput& how) {
+void SoloExchange::partition(BrickGrid& grid, std::span<const BrickCount> counts,
+                             const DecompositionInput& how) {
   check_decomposition(how, 1);
   std::vector<BrickCoord> owned;
   for (const BrickCount& c : counts) owned.push_back(c.brick);

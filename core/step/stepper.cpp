@@ -1,11 +1,11 @@
 #include "core/step/stepper.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+
+#include <fmt/format.h>
 
 namespace mpm::core {
 
@@ -28,10 +28,12 @@ Witness first_not_finite(const Model& model) {
       }
       if (finite) continue;
       first.offer(block[layout.offset(Column::identity) + lane], [&] {
-        std::string words = describe_particle(model.bodies[static_cast<std::size_t>(body_index)], columns.data()) + ":";
+        std::string words =
+            describe_particle(model.bodies[static_cast<std::size_t>(body_index)], columns.data()) + ":";
         for (int c = 0; c < column_count; ++c) {
           const auto column = static_cast<Column>(c);
-          if (layout.has(column)) words += fmt::format(" {}={:.6g}", name_of(column), block[layout.offset(column) + lane]);
+          if (layout.has(column))
+            words += fmt::format(" {}={:.6g}", name_of(column), block[layout.offset(column) + lane]);
         }
         return words;
       });
@@ -85,8 +87,10 @@ void Stepper::agree() {
   books.failed += found.events.failed;
   incidents_ = {found.events, migration_.left_now(), migration_.first_left()};
 
-  // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to stop.
-  const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty() || std::isnan(found.fastest);
+  // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to
+  // stop.
+  const bool trouble =
+      found.events.not_finite > 0 || !migration_.complaint().empty() || std::isnan(found.fastest);
   double news[4] = {critical_step(*model_.grid, found.fastest), migration_.wants_new_bricks() ? -1.0 : 0.0,
                     trouble ? -1.0 : 0.0, stop_requested_ ? -1.0 : 0.0};
   exchange_.minimum(news);
@@ -102,10 +106,11 @@ void Stepper::agree() {
     if (mine.empty() && trouble) mine = first_not_finite(model_);
     what = first_of_all(exchange_, mine).words;
   } else if (clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
-    what = fmt::format("the critical time step has fallen to {:.3g}, {:.1g} of the first one", clock.critical_dt,
-                       clock.critical_dt / clock.first_critical_dt);
+    what = fmt::format("the critical time step has fallen to {:.3g}, {:.1g} of the first one",
+                       clock.critical_dt, clock.critical_dt / clock.first_critical_dt);
   }
-  if (!what.empty()) throw NumericalFailure(fmt::format("step {}, time {:.9g}: {}", clock.step, clock.time, what));
+  if (!what.empty())
+    throw NumericalFailure(fmt::format("step {}, time {:.9g}: {}", clock.step, clock.time, what));
 }
 
 }  // namespace mpm::core

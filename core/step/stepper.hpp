@@ -66,8 +66,8 @@ class Stepper {
   bool stop_agreed_ = false;
 };
 
-/// Largest stable step of the model's present state, without the scene's factor (thesis 2-51, 2-74): the smallest
-/// cell edge over the largest of (Q + sqrt(Q^2 + c^2)) + |v|.
+/// Largest stable step of the model's present state, without the scene's factor (thesis 2-51, 2-74): the
+/// smallest cell edge over the largest of (Q + sqrt(Q^2 + c^2)) + |v|.
 double critical_step(const BrickGrid& grid, double fastest);
 
 }  // namespace mpm::core

@@ -14,9 +14,9 @@ enum Sum : std::size_t {
   mass,
   kinetic,
   internal,
-  momentum,                        // three
-  angular_momentum = momentum + 3, // three
-  moment = angular_momentum + 3,   // mass times position, three
+  momentum,                         // three
+  angular_momentum = momentum + 3,  // three
+  moment = angular_momentum + 3,    // mass times position, three
   sums = moment + 3
 };
 enum Low : std::size_t { lower, upper = lower + 3, plastic_strain = upper + 3, temperature, lows };
@@ -37,23 +37,42 @@ struct Partial {
   }
 };
 
+struct BlockEnergies {
+  double kinetic = 0, internal = 0;
+};
+/// Kept from being inlined: both callers are to get the same bits, whatever the compiler contracts.
+[[gnu::noinline]] BlockEnergies energies_of(const ColumnLayout& layout, const double* block, int used,
+                                            double inverse_density) {
+  const double* m = block + layout.offset(Column::mass);
+  const double* e = block + layout.offset(Column::internal_energy);
+  const double* v = block + layout.offset(Column::velocity_x);
+  constexpr int y = block_lanes, z = 2 * block_lanes;
+  BlockEnergies sum;
+  for (int i = 0; i < used; ++i) {
+    sum.kinetic += 0.5 * m[i] * (v[i] * v[i] + v[i + y] * v[i + y] + v[i + z] * v[i + z]);
+    sum.internal += e[i] * m[i] * inverse_density;
+  }
+  return sum;
+}
+
 void note_lowest(const double* column, int used, double sign, double& low) {
   for (int i = 0; i < used; ++i) low = sign * column[i] < low ? sign * column[i] : low;
 }
 
-void add_block(const ColumnLayout& layout, const double* block, int used, double inverse_density, Partial& to) {
+void add_block(const ColumnLayout& layout, const double* block, int used, double inverse_density,
+               Partial& to) {
   const auto column = [&](Column c) { return block + layout.offset(c); };
   const double* m = column(Column::mass);
-  const double* e = column(Column::internal_energy);
   const double* x = column(Column::position_x);
   const double* v = column(Column::velocity_x);
   constexpr int y = block_lanes, z = 2 * block_lanes;
   double s[sums] = {};
+  const BlockEnergies energies = energies_of(layout, block, used, inverse_density);
+  s[kinetic] = energies.kinetic;
+  s[internal] = energies.internal;
   for (int i = 0; i < used; ++i) {
     const double px = m[i] * v[i], py = m[i] * v[i + y], pz = m[i] * v[i + z];
     s[mass] += m[i];
-    s[kinetic] += 0.5 * (px * v[i] + py * v[i + y] + pz * v[i + z]);
-    s[internal] += e[i] * m[i] * inverse_density;
     s[momentum] += px;
     s[momentum + 1] += py;
     s[momentum + 2] += pz;
@@ -72,14 +91,16 @@ void add_block(const ColumnLayout& layout, const double* block, int used, double
   if (layout.has(Column::effective_plastic_strain)) {
     note_lowest(column(Column::effective_plastic_strain), used, -1, to.low[plastic_strain]);
   }
-  if (layout.has(Column::temperature)) note_lowest(column(Column::temperature), used, -1, to.low[temperature]);
+  if (layout.has(Column::temperature))
+    note_lowest(column(Column::temperature), used, -1, to.low[temperature]);
   if (layout.has(Column::failed)) {
     for (int i = 0; i < used; ++i) to.failed += column(Column::failed)[i] >= 1;
   }
   to.particles += used;
 }
 
-/// f(brick, own partial result) over this rank's bricks by all threads; partial results are merged into `out`.
+/// f(brick, own partial result) over this rank's bricks by all threads; partial results are merged into
+/// `out`.
 template <class P, class F>
 void over_bricks(const Model& model, P& out, F f) {
   const int bricks = model.grid->owned();
@@ -139,7 +160,9 @@ BodyTotals body_totals(const ExactSum* sum, const double* low, std::int64_t part
   return body;
 }
 
-std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) { return i < values.size() ? values[i] : 0; }
+std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) {
+  return i < values.size() ? values[i] : 0;
+}
 
 }  // namespace
 
@@ -148,9 +171,10 @@ Totals compute_totals(const Model& model, Exchange& exchange) {
   const std::vector<double> inverse_density = inverse_densities(model);
   std::vector<Partial> local(bodies);
   over_bricks(model, local, [&](const Brick& brick, std::vector<Partial>& to) {
-    over_blocks(model, brick, [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
-      add_block(layout, block, used, inverse_density[body], to[body]);
-    });
+    over_blocks(model, brick,
+                [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
+                  add_block(layout, block, used, inverse_density[body], to[body]);
+                });
   });
 
   const Books& books = model.books;
@@ -163,8 +187,8 @@ Totals compute_totals(const Model& model, Exchange& exchange) {
     count.insert(count.end(), {local[b].particles, local[b].failed, entry(books.body_eroded, b),
                                entry(books.body_left, b)});
   }
-  for (const ExactSum* s : {&books.external_work, &books.removed_mass, &books.removed_kinetic,
-                            &books.removed_internal}) {
+  for (const ExactSum* s :
+       {&books.external_work, &books.removed_mass, &books.removed_kinetic, &books.removed_internal}) {
     sum.push_back(*s);
   }
   exchange.sum(std::span(sum));
@@ -208,20 +232,12 @@ Energies compute_energies(const Model& model, Exchange& exchange) {
   const std::vector<double> inverse_density = inverse_densities(model);
   std::vector<Pair> local(1);
   over_bricks(model, local, [&](const Brick& brick, std::vector<Pair>& to) {
-    over_blocks(model, brick, [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
-      const double* m = block + layout.offset(Column::mass);
-      const double* e = block + layout.offset(Column::internal_energy);
-      const double* v = block + layout.offset(Column::velocity_x);
-      constexpr int y = block_lanes, z = 2 * block_lanes;
-      double t = 0, u = 0;
-      for (int i = 0; i < used; ++i) {
-        const double px = m[i] * v[i], py = m[i] * v[i + y], pz = m[i] * v[i + z];
-        t += 0.5 * (px * v[i] + py * v[i + y] + pz * v[i + z]);
-        u += e[i] * m[i] * inverse_density[body];
-      }
-      to[0].kinetic.add(t);
-      to[0].internal.add(u);
-    });
+    over_blocks(model, brick,
+                [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
+                  const BlockEnergies sum = energies_of(layout, block, used, inverse_density[body]);
+                  to[0].kinetic.add(sum.kinetic);
+                  to[0].internal.add(sum.internal);
+                });
   });
   std::array<ExactSum, 2> sum{local[0].kinetic, local[0].internal};
   exchange.sum(std::span<ExactSum>(sum));
@@ -232,7 +248,8 @@ EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
   EnergyBalance balance;
   balance.total = totals.kinetic + totals.internal;
   const double accounted = balance.total + totals.removed_kinetic + totals.removed_internal;
-  const double scale = std::max({std::abs(initial_energy), std::abs(totals.external_work), std::abs(accounted)});
+  const double scale =
+      std::max({std::abs(initial_energy), std::abs(totals.external_work), std::abs(accounted)});
   if (scale > 0) balance.relative_drift = (accounted - totals.external_work - initial_energy) / scale;
   return balance;
 }
@@ -244,16 +261,18 @@ std::int64_t occupied_cells(const Model& model, Exchange& exchange) {
 #pragma omp parallel for schedule(dynamic, 16) reduction(+ : cells)
   for (int s = 0; s < bricks; ++s) {
     std::uint64_t seen = 0;
-    over_blocks(model, model.grid->brick(s), [&](std::size_t, const ColumnLayout& layout, const double* block, int used) {
-      const double* x = block + layout.offset(Column::position_x);
-      for (int i = 0; i < used; ++i) {
-        int cell = 0;
-        for (int a = 2; a >= 0; --a) {
-          cell = brick_cells * cell + static_cast<int>(geometry.cell_index(x[i + block_lanes * a], a) % brick_cells);
-        }
-        seen |= std::uint64_t{1} << (cell & 63);
-      }
-    });
+    over_blocks(model, model.grid->brick(s),
+                [&](std::size_t, const ColumnLayout& layout, const double* block, int used) {
+                  const double* x = block + layout.offset(Column::position_x);
+                  for (int i = 0; i < used; ++i) {
+                    int cell = 0;
+                    for (int a = 2; a >= 0; --a) {
+                      cell = brick_cells * cell +
+                             static_cast<int>(geometry.cell_index(x[i + block_lanes * a], a) % brick_cells);
+                    }
+                    seen |= std::uint64_t{1} << (cell & 63);
+                  }
+                });
     cells += __builtin_popcountll(seen);
   }
   exchange.sum(std::span(&cells, 1));

@@ -1,8 +1,8 @@
 // What the run as a whole holds: mass, momentum, energy and extent, per body and in all.
 //
-// Energies and momenta are summed over each block of eight particles in the order of its lanes and over blocks
-// exactly, so they are the same bits on any ranks, threads and partition. Angular momentum is about the origin.
-// Shown by tests/core/step/totals_test.cpp.
+// Energies and momenta are summed over each block of eight particles in the order of its lanes and over
+// blocks exactly, so they are the same bits on any ranks, threads and partition. Angular momentum is about
+// the origin. Shown by tests/core/step/totals_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -62,7 +62,8 @@ Energies compute_energies(const Model& model, Exchange& exchange);
 
 struct EnergyBalance {
   double total = 0;  ///< kinetic + internal of the particles present
-  /// What is there and what has left, less what has come in, less the initial energy; over the largest of these.
+  /// What is there and what has left, less what has come in, less the initial energy; over the largest of
+  /// these.
   double relative_drift = 0;
 };
 EnergyBalance energy_balance(const Totals& totals, double initial_energy);

@@ -1,5 +1,5 @@
-// The particle that a message names: of several, the one with the smallest identity, so that the message is the same
-// on any ranks and threads.
+// The particle that a message names: of several, the one with the smallest identity, so that the message is
+// the same on any ranks and threads.
 #pragma once
 
 #include <limits>
@@ -28,7 +28,8 @@ inline Witness first_of_all(Exchange& exchange, const Witness& mine) {
   double identity[1] = {mine.identity};
   exchange.minimum(identity);
   Witness first;
-  for (const std::string& words : exchange.gather(mine.identity == identity[0] ? mine.words : std::string())) {
+  for (const std::string& words :
+       exchange.gather(mine.identity == identity[0] ? mine.words : std::string())) {
     if (!words.empty()) first.offer(identity[0], [&] { return words; });
   }
   return first;

@@ -89,9 +89,9 @@ Mat3<T> mid_point_rotation(const Vec3<T>& w) {
   const T n = x * x + y * y + z * z;
   const T k = T(2.0) / (T(1.0) + n);
   // R = I + k (A + A A) for A the skew tensor of w/2, and A A = a a^T - n I.
-  return {T(1.0) + k * (x * x - n), k * (x * y - z), k * (x * z + y),
-          k * (x * y + z), T(1.0) + k * (y * y - n), k * (y * z - x),
-          k * (x * z - y), k * (y * z + x), T(1.0) + k * (z * z - n)};
+  return {T(1.0) + k * (x * x - n), k * (x * y - z),          k * (x * z + y),
+          k * (x * y + z),          T(1.0) + k * (y * y - n), k * (y * z - x),
+          k * (x * z - y),          k * (y * z + x),          T(1.0) + k * (z * z - n)};
 }
 
 }  // namespace mpm::core

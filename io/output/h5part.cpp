@@ -20,6 +20,11 @@ constexpr std::size_t particles_at_once = std::size_t{1} << 19;
 /// Generous: what a group, an attribute and a dataset add to the file beside their values.
 constexpr std::uint64_t bytes_per_group = 16384;
 constexpr std::uint64_t bytes_per_field = 2048;
+/// Where a time is made before it has its name.
+constexpr const char* workshop = "unfinished";
+constexpr const char* work = "unfinished/step";
+/// Names of root's groups that the file has room for from the start: some thousand times.
+constexpr std::size_t bytes_of_names = 65536;
 
 std::vector<Field> fields_for(const std::vector<Variable>& variables) {
   std::vector<Field> fields{{"x", Kind::real, Variable::posx},
@@ -116,22 +121,30 @@ H5PartWriter::H5PartWriter(Settings settings, const core::Model& model, core::Ex
 }
 
 int H5PartWriter::open_existing(double last) {
+  File(settings_.path, File::Mode::change).reserve(std::filesystem::file_size(settings_.path) + bytes_per_group);
   hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
-  const auto exists = [&](int n) { return H5Lexists(file, group_name(n).c_str(), H5P_DEFAULT) > 0; };
+  const auto exists = [&](int n) { return hdf5::has_link(file, group_name(n)); };
   int kept = 0;
   while (exists(kept) && hdf5::read_double(hdf5::open_group(file, group_name(kept)), "TimeValue") <= last) ++kept;
   for (int n = kept; exists(n); ++n) {
     hdf5::check(H5Ldelete(file, group_name(n).c_str(), H5P_DEFAULT), "drop a later time of '" + settings_.path + "'");
   }
+  // The workshop of a run that was killed may be in any state: it is never opened again.
+  for (int n = 0; hdf5::has_link(file, workshop); ++n) {
+    const std::string aside = fmt::format("lost#{}", n);
+    if (!hdf5::has_link(file, aside)) hdf5::rename_link(file, workshop, aside);
+  }
+  hdf5::create_group(file, workshop);
   file.close("write '" + settings_.path + "'");
   return kept;
 }
 
 void H5PartWriter::create(const core::Scene& scene) {
   const std::string part = part_name(settings_.path);
-  File(part, File::Mode::write_anew).reserve(bytes_per_group);
-  hdf5::Handle file = hdf5::open_file(part, hdf5::Access::create);
+  File(part, File::Mode::write_anew).reserve(bytes_per_group + bytes_of_names);
+  hdf5::Handle file = hdf5::create_file(part, 0, bytes_of_names);
   hdf5::write_attribute(file, provenance_of(scene));
+  hdf5::create_group(file, workshop);
   file.close("write '" + part + "'");
   rename_file(part, settings_.path);
 }
@@ -147,7 +160,8 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
   }
   hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
   {
-    const hdf5::Handle group = hdf5::create_group(file, group_name(times_));
+    if (hdf5::has_link(file, work)) hdf5::check(H5Ldelete(file, work, H5P_DEFAULT), "drop what a failed attempt left");
+    const hdf5::Handle group = hdf5::create_group(file, work);
     hdf5::write_attribute(group, "TimeValue", clock.time);
     hdf5::write_attribute(group, "step", clock.step);
     const auto rows = static_cast<hsize_t>(particles);
@@ -163,7 +177,7 @@ void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchan
   hdf5::Handle file = hdf5::open_file_together(settings_.path, exchange);
   {
     const std::vector<BodyFacts> facts = facts_of_all(model);
-    const hdf5::Handle group = hdf5::open_group(file, group_name(times_));
+    const hdf5::Handle group = hdf5::open_group(file, work);
     std::vector<std::byte> memory;
     for (const Field& field : fields_) {
       const hdf5::Handle dataset = hdf5::open_dataset(group, field.name);
@@ -177,14 +191,14 @@ void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchan
   file.close("write '" + settings_.path + "'");
 }
 
-void H5PartWriter::forget_step() noexcept {
-  try {
-    hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
-    H5Ldelete(file, group_name(times_).c_str(), H5P_DEFAULT);
-    file.close("write '" + settings_.path + "'");
-  } catch (const FileError&) {
-    // The error under way says more.
+void H5PartWriter::name_step() {
+  {
+    File space(settings_.path, File::Mode::change);
+    space.reserve(space.size() + bytes_per_group);
   }
+  hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
+  hdf5::rename_link(file, work, group_name(times_));
+  file.close("write '" + settings_.path + "'");
 }
 
 void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
@@ -207,12 +221,10 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
   } catch (const FileError& e) {
     complaint = e.what();
   }
-  try {
-    agree(exchange, complaint);
-  } catch (const FileError&) {
-    if (exchange.rank() == 0) forget_step();
-    throw;
-  }
+  agree(exchange, complaint);
+  together(exchange, [&] {
+    if (exchange.rank() == 0) name_step();
+  });
   ++times_;
 }
 

@@ -2,8 +2,10 @@
 // A. Adelmann et al., vis.lbl.gov/Research/AcceleratorSAPP). ParaView joins name_0, name_1, name_2 to a vector.
 //
 // Every group has the attributes TimeValue and step, and x, y, z, velocity_0..2 (reals), id (64-bit), body (32-bit)
-// and the variables asked for. Rows are in the order of particle_order.hpp. After every write() the file is
-// complete; a run that is killed inside it may lose that time. Limit: a machine that loses power may lose more.
+// and the variables asked for. Rows are in the order of particle_order.hpp.
+//
+// A time is made in a group that readers do not look for, and gets its name when it is complete; until then nothing
+// changes that the earlier times need. Limit: a kill within the few microseconds of the naming may still hurt.
 // Shown by tests/io/output/h5part_test.cpp.
 #pragma once
 
@@ -48,7 +50,7 @@ class H5PartWriter {
   void create(const core::Scene& scene);
   void add_step(const core::Clock& clock, std::int64_t particles);
   void write_fields(const core::Model& model, core::Exchange& exchange, const std::vector<struct RowBatch>& batches);
-  void forget_step() noexcept;
+  void name_step();
 
   Settings settings_;
   std::vector<Field> fields_;

@@ -129,14 +129,17 @@ void check(herr_t status, const std::string& doing) {
   if (status < 0) fail(doing);
 }
 
-Handle open_file(const std::string& path, Access access, hsize_t user_block) {
+Handle open_file(const std::string& path, Access access) {
   const Handle list = access_properties();
-  if (access != Access::create) {
-    const unsigned flags = access == Access::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR;
-    return Handle(H5Fopen(path.c_str(), flags, list), H5Fclose, "open '" + path + "'");
-  }
+  const unsigned flags = access == Access::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR;
+  return Handle(H5Fopen(path.c_str(), flags, list), H5Fclose, "open '" + path + "'");
+}
+
+Handle create_file(const std::string& path, hsize_t user_block, std::size_t names) {
+  const Handle list = access_properties();
   const Handle creation = properties(H5P_FILE_CREATE);
-  if (user_block > 0) check(H5Pset_userblock(creation, user_block), "set the user block");
+  check(H5Pset_userblock(creation, user_block), "set the user block");
+  if (names > 0) check(H5Pset_local_heap_size_hint(creation, names), "make room for names");
   return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, list), H5Fclose, "create '" + path + "'");
 }
 
@@ -178,6 +181,17 @@ std::vector<hsize_t> shape_of(hid_t dataset) {
   std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
   check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "get a dataset's shape");
   return shape;
+}
+
+bool has_link(hid_t parent, const std::string& name) {
+  const htri_t found = H5Lexists(parent, name.c_str(), H5P_DEFAULT);
+  if (found < 0) fail("look for '" + name + "'");
+  return found > 0;
+}
+
+void rename_link(hid_t file, const std::string& from, const std::string& to) {
+  check(H5Lmove(file, from.c_str(), H5L_SAME_LOC, to.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+        "rename '" + from + "' to '" + to + "'");
 }
 
 void write_all(hid_t parent, const std::string& name, std::span<const std::uint64_t> values) {

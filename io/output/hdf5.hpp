@@ -41,9 +41,12 @@ class Handle {
 
 void check(herr_t status, const std::string& doing);
 
-enum class Access { read, change, create };
+enum class Access { read, change };
 /// On this rank alone.
-Handle open_file(const std::string& path, Access access, hsize_t user_block = 0);
+Handle open_file(const std::string& path, Access access);
+/// A new file. `names`: room in the root group for names of that many bytes together, so that links added later
+/// change few places of the file. On this rank alone.
+Handle create_file(const std::string& path, hsize_t user_block = 0, std::size_t names = 0);
 /// By all ranks together, for change. Collective.
 Handle open_file_together(const std::string& path, core::Exchange& exchange);
 
@@ -53,6 +56,10 @@ Handle open_group(hid_t parent, const std::string& name);
 Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::span<const hsize_t> shape);
 Handle open_dataset(hid_t parent, const std::string& name);
 std::vector<hsize_t> shape_of(hid_t dataset);
+
+bool has_link(hid_t parent, const std::string& name);
+/// Give an object another name, without looking into it.
+void rename_link(hid_t file, const std::string& from, const std::string& to);
 
 /// Whole datasets of one dimension, for data that one rank handles.
 void write_all(hid_t parent, const std::string& name, std::span<const std::uint64_t> values);

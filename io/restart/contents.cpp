@@ -292,7 +292,7 @@ std::uint64_t expected_bytes(const RestartContents& c) {
 }
 
 std::vector<Extent> write_contents(const std::string& path, const RestartContents& c, const core::Scene& scene) {
-  hdf5::Handle file = hdf5::open_file(path, hdf5::Access::create, guard_bytes(c.bodies.size()));
+  hdf5::Handle file = hdf5::create_file(path, guard_bytes(c.bodies.size()));
   std::vector<Extent> rows;
   {
     hdf5::write_attribute(file, provenance_of(scene));

@@ -38,7 +38,8 @@ TEST_CASE("An exact sum is the sum in 113 bits where those suffice, rounded once
     Wide wide = 0;
     for (int i = 0; i < 1000; ++i) {
       // Whole multiples of 2^(offset - 73): nothing is below the last of the 113 bits.
-      const double x = std::ldexp(std::nearbyint(std::ldexp(mantissa(random), exponent(random) + 53)), offset - 73);
+      const double x =
+          std::ldexp(std::nearbyint(std::ldexp(mantissa(random), exponent(random) + 53)), offset - 73);
       values.push_back(x);
       wide += x;
     }

@@ -24,9 +24,10 @@ def arguments(description, name):
     return parser
 
 
-def run(folder, text, job="case"):
+def run(folder, text, job="case", may_fail=False):
     """Runs the scene on one rank and thread in `folder`, which is emptied first. The processor's seconds that it took:
-    unlike those on the clock they hardly depend on what else the machine does."""
+    unlike those on the clock they hardly depend on what else the machine does. None after a numerical failure, where
+    that is an answer too."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     case = folder / f"{job}.xmp"
@@ -34,6 +35,8 @@ def run(folder, text, job="case"):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     outcome = _mpm.run([case, "--output-dir", folder], timeout=None)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if may_fail and outcome.code == _mpm.NUMERICAL_FAILURE:
+        return None
     if outcome.code != _mpm.DONE:
         raise SystemExit(f"{case}: {outcome}")
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -51,7 +54,7 @@ def write(folder, name, rows, columns):
     """NAME.csv and NAME.md; columns: {key: (heading, format)} for the Markdown, all keys go into the CSV."""
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / f"{name}.csv", "w", newline="") as file:
-        out = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        out = csv.DictWriter(file, list(max(rows, key=len)), lineterminator="\n")
         out.writeheader()
         out.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
     lines = ["| " + " | ".join(heading for heading, _ in columns.values()) + " |", "|" + " --- |" * len(columns)]

@@ -1,4 +1,5 @@
-// The set of bricks of a rank: slots, neighbours, ghosts, and particles that stay where they are when it changes.
+// The set of bricks of a rank: slots, neighbours, ghosts, and particles that stay where they are when it
+// changes.
 #include "core/grid/brick_grid.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Which cell and which brick a point is in: on faces, in bricks that end within the grid's last cells, and with an
-// origin below zero.
+// Which cell and which brick a point is in: on faces, in bricks that end within the grid's last cells, and
+// with an origin below zero.
 #include "core/grid/brick.hpp"
 
 #include <cmath>

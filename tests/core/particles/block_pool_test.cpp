@@ -92,7 +92,8 @@ TEST_CASE("Removing puts the last particle into the gap, and gives back empty bl
   CHECK(pool.blocks_in_use() == 0);
 }
 
-TEST_CASE("Blocks keep their address while others come, lie on cache lines, and are zero when given out anew") {
+TEST_CASE(
+    "Blocks keep their address while others come, lie on cache lines, and are zero when given out anew") {
   BlockPool pool(layout_with(Column::damage));
   std::vector<BlockIndex> blocks;
   std::vector<const double*> addresses;

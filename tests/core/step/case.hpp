@@ -1,7 +1,9 @@
 #pragma once
-// Small runs without input files: a case of the oracle (tests/support/reference_stepper.hpp) becomes a model of the
-// production code, with the oracle's own stress update as its material, so that only the stepper is on trial.
+// Small runs without input files: a case of the oracle (tests/support/reference_stepper.hpp) becomes a model
+// of the production code, with the oracle's own stress update as its material, so that only the stepper is on
+// trial.
 
+#include <algorithm>
 #include <cfenv>
 #include <cmath>
 #include <limits>
@@ -14,7 +16,8 @@
 
 namespace mpm::tests {
 
-/// A stepper lets denormal numbers count as zero, for the thread that made it and for good: other tests do not want that.
+/// A stepper lets denormal numbers count as zero, for the thread that made it and for good: other tests do
+/// not want that.
 class KeepFloatingPoint {
  public:
   KeepFloatingPoint() { std::fegetenv(&before_); }
@@ -45,7 +48,8 @@ class OracleLaw final : public core::ConstitutiveModel {
     each(batch, [&](int i, ReferenceParticle& p) {
       Matrix l;
       for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) l[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] = batch.gradient[3 * a + b][i];
+        for (int b = 0; b < 3; ++b)
+          l[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] = batch.gradient[3 * a + b][i];
       }
       update_stress(material_, batch.cell_size, batch.dt, l, p);
       if (!std::isfinite(p.E)) ++batch.events.not_finite;
@@ -62,7 +66,9 @@ class OracleLaw final : public core::ConstitutiveModel {
     p.m = at(core::Column::mass);
     p.V = at(core::Column::volume);
     const double xy = at(core::Column::s_xy), yz = at(core::Column::s_yz), xz = at(core::Column::s_xz);
-    p.s = {{{at(core::Column::s_xx), xy, xz}, {xy, at(core::Column::s_yy), yz}, {xz, yz, at(core::Column::s_zz)}}};
+    p.s = {{{at(core::Column::s_xx), xy, xz},
+            {xy, at(core::Column::s_yy), yz},
+            {xz, yz, at(core::Column::s_zz)}}};
     p.p = at(core::Column::pressure);
     p.q = at(core::Column::viscous_pressure);
     p.E = at(core::Column::internal_energy);
@@ -79,8 +85,10 @@ class OracleLaw final : public core::ConstitutiveModel {
     }
     put(core::Column::mass, p.m);
     put(core::Column::volume, p.V);
-    put(core::Column::s_xx, p.s[0][0]), put(core::Column::s_yy, p.s[1][1]), put(core::Column::s_zz, p.s[2][2]);
-    put(core::Column::s_xy, p.s[0][1]), put(core::Column::s_yz, p.s[1][2]), put(core::Column::s_xz, p.s[0][2]);
+    put(core::Column::s_xx, p.s[0][0]), put(core::Column::s_yy, p.s[1][1]),
+        put(core::Column::s_zz, p.s[2][2]);
+    put(core::Column::s_xy, p.s[0][1]), put(core::Column::s_yz, p.s[1][2]),
+        put(core::Column::s_xz, p.s[0][2]);
     put(core::Column::pressure, p.p);
     put(core::Column::viscous_pressure, p.q);
     put(core::Column::internal_energy, p.E);
@@ -110,10 +118,13 @@ class OracleLaw final : public core::ConstitutiveModel {
 };
 
 inline core::Scheme scheme_of(ReferenceScheme s) {
-  return s == ReferenceScheme::usf ? core::Scheme::usf : s == ReferenceScheme::usl ? core::Scheme::usl : core::Scheme::musl;
+  return s == ReferenceScheme::usf   ? core::Scheme::usf
+         : s == ReferenceScheme::usl ? core::Scheme::usl
+                                     : core::Scheme::musl;
 }
 
-/// One run of the production stepper. Bodies: particles [0, split) of the case are the first, the rest the second.
+/// One run of the production stepper. Bodies: particles [0, split) of the case are the first, the rest the
+/// second.
 struct SmallRun {
   KeepFloatingPoint keep;
   std::shared_ptr<core::Scene> scene = std::make_shared<core::Scene>();
@@ -121,7 +132,6 @@ struct SmallRun {
   core::Model model;
   std::unique_ptr<core::Stepper> stepper;
 
-  /// `settle`: in the order of cells, as at a start; otherwise appended as they come. Call start() then.
   explicit SmallRun(const ReferenceCase& c, std::size_t split = std::numeric_limits<std::size_t>::max()) {
     scene->solution.scheme = scheme_of(c.scheme);
     scene->solution.end_time = 1e30;
@@ -154,7 +164,8 @@ struct SmallRun {
     core::Travellers travellers;
     std::vector<core::BrickCount> counts;
     const core::ColumnLayout& layout = model.bodies[0].pool->layout();
-    std::vector<double> block(static_cast<std::size_t>(layout.block_doubles())), flat(static_cast<std::size_t>(layout.columns()));
+    std::vector<double> block(static_cast<std::size_t>(layout.block_doubles())),
+        flat(static_cast<std::size_t>(layout.columns()));
     double fastest = 0;
     for (std::size_t n = 0; n < c.particles.size(); ++n) {
       ReferenceParticle p = c.particles[n];
@@ -171,7 +182,8 @@ struct SmallRun {
     core::insert_travellers(model, travellers);
     for (core::Brick& brick : model.grid->bricks()) {
       for (core::Cohort& cohort : brick.cohorts) {
-        core::sort_by_cell(*model.grid, brick.coord, *model.bodies[static_cast<std::size_t>(cohort.body)].pool, cohort);
+        core::sort_by_cell(*model.grid, brick.coord,
+                           *model.bodies[static_cast<std::size_t>(cohort.body)].pool, cohort);
       }
     }
     model.clock.critical_dt = model.clock.first_critical_dt = core::critical_step(*model.grid, fastest);
@@ -187,7 +199,8 @@ struct SmallRun {
     std::map<std::int64_t, ReferenceParticle> all;
     core::for_each_block(model, [&](int, const core::ColumnLayout& layout, const double* block, int used) {
       for (int i = 0; i < used; ++i) {
-        all[static_cast<std::int64_t>(block[layout.offset(core::Column::identity) + i])] = OracleLaw::read(layout, block + i);
+        all[static_cast<std::int64_t>(block[layout.offset(core::Column::identity) + i])] =
+            OracleLaw::read(layout, block + i);
       }
     });
     return all;
@@ -213,8 +226,8 @@ struct SmallRun {
         const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
         const int at = pool.layout().offset(core::Column::identity);
         for (std::uint32_t i = 0; i < cohort.count; ++i) {
-          bricks[core::key_of(brick.coord)].push_back(
-              static_cast<std::int64_t>(pool.block(cohort.blocks[i / core::block_lanes])[at + static_cast<int>(i % core::block_lanes)]));
+          bricks[core::key_of(brick.coord)].push_back(static_cast<std::int64_t>(pool.block(
+              cohort.blocks[i / core::block_lanes])[at + static_cast<int>(i % core::block_lanes)]));
         }
       }
     }
@@ -224,8 +237,8 @@ struct SmallRun {
   }
 };
 
-/// A block of elastic particles, 2 per cell edge, on a grid of oblong cells whose origin is negative and whose last
-/// bricks are partial; it flies obliquely and turns, over several bricks.
+/// A block of elastic particles, 2 per cell edge, on a grid of oblong cells whose origin is negative and
+/// whose last bricks are partial; it flies obliquely and turns, over several bricks.
 inline ReferenceCase tumbling_block() {
   ReferenceCase c;
   c.material.density = 2;

@@ -1,5 +1,6 @@
-// What particles take from nodes, against a plain loop, and against fields that trilinear functions hold exactly.
-// Tolerance: eight products of numbers of size 1, rounded at 1e-16; gradients divide by the cell's edge of about 1.
+// What particles take from nodes, against a plain loop, and against fields that trilinear functions hold
+// exactly. Tolerance: eight products of numbers of size 1, rounded at 1e-16; gradients divide by the cell's
+// edge of about 1.
 #include "core/step/grid_to_particles.hpp"
 
 #include <catch2/catch.hpp>
@@ -26,7 +27,8 @@ std::vector<double> random_records(const NodeBlockShape& shape, unsigned seed) {
   return nodes;
 }
 
-/// f(particle's columns before, its block, its lane) over the blocks of the case; `work(block)` before each block.
+/// f(particle's columns before, its block, its lane) over the blocks of the case; `work(block)` before each
+/// block.
 template <class W, class F>
 void over(TransferCase& c, W work, F f) {
   for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
@@ -38,17 +40,15 @@ void over(TransferCase& c, W work, F f) {
   }
 }
 
-/// Largest |S-weighted sum - value| of component `first` + a over particles and axes, value(block, lane, a).
-struct Sum {
-  double operator()(const TransferCase& c, const std::vector<double>& nodes, const std::vector<double>& p, int component) const {
-    double sum = 0;
-    c.for_each_node(p, [&](int node, double s, const Vec3<double>&) {
-      sum += s * nodes[static_cast<std::size_t>(node_doubles * node + component)];
-    });
-    return sum;
-  }
-};
-constexpr Sum interpolated;
+/// Sum of S times a component of the records.
+double interpolated(const TransferCase& c, const std::vector<double>& nodes, const std::vector<double>& p,
+                    int component) {
+  double sum = 0;
+  c.for_each_node(p, [&](int node, double s, const Vec3<double>&) {
+    sum += s * nodes[static_cast<std::size_t>(node_doubles * node + component)];
+  });
+  return sum;
+}
 
 }  // namespace
 
@@ -61,7 +61,10 @@ TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
       const double dt = 0.03;
       double worst = 0;
       over(
-          c, [&](double* block) { add_velocity_increment(c.frame(), corners, c.pool.layout(), nodes.data(), block); },
+          c,
+          [&](double* block) {
+            add_velocity_increment(c.frame(), corners, c.pool.layout(), nodes.data(), block);
+          },
           [&](const std::vector<double>& p, const double* block, int lane) {
             for (int a = 0; a < 3; ++a) {
               const double v = p[static_cast<std::size_t>(3 + a)] + interpolated(c, nodes, p, 4 + a);
@@ -71,7 +74,10 @@ TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
       CHECK(worst < tolerance);
       worst = 0;
       over(
-          c, [&](double* block) { move_with_grid(c.frame(), corners, c.pool.layout(), nodes.data(), dt, block); },
+          c,
+          [&](double* block) {
+            move_with_grid(c.frame(), corners, c.pool.layout(), nodes.data(), dt, block);
+          },
           [&](const std::vector<double>& p, const double* block, int lane) {
             for (int a = 0; a < 3; ++a) {
               const double x = p[static_cast<std::size_t>(a)] + dt * interpolated(c, nodes, p, a);
@@ -94,9 +100,10 @@ TEST_CASE("Velocity gradients are a plain loop's, of the second velocity and of 
     over(
         c,
         [&](const double* block) {
-          velocity_gradient<StrainVelocity::second>(c.frame(), corners, c.pool.layout(), nodes.data(), fall, block, second.row, 0);
-          velocity_gradient<StrainVelocity::regularised>(c.frame(), corners, c.pool.layout(), nodes.data(), fall,
-                                                         block, regularised.row, 0);
+          velocity_gradient<StrainVelocity::second>(c.frame(), corners, c.pool.layout(), nodes.data(), fall,
+                                                    block, second.row, 0);
+          velocity_gradient<StrainVelocity::regularised>(c.frame(), corners, c.pool.layout(), nodes.data(),
+                                                         fall, block, regularised.row, 0);
         },
         [&](const std::vector<double>& p, const double*, int lane) {
           double l[9] = {}, r[9] = {};
@@ -118,7 +125,8 @@ TEST_CASE("Velocity gradients are a plain loop's, of the second velocity and of 
   }
 }
 
-TEST_CASE("Constant and linear velocity fields come out exactly, in the cell, on its faces, edges and corners") {
+TEST_CASE(
+    "Constant and linear velocity fields come out exactly, in the cell, on its faces, edges and corners") {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {2, 2, 2}}) {
     TransferCase c(brick, 0, 150, 13);
     const double constant[3] = {3, -2, 0.5}, linear[3][3] = {{1, -2, 3}, {0.5, 4, -1}, {-3, 2, 0.25}};
@@ -143,7 +151,8 @@ TEST_CASE("Constant and linear velocity fields come out exactly, in the cell, on
     over(
         c,
         [&](double* block) {
-          velocity_gradient<StrainVelocity::second>(c.frame(), corners, c.pool.layout(), nodes.data(), {}, block, g.row, 0);
+          velocity_gradient<StrainVelocity::second>(c.frame(), corners, c.pool.layout(), nodes.data(), {},
+                                                    block, g.row, 0);
           cell_strain(c.frame(), corners, c.pool.layout(), nodes.data(), 4, 0.01, block, strain, 0);
           add_velocity_increment(c.frame(), corners, c.pool.layout(), nodes.data(), block);
         },
@@ -183,7 +192,8 @@ TEST_CASE("The cell's strain is that of its middle, the same for all its particl
           const int d[3] = {n & 1, (n >> 1) & 1, n >> 2};
           const int node = c.shape.index(at.cell[0] + d[0], at.cell[1] + d[1], at.cell[2] + d[2]);
           for (int a = 0; a < 3; ++a) {
-            sum += 0.25 * (d[a] == 1 ? 1 : -1) / c.geometry.cell[a] * nodes[static_cast<std::size_t>(node_doubles * node + 4 + a)];
+            sum += 0.25 * (d[a] == 1 ? 1 : -1) / c.geometry.cell[a] *
+                   nodes[static_cast<std::size_t>(node_doubles * node + 4 + a)];
           }
         }
         worst = std::max(worst, std::abs(strain[lane] - sum));
@@ -194,7 +204,9 @@ TEST_CASE("The cell's strain is that of its middle, the same for all its particl
 TEST_CASE("Lanes outside the brick are found, lanes out of use are not") {
   TransferCase c({1, 1, 1}, 0, 8, 15);
   double* block = c.pool.block(c.cohort.blocks[0]);
-  const auto put = [&](int lane, int axis, double cells) { block[block_lanes * axis + lane] = c.geometry.origin[axis] + c.geometry.cell[axis] * cells; };
+  const auto put = [&](int lane, int axis, double cells) {
+    block[block_lanes * axis + lane] = c.geometry.origin[axis] + c.geometry.cell[axis] * cells;
+  };
   for (int lane = 0; lane < 8; ++lane) {
     for (int a = 0; a < 3; ++a) put(lane, a, 6);
   }
@@ -203,6 +215,7 @@ TEST_CASE("Lanes outside the brick are found, lanes out of use are not") {
   put(2, 1, 3.99);
   put(5, 2, -100);
   block[block_lanes * 1 + 6] = std::nan("");
-  CHECK(lanes_outside(c.frame(), c.pool.layout(), block, 8) == ((1u << 0) | (1u << 2) | (1u << 5) | (1u << 6)));
+  CHECK(lanes_outside(c.frame(), c.pool.layout(), block, 8) ==
+        ((1u << 0) | (1u << 2) | (1u << 5) | (1u << 6)));
   CHECK(lanes_outside(c.frame(), c.pool.layout(), block, 5) == ((1u << 0) | (1u << 2)));
 }

@@ -1,4 +1,5 @@
-// The order of particles in a cohort: by cell and as they were, by identity, and arrivals in the order of identities.
+// The order of particles in a cohort: by cell and as they were, by identity, and arrivals in the order of
+// identities.
 #include "core/step/migration.hpp"
 
 #include <algorithm>
@@ -76,14 +77,16 @@ TEST_CASE("Arrivals are appended in the order of identities, in whatever order t
     }
     std::shuffle(arrivals.begin(), arrivals.end(), random);
     for (const auto& [body, columns] : arrivals) {
-      travellers.add(run.model.grid->geometry().brick_at({columns[0], columns[1], columns[2]}), body, columns.data(), columns_of);
+      travellers.add(run.model.grid->geometry().brick_at({columns[0], columns[1], columns[2]}), body,
+                     columns.data(), columns_of);
     }
     insert_travellers(run.model, travellers);
     if (trial == 0) first = run.order();
     CHECK(run.order() == first);
     CHECK(run.order().size() == 1440);
     for (const Brick& brick : run.model.grid->bricks()) {
-      CHECK(std::is_sorted(brick.cohorts.begin(), brick.cohorts.end(), [](const Cohort& a, const Cohort& b) { return a.body < b.body; }));
+      CHECK(std::is_sorted(brick.cohorts.begin(), brick.cohorts.end(),
+                           [](const Cohort& a, const Cohort& b) { return a.body < b.body; }));
     }
   }
 }

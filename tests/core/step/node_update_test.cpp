@@ -83,8 +83,8 @@ TEST_CASE("Every copy of a node has the same sum and the same motion, to the las
   for (const int halo : {0, 1}) {
     for (unsigned density = 0; density <= 8; ++density) {
       GridGeometry g = geometry_of({14, 13, 16});
-      g.boundary = {Boundary::fixed, Boundary::rigid_wall, Boundary::symmetry, Boundary::free, Boundary::rigid_wall,
-                    Boundary::symmetry};
+      g.boundary = {Boundary::fixed, Boundary::rigid_wall, Boundary::symmetry,
+                    Boundary::free,  Boundary::rigid_wall, Boundary::symmetry};
       BrickGrid grid(g, halo);
       grid.reset(random_bricks(random, density), {});
       fill(grid, NodeArray::first, random);
@@ -128,8 +128,10 @@ TEST_CASE("A node's sum is that of all bricks which hold it") {
     const SharedNodes shared(grid.shape());
     // At most eight addends (27 with a halo), in another order: round-off of their sizes.
     double worst = 0;
-    for (const auto& [node, r] : agreed(grid, [&](Slot s, double* r) { sum_contributions<NodeArray::first>(grid, shared, s, r); })) {
-      for (std::size_t c = 0; c < node_doubles; ++c) worst = std::max(worst, std::abs(r[c] - first[node][c]) / size[node][c]);
+    for (const auto& [node, r] :
+         agreed(grid, [&](Slot s, double*r) { sum_contributions<NodeArray::first>(grid, shared, s, r); })) {
+      for (std::size_t c = 0; c < node_doubles; ++c)
+        worst = std::max(worst, std::abs(r[c] - first[node][c]) / size[node][c]);
     }
     CHECK(worst < 4e-15);
     const auto two = agreed(grid, [&](Slot s, double* r) {
@@ -156,7 +158,8 @@ TEST_CASE("A free node moves by (f/m + g - c v) dt; one at the cutoff or below d
   const BoundaryFaces faces(geometry_of({8, 8, 8}), shape, {0, 0, 0});
   CHECK(faces.none());
   std::vector<double> records(static_cast<std::size_t>(node_doubles * shape.nodes()));
-  const Record heavy{16, -8, 4, 8, 32, 8, -16, 0}, light{4, 0, 0, 2, 2, 0, 0, 0}, cut{1, 1, 1, 0.125, 1e9, 1, 1, 0};
+  const Record heavy{16, -8, 4, 8, 32, 8, -16, 0}, light{4, 0, 0, 2, 2, 0, 0, 0},
+      cut{1, 1, 1, 0.125, 1e9, 1, 1, 0};
   std::copy(heavy.begin(), heavy.end(), records.begin());
   std::copy(light.begin(), light.end(), records.begin() + node_doubles);
   std::copy(cut.begin(), cut.end(), records.begin() + 2 * node_doubles);
@@ -175,7 +178,8 @@ TEST_CASE("A free node moves by (f/m + g - c v) dt; one at the cutoff or below d
 }
 
 TEST_CASE("Every boundary holds what it should on every face, also where the last brick is partial") {
-  for (const std::array<std::int64_t, 3> cells : {std::array<std::int64_t, 3>{8, 8, 8}, {6, 5, 7}, {3, 4, 1}}) {
+  for (const std::array<std::int64_t, 3> cells :
+       {std::array<std::int64_t, 3>{8, 8, 8}, {6, 5, 7}, {3, 4, 1}}) {
     for (int face = 0; face < 6; ++face) {
       for (const Boundary boundary : {Boundary::fixed, Boundary::symmetry, Boundary::rigid_wall}) {
         INFO("cells " << cells[0] << ", face " << face << ", boundary " << static_cast<int>(boundary));
@@ -194,8 +198,10 @@ TEST_CASE("Every boundary holds what it should on every face, also where the las
         const SharedNodes shared(grid.shape());
         const double dt = 0.5;
         std::vector<double> sums(static_cast<std::size_t>(node_doubles * grid.shape().nodes()));
-        const auto before = agreed(grid, [&](Slot s, double* r) { sum_contributions<NodeArray::first>(grid, shared, s, r); });
-        const auto second = agreed(grid, [&](Slot s, double* r) { sum_contributions<NodeArray::second>(grid, shared, s, r); });
+        const auto before =
+            agreed(grid, [&](Slot s, double* r) { sum_contributions<NodeArray::first>(grid, shared, s, r); });
+        const auto second = agreed(
+            grid, [&](Slot s, double* r) { sum_contributions<NodeArray::second>(grid, shared, s, r); });
         const auto moved = [&](Slot s, double* r) {
           sum_contributions<NodeArray::first>(grid, shared, s, r);
           update_nodes({}, dt, 0, BoundaryFaces(g, grid.shape(), grid.brick(s).coord), shared.nodes(), r);
@@ -204,7 +210,8 @@ TEST_CASE("Every boundary holds what it should on every face, also where the las
         const auto mapped = agreed(grid, [&](Slot s, double* r) {
           moved(s, r);
           sum_contributions<NodeArray::second>(grid, shared, s, sums.data());
-          second_velocities(0, sums.data(), BoundaryFaces(g, grid.shape(), grid.brick(s).coord), shared.nodes(), r);
+          second_velocities(0, sums.data(), BoundaryFaces(g, grid.shape(), grid.brick(s).coord),
+                            shared.nodes(), r);
         });
         const auto axis = static_cast<std::size_t>(face / 2);
         const double outward = face % 2 == 0 ? -1 : 1;
@@ -218,9 +225,11 @@ TEST_CASE("Every boundary holds what it should on every face, also where the las
             const double v = (b[a] + dt * b[4 + a]) / b[3], w = second.at(node)[a] / b[3];
             const auto stops = [&](double velocity) {
               if (!on_face) return false;
-              return boundary == Boundary::fixed || (a == axis && (boundary == Boundary::symmetry || outward * velocity > 0));
+              return boundary == Boundary::fixed ||
+                     (a == axis && (boundary == Boundary::symmetry || outward * velocity > 0));
             };
-            // A wall takes away the velocity that the node had; the others leave the particles' velocity alone.
+            // A wall takes away the velocity that the node had; the others leave the particles' velocity
+            // alone.
             const double reaction = boundary == Boundary::rigid_wall ? -b[a] / b[3] : 0;
             const double size = std::abs(b[a] / b[3]) + std::abs(dt * b[4 + a] / b[3]);
             wrong += !(std::abs(r[a] - (stops(v) ? 0 : v)) <= 1e-14 * size);

@@ -1,7 +1,8 @@
-// The whole step against the naive stepper of tests/support, which shares no code with it; both use that one's
-// stress update, so what differs is the stepper. The two add up the same numbers in different orders and with
-// different roundings (1e-16). A run amplifies that: a node lighter by S divides by S, and a yielding particle sits
-// on a kink. 1e-9 of each quantity's own scale leaves room for that and none for a term that is missing.
+// The whole step against the naive stepper of tests/support, which shares no code with it; both use that
+// one's stress update, so what differs is the stepper. The two add up the same numbers in different orders
+// and with different roundings (1e-16). A run amplifies that: a node lighter by S divides by S, and a
+// yielding particle sits on a kink. 1e-9 of each quantity's own scale leaves room for that and none for a
+// term that is missing.
 #include <algorithm>
 
 #include <catch2/catch.hpp>
@@ -43,7 +44,8 @@ void compare(const SmallRun& run, const ReferenceStepper& oracle, double toleran
     x.note(norm(minus(p.x, q.x)), run.model.grid->geometry().smallest_cell());
     v.note(norm(minus(p.v, q.v)), norm(q.v));
     volume.note(std::abs(p.V - q.V), q.V);
-    for (std::size_t a = 0; a < 3; ++a) stress.note(norm(minus(p.s[a], q.s[a])), norm(q.s[a]) + std::abs(q.p));
+    for (std::size_t a = 0; a < 3; ++a)
+      stress.note(norm(minus(p.s[a], q.s[a])), norm(q.s[a]) + std::abs(q.p));
     stress.note(std::abs(p.p - q.p) + std::abs(p.q - q.q), std::abs(q.p) + std::abs(q.q));
     energy.note(std::abs(p.E - q.E), std::abs(q.E));
     strain.note(std::abs(p.epef - q.epef), q.epef);
@@ -56,8 +58,8 @@ void compare(const SmallRun& run, const ReferenceStepper& oracle, double toleran
   CHECK(strain.relative() < tolerance);
 }
 
-/// Both take the oracle's steps. The stepper's own choice is the same in MUSL; USF and USL know the particles' speeds of
-/// before the step only, which is off by the share of dv in c + |v|.
+/// Both take the oracle's steps. The stepper's own choice is the same in MUSL; USF and USL know the
+/// particles' speeds of before the step only, which is off by the share of dv in c + |v|.
 void run_both(ReferenceCase c, int steps, double tolerance) {
   c.usl_mass_floor = usl_floor;
   ReferenceStepper oracle(c);

@@ -1,7 +1,8 @@
-// What particles add to nodes, against a plain loop over particles and nodes. Tolerance: both add up to some ten
-// products per node, in different orders, each rounded to 1e-16 of the largest. A particle on the face between two
-// cells may be in either by round-off; what a node gets of it differs by 1e-14 of it then, as S or its jump vanishes
-// for mass and momentum; for forces the cell decides, so both sides ask for it in the same way.
+// What particles add to nodes, against a plain loop over particles and nodes. Tolerance: both add up to some
+// ten products per node, in different orders, each rounded to 1e-16 of the largest. A particle on the face
+// between two cells may be in either by round-off; what a node gets of it differs by 1e-14 of it then, as S
+// or its jump vanishes for mass and momentum; for forces the cell decides, so both sides ask for it in the
+// same way.
 #include "core/step/particles_to_grid.hpp"
 
 #include <catch2/catch.hpp>
@@ -22,7 +23,8 @@ std::vector<double> mapped(const TransferCase& c) {
   sums.clear();
   for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
     const int used = static_cast<int>(std::min<std::size_t>(block_lanes, c.cohort.count - block_lanes * b));
-    add_block<what>(c.frame(), corners, c.pool.layout(), c.pool.block(c.cohort.blocks[b]), used, sums, nodes.data());
+    add_block<what>(c.frame(), corners, c.pool.layout(), c.pool.block(c.cohort.blocks[b]), used, sums,
+                    nodes.data());
   }
   sums.flush(nodes.data(), corners);
   return nodes;
@@ -34,7 +36,8 @@ std::vector<double> plain(const TransferCase& c) {
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
   for (const std::vector<double>& p : c.particles) {
     const double v[3] = {p[3], p[4], p[5]}, m = p[6], volume = p[7], total = p[14] + p[15];
-    const double sigma[3][3] = {{p[8] - total, p[11], p[13]}, {p[11], p[9] - total, p[12]}, {p[13], p[12], p[10] - total}};
+    const double sigma[3][3] = {
+        {p[8] - total, p[11], p[13]}, {p[11], p[9] - total, p[12]}, {p[13], p[12], p[10] - total}};
     c.for_each_node(p, [&](int node, double s, const Vec3<double>& g) {
       double* at = nodes.data() + width * node;
       for (int a = 0; a < 3; ++a) {

@@ -1,9 +1,8 @@
 // Whole steps: what must hold of any run, to the last bit or to round-off.
 #include "core/step/stepper.hpp"
 
-#include <omp.h>
-
 #include <catch2/catch.hpp>
+#include <omp.h>
 
 #include "core/step/totals.hpp"
 #include "tests/core/step/case.hpp"
@@ -29,7 +28,8 @@ ReferenceCase tumbling(ReferenceScheme scheme) {
 
 constexpr std::size_t half = 360;  // of the block's particles: two bodies
 
-/// A run that goes on with the particles of another, as a restart file keeps them: in the order of their cohorts.
+/// A run that goes on with the particles of another, as a restart file keeps them: in the order of their
+/// cohorts.
 std::unique_ptr<SmallRun> continued(const SmallRun& from, ReferenceCase c) {
   c.particles.resize(half + 1);  // two bodies
   auto to = std::make_unique<SmallRun>(c, half);
@@ -82,7 +82,8 @@ TEST_CASE("A run that goes on from a copy of its particles gives the same bits, 
     for (int step = 1; step <= 45; ++step) {
       whole.step();
       // Before, at and after the step that sorts particles and forgets empty bricks.
-      if (step == 7 || step == 19 || step == 20 || step == 21 || step == 33) restarted.push_back(continued(whole, tumbling(scheme)));
+      if (step == 7 || step == 19 || step == 20 || step == 21 || step == 33)
+        restarted.push_back(continued(whole, tumbling(scheme)));
     }
     for (const auto& r : restarted) {
       INFO("scheme " << static_cast<int>(scheme) << ", from step " << r->model.clock.step);
@@ -100,7 +101,8 @@ TEST_CASE("What is in lanes out of use changes nothing") {
     for (int step = 0; step < 25; ++step) {
       for_each_block(poisoned.model, [&](int, const ColumnLayout& layout, const double* block, int used) {
         for (int c = 0; c < layout.columns(); ++c) {
-          for (int lane = used; lane < block_lanes; ++lane) const_cast<double*>(block)[block_lanes * c + lane] = std::nan("");
+          for (int lane = used; lane < block_lanes; ++lane)
+            const_cast<double*>(block)[block_lanes * c + lane] = std::nan("");
         }
       });
       clean.step();
@@ -114,7 +116,8 @@ TEST_CASE("Without walls and gravity momentum stays what it was, to round-off") 
   for (const ReferenceScheme scheme : schemes) {
     SmallRun run(tumbling(scheme), half);
     const Totals before = compute_totals(run.model, run.solo);
-    const double size = std::sqrt(2 * before.kinetic * before.mass);  // what the momenta add up to, signs apart
+    const double size =
+        std::sqrt(2 * before.kinetic * before.mass);  // what the momenta add up to, signs apart
     run.step(40);
     const Totals after = compute_totals(run.model, run.solo);
     CHECK(after.particles == 720);
@@ -135,9 +138,11 @@ TEST_CASE("A stress-free body in uniform motion flies on as it is, across bricks
     double worst_x = 0, worst_v = 0, worst_stress = 0;
     for (const auto& [identity, p] : run.particles()) {
       for (std::size_t a = 0; a < 3; ++a) {
-        worst_x = std::max(worst_x, std::abs(p.x[a] - c.particles[static_cast<std::size_t>(identity)].x[a] - t * v[a]));
+        worst_x = std::max(
+            worst_x, std::abs(p.x[a] - c.particles[static_cast<std::size_t>(identity)].x[a] - t * v[a]));
         worst_v = std::max(worst_v, std::abs(p.v[a] - v[a]));
-        for (std::size_t b = 0; b < 3; ++b) worst_stress = std::max(worst_stress, std::abs(p.s[a][b]) + std::abs(p.p));
+        for (std::size_t b = 0; b < 3; ++b)
+          worst_stress = std::max(worst_stress, std::abs(p.s[a][b]) + std::abs(p.p));
       }
     }
     // Nodal velocities are p/m, rounded at 1e-16 of 6; some 40 steps of that.
@@ -170,14 +175,17 @@ TEST_CASE("A body in free fall falls, unstrained in any scheme") {
 }
 
 TEST_CASE("A symmetric problem stays symmetric") {
-  // Sums run in one direction, so mirror images differ by round-off; yielding amplifies that, but not to 1e-10.
+  // Sums run in one direction, so mirror images differ by round-off; yielding amplifies that, but not to
+  // 1e-10.
   for (const ReferenceScheme scheme : schemes) {
     ReferenceCase c = taylor_bar(1.27);
     c.scheme = scheme;
     SmallRun run(c);
     run.step(60);
     std::map<std::tuple<long, long, long>, Vector> at;  // by initial place, in hundredths
-    const auto key = [](double x, double y, double z) { return std::tuple{std::lround(100 * x), std::lround(100 * y), std::lround(100 * z)}; };
+    const auto key = [](double x, double y, double z) {
+      return std::tuple{std::lround(100 * x), std::lround(100 * y), std::lround(100 * z)};
+    };
     for (const auto& [identity, p] : run.particles()) {
       const Vector& x = c.particles[static_cast<std::size_t>(identity)].x;
       at[key(x[0], x[1], x[2])] = p.x;
@@ -186,8 +194,9 @@ TEST_CASE("A symmetric problem stays symmetric") {
     for (const auto& [place, x] : at) {
       const auto [i, j, k] = place;
       const Vector mirror_x = at.at({-i, j, k}), mirror_y = at.at({i, -j, k}), turned = at.at({j, i, k});
-      worst = std::max({worst, std::abs(mirror_x[0] + x[0]), std::abs(mirror_x[1] - x[1]), std::abs(mirror_x[2] - x[2]),
-                        std::abs(mirror_y[0] - x[0]), std::abs(mirror_y[1] + x[1]), std::abs(turned[0] - x[1])});
+      worst = std::max({worst, std::abs(mirror_x[0] + x[0]), std::abs(mirror_x[1] - x[1]),
+                        std::abs(mirror_x[2] - x[2]), std::abs(mirror_y[0] - x[0]),
+                        std::abs(mirror_y[1] + x[1]), std::abs(turned[0] - x[1])});
     }
     CHECK(worst < 1e-10 * c.cell[0]);
   }
@@ -215,17 +224,16 @@ TEST_CASE("A run that cannot go on says which particle is to blame") {
     });
     try {
       run.step();
-    } catch (const NumericalFailure& f) {
-      return std::string(f.what());
-    }
+    } catch (const NumericalFailure& f) { return std::string(f.what()); }
     return std::string();
   };
   using Catch::Contains;
   const double nan = std::nan("");
   CHECK_THAT(failure([&](const ColumnLayout& l, double* lane) { lane[l.offset(Column::position_y)] = nan; }),
              Contains("step 1") && Contains("particle ") && Contains("not a number"));
-  CHECK_THAT(failure([&](const ColumnLayout& l, double* lane) { lane[l.offset(Column::internal_energy)] = nan; }),
-             Contains("particle 17 of body \"body\"") && Contains("internal_energy=nan"));
+  CHECK_THAT(
+      failure([&](const ColumnLayout& l, double* lane) { lane[l.offset(Column::internal_energy)] = nan; }),
+      Contains("particle 17 of body \"body\"") && Contains("internal_energy=nan"));
 }
 
 TEST_CASE("Particles beyond a free face and those below the volume of erosion are gone, and in the books") {
@@ -253,7 +261,8 @@ TEST_CASE("Particles beyond a free face and those below the volume of erosion ar
   CHECK(now_left == 72);
   CHECK(after.particles == 720 - 74);
   CHECK(after.mass + after.removed_mass == Approx(before.mass).epsilon(1e-14));
-  CHECK(after.kinetic + after.removed_kinetic + after.internal + after.removed_internal == Approx(before.kinetic).epsilon(1e-12));
+  CHECK(after.kinetic + after.removed_kinetic + after.internal + after.removed_internal ==
+        Approx(before.kinetic).epsilon(1e-12));
   const std::vector<std::int64_t> rest = run.order();
   CHECK(std::find(rest.begin(), rest.end(), 400) == rest.end());
 }

@@ -1,14 +1,14 @@
 #pragma once
-// One brick with particles anywhere in it, faces, edges and corners included, and the textbook's shape functions at
-// them (thesis 2-17), for the tests of the transfer kernels.
+// One brick with particles anywhere in it, faces, edges and corners included, and the textbook's shape
+// functions at them (thesis 2-17), for the tests of the transfer kernels.
 
 #include <array>
 #include <cmath>
 #include <random>
 #include <vector>
 
-#include "core/step/shape.hpp"
 #include "core/particles/block_pool.hpp"
+#include "core/step/shape.hpp"
 
 namespace mpm::tests {
 
@@ -43,7 +43,8 @@ struct TransferCase {
         if (n % 5 == 4) s = std::floor(s);  // corners
         // The grid's upper face belongs to the last cell.
         const int first = core::brick_cells * (a == 0 ? b.x : a == 1 ? b.y : b.z);
-        if (n % 11 == 7 && first + cells == static_cast<double>(geometry.cells[static_cast<std::size_t>(a)])) s = cells;
+        if (n % 11 == 7 && first + cells == static_cast<double>(geometry.cells[static_cast<std::size_t>(a)]))
+          s = cells;
         p[static_cast<std::size_t>(a)] = geometry.origin[a] + geometry.cell[a] * (first + s);
       }
       p[6] = 0.5 + unit(random);  // mass
@@ -54,7 +55,8 @@ struct TransferCase {
 
   core::BrickFrame frame() const { return {geometry, shape, brick}; }
 
-  /// Scaled position in the brick, cell and fraction; a point that round-off puts below its brick is in its first cell.
+  /// Scaled position in the brick, cell and fraction; a point that round-off puts below its brick is in its
+  /// first cell.
   struct Place {
     std::array<int, 3> cell;
     std::array<double, 3> fraction;
@@ -79,7 +81,8 @@ struct TransferCase {
       const int d[3] = {n & 1, (n >> 1) & 1, n >> 2};
       double w[3], dw[3];
       for (int a = 0; a < 3; ++a) {
-        w[a] = d[a] == 1 ? at.fraction[static_cast<std::size_t>(a)] : 1 - at.fraction[static_cast<std::size_t>(a)];
+        w[a] = d[a] == 1 ? at.fraction[static_cast<std::size_t>(a)]
+                         : 1 - at.fraction[static_cast<std::size_t>(a)];
         dw[a] = (d[a] == 1 ? 1 : -1) / geometry.cell[a];
       }
       f(shape.index(at.cell[0] + d[0], at.cell[1] + d[1], at.cell[2] + d[2]), w[0] * w[1] * w[2],

@@ -18,17 +18,22 @@ double largest(const Mat3<double>& a) {
   return m;
 }
 Mat3<double> minus(const Mat3<double>& a, const Mat3<double>& b) {
-  return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yx - b.yx, a.yy - b.yy, a.yz - b.yz, a.zx - b.zx, a.zy - b.zy, a.zz - b.zz};
+  return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yx - b.yx, a.yy - b.yy,
+          a.yz - b.yz, a.zx - b.zx, a.zy - b.zy, a.zz - b.zz};
 }
-Mat3<double> transposed(const Mat3<double>& a) { return {a.xx, a.yx, a.zx, a.xy, a.yy, a.zy, a.xz, a.yz, a.zz}; }
+Mat3<double> transposed(const Mat3<double>& a) {
+  return {a.xx, a.yx, a.zx, a.xy, a.yy, a.zy, a.xz, a.yz, a.zz};
+}
 constexpr Mat3<double> identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
 /// Rodrigues: the rotation by |w| about w.
 Mat3<double> exact_rotation(const Vec3<double>& w) {
-  const double angle = std::sqrt(dot(w, w)), s = std::sin(angle) / angle, c = (1 - std::cos(angle)) / (angle * angle);
+  const double angle = std::sqrt(dot(w, w)), s = std::sin(angle) / angle,
+               c = (1 - std::cos(angle)) / (angle * angle);
   const Mat3<double> a{0, -w.z, w.y, w.z, 0, -w.x, -w.y, w.x, 0}, aa = a * a;
-  return {1 + c * aa.xx, s * a.xy + c * aa.xy, s * a.xz + c * aa.xz, s * a.yx + c * aa.yx, 1 + c * aa.yy,
-          s * a.yz + c * aa.yz, s * a.zx + c * aa.zx, s * a.zy + c * aa.zy, 1 + c * aa.zz};
+  return {1 + c * aa.xx,        s * a.xy + c * aa.xy, s * a.xz + c * aa.xz,
+          s * a.yx + c * aa.yx, 1 + c * aa.yy,        s * a.yz + c * aa.yz,
+          s * a.zx + c * aa.zx, s * a.zy + c * aa.zy, 1 + c * aa.zz};
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST_CASE("An h5part file holds every particle of every time") {
   writer.write(model, solo);
 
   const hdf5::Handle file = hdf5::open_file(folder / "a.h5part", hdf5::Access::read);
-  CHECK(names_in(file) == std::set<std::string>{"Step#0", "Step#1"});
+  CHECK(names_in(file) == std::set<std::string>{"Step#0", "Step#1", "unfinished"});
   CHECK(hdf5::read_string(file, "input_hash") == "0123456789abcdef");
   CHECK(hdf5::read_string(file, "length_unit") == "mm");
   const hdf5::Handle second = hdf5::open_group(file, "Step#1");
@@ -120,7 +120,7 @@ TEST_CASE("A run that goes on keeps the times up to its start and drops later on
   model.clock.time = 0.75;
   writer.write(model, solo);
   const hdf5::Handle file = hdf5::open_file(folder / "a.h5part", hdf5::Access::read);
-  CHECK(names_in(file) == std::set<std::string>{"Step#0", "Step#1", "Step#2"});
+  CHECK(names_in(file) == std::set<std::string>{"Step#0", "Step#1", "Step#2", "lost#0", "unfinished"});
   CHECK(hdf5::read_double(hdf5::open_group(file, "Step#2"), "TimeValue") == 0.75);
 }
 
