@@ -20,20 +20,26 @@ bool is_restart(const std::string& job) { return std::filesystem::path(job).exte
 /// The file itself, or for `Job.pe`, which names no step, the newest one that is whole. Collective.
 std::string find_restart(const std::string& named, const parallel::Communicator& world) {
   namespace fs = std::filesystem;
-  if (fs::exists(named)) return named;
   parallel::MpiExchange exchange(world);
+  if (exchange.any(world.rank() == 0 && fs::exists(named))) return named;
   const fs::path path(named);
-  std::vector<std::string> notices;
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
-  const std::string job = io::job_of_restart(named);
-  const auto newest = io::find_newest_restart(folder, job, exchange, notices);
+  std::vector<std::string> notices;
+  const auto newest_of = [&](const std::string& job) {
+    return io::find_newest_restart(folder, job, exchange, notices);
+  };
+  const std::string job = path.stem().string();
+  const auto newest = newest_of(job);
+  // `Job_17.pe` may name a job `Job_17` as well as a step of `Job`.
+  const auto sibling =
+      newest || io::job_of_restart(named) == job ? newest : newest_of(io::job_of_restart(named));
   if (world.rank() == 0) {
     for (const std::string& notice : notices) std::fprintf(stderr, "%s\n", notice.c_str());
   }
-  if (newest && job == path.stem().string()) return *newest;
+  if (newest) return *newest;
   throw io::FileError(
       "cannot read " + named + ": no such file" +
-      (newest ? "; the newest restart file of the job is " + *newest : "; nothing was started"));
+      (sibling ? "; the newest restart file of the job is " + *sibling : "; nothing was started"));
 }
 
 Case parsed(const std::string& bytes, const std::string& path) {
@@ -95,8 +101,8 @@ ExitCode convert_restart(const RunOptions& options, const parallel::Communicator
     throw core::InputErrors(core::SourceLocation{options.job, 0}, "-h5pt",
                             "converts a restart file: name a Job_<step>.pe");
   }
-  const std::string restart = find_restart(options.job, world);
   const Case c = load_case(options, world);
+  const std::string& restart = *c.restart;
   std::vector<io::Variable> variables;
   if (c.scene->output.post_processing)
     variables = io::variables_of(c.scene->output.post_processing->variables);

@@ -22,8 +22,18 @@ std::string duration(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-std::optional<double> time_of(const std::optional<Continuation>& from, const core::Model& model) {
-  return from ? std::optional<double>(model.clock.time) : std::nullopt;
+/// Up to where a continued run keeps what its files hold. One that has nothing left to do writes its last
+/// state again: it may have been killed before it could.
+struct Kept {
+  std::optional<std::int64_t> step;
+  std::optional<double> time;
+};
+
+Kept kept_of(const std::optional<Continuation>& from, const core::Model& model) {
+  if (!from) return {};
+  const core::Clock& clock = model.clock;
+  if (clock.time < model.scene->solution.end_time * (1 - 1e-12)) return {clock.step, clock.time};
+  return {clock.step - 1, std::nextafter(clock.time, 0.0)};
 }
 
 }  // namespace
@@ -34,7 +44,7 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
                  const std::optional<Continuation>& from, io::Log& log)
     : stem_(folder + "/" + model.scene->provenance.job_name),
       log_(log),
-      status_(stem_ + ".sta", model, from ? std::optional(model.clock.step) : std::nullopt, exchange),
+      status_(stem_ + ".sta", model, kept_of(from, model).step, exchange),
       report_(model.scene->output.console.print_time, model.clock.time),
       start_time_(model.clock.time),
       wall_start_(wall()),
@@ -51,14 +61,15 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
   using Vtk = core::PostProcessingInput::Vtk;
   pictures_ = Interval(post.time_interval, model.clock.time);
   if (post.h5part) {
-    h5part_.emplace(io::H5PartWriter::Settings{stem_ + ".h5part", variables, false, time_of(from, model)},
-                    model, exchange);
+    h5part_.emplace(
+        io::H5PartWriter::Settings{stem_ + ".h5part", variables, false, kept_of(from, model).time}, model,
+        exchange);
     if (!h5part_->notice().empty()) log_.warn("{}", h5part_->notice());
   }
   if (post.vtk != Vtk::none) {
     vtu_.emplace(
         io::VtuWriter::Settings{folder, model.scene->provenance.job_name, post.vtk == Vtk::file_per_body,
-                                variables, false, time_of(from, model)},
+                                variables, false, kept_of(from, model).time},
         model, exchange);
   }
 }

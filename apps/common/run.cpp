@@ -29,11 +29,17 @@ namespace mpm::apps {
 
 namespace {
 
+constexpr int most_threads = 1024;  // per rank; the system refuses very many by ending the program
+
 /// Threads per rank: the scene's word, else the environment's, else one; so many ranks on few cores stay
 /// quick.
 int choose_threads(const core::Scene& scene) {
   const bool environment = std::getenv("OMP_NUM_THREADS") != nullptr;
   const int threads = scene.solution.threads.value_or(environment ? omp_get_max_threads() : 1);
+  if (threads > most_threads) {
+    throw core::InputErrors(scene.solution.source, "OpenMPSetting",
+                            fmt::format("{} threads per rank are more than {}", threads, most_threads));
+  }
   omp_set_num_threads(threads);
   return threads;
 }

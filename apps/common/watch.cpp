@@ -1,10 +1,34 @@
 #include "apps/common/watch.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "core/step/migration.hpp"
+#include "core/step/witness.hpp"
+
 namespace mpm::apps {
+
+namespace {
+
+core::Witness first_with_negative_energy(const core::Model& model) {
+  core::Witness first;
+  std::vector<double> columns;
+  core::for_each_block(model, [&](int body, const core::ColumnLayout& layout, const double* block, int used) {
+    for (int lane = 0; lane < used; ++lane) {
+      if (!(block[layout.offset(core::Column::internal_energy) + lane] < 0)) continue;
+      first.offer(block[layout.offset(core::Column::identity) + lane], [&] {
+        columns.clear();
+        for (int c = 0; c < layout.columns(); ++c) columns.push_back(block[core::block_lanes * c + lane]);
+        return core::describe_particle(model.bodies[static_cast<std::size_t>(body)], columns.data());
+      });
+    }
+  });
+  return first;
+}
+
+}  // namespace
 
 void Watch::after_step(const core::Model& model, const core::Stepper::Incidents& mine,
                        core::Exchange& exchange, io::Log& log) {
@@ -17,11 +41,14 @@ void Watch::after_step(const core::Model& model, const core::Stepper::Incidents&
                                            "whose volume would have vanished", "left the grid"};
   for (int i = 0; i < 3; ++i) {
     if (counts[i] == 0) continue;
+    if (warn_.level == core::WarnInput::Level::per_particle && warned_[i]) continue;
     std::string text = fmt::format("step {}, time {:.6g}: {} particle(s) {}", model.clock.step,
                                    model.clock.time, counts[i], words[i]);
-    if (i == 2) { text += "; the first: " + core::first_of_all(exchange, mine.first_left).words; }
+    const core::Witness first = i == 0   ? first_with_negative_energy(model)
+                                : i == 2 ? mine.first_left
+                                         : core::Witness{};
+    if (i != 1) text += "; the first: " + core::first_of_all(exchange, first).words;
     if (warn_.level == core::WarnInput::Level::stop) throw core::NumericalFailure(text);
-    if (warn_.level == core::WarnInput::Level::per_particle && warned_[i]) continue;
     warned_[i] = true;
     log.warn("{}", text);
   }

@@ -56,7 +56,8 @@ struct GridGeometry {
   double smallest_cell() const { return std::fmin(cell.x, std::fmin(cell.y, cell.z)); }
   double cell_volume() const { return cell.x * cell.y * cell.z; }
 
-  /// Position in cells from the origin. Every place that asks for a cell asks through this very expression.
+  /// Position in cells from the origin. The kernels subtract their brick's first cell from it, which may
+  /// round differently within one ulp of a face: they clamp, and a particle there may live in either brick.
   template <class T>
   static T scaled(T x, double origin, double inverse_cell) {
     return (x - T(origin)) * T(inverse_cell);

@@ -1,6 +1,7 @@
 #include "core/grid/brick_grid.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <new>
 
 namespace mpm::core {
@@ -54,6 +55,8 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
       b.neighbour[static_cast<std::size_t>(n)] = it == slot.end() ? no_slot : it->second;
     }
   }
+  for ([[maybe_unused]] const Brick& b : bricks_)
+    assert(b.cohorts.empty() && "a brick with particles was dropped");
   bricks_ = std::move(bricks);
   ghosts_ = std::move(ghosts);
   slot_ = std::move(slot);

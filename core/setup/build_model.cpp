@@ -132,7 +132,11 @@ void refuse_too_large(const Model& model, const ModelPlan& plan, double identiti
   }
   // State, and half as much again for nodes and what is on its way.
   const double needed = 1.5 * plan.state_bytes / exchange.size();
-  double shortest[1] = {available_memory() / std::max(1.0, exchange.spread(1).mean * exchange.size())};
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  const std::vector<std::string> hosts = exchange.gather(host);
+  const auto here = std::count(hosts.begin(), hosts.end(), std::string(host));
+  double shortest[1] = {available_memory() / static_cast<double>(here)};
   exchange.minimum(shortest);
   if (needed > shortest[0]) {
     throw InputErrors(

@@ -207,7 +207,8 @@ inline Lanes<L> max(Lanes<L> a, double b) {
 }
 template <int L>
 inline Lanes<L> abs(Lanes<L> a) {
-  return max(a, -a);
+  using Bits = typename detail::Vector<L>::bits;
+  return (typename Lanes<L>::vector)((Bits)a.v & INT64_MAX);
 }
 
 namespace detail {

@@ -1,20 +1,14 @@
 // Grid to particles: velocity, position and velocity gradient of one block from its brick's nodes
 // (thesis 2-28, 2-42, 2-43). Particles ride in the lanes; each distinct cell among them is visited once.
 //
-// A node record after the node update: 0..2 velocity at the end of the step, 3 mass, 4..6 what the pass needs
-// beside it (see NodeField), 7 share of the increment that USL's strain rate leaves out.
+// A node record after the node update: 0..2 velocity at the end of the step, 3 mass, 4..6 its increment, or,
+// once that is with the particles, the velocity that strains them (node_update.hpp); 7 USL's share left out.
 #pragma once
 
 #include "core/particles/columns.hpp"
 #include "core/step/shape.hpp"
 
 namespace mpm::core {
-
-/// The nodal velocity whose gradient strains the particles.
-enum class StrainVelocity {
-  second,      ///< components 4..6: USF's velocity at the start of the step, MUSL's re-mapped one
-  regularised  ///< USL: components 0..2 less record[7] times what stress did to them in 4..6
-};
 
 /// v += sum S dv, from node components 4..6.
 inline void add_velocity_increment(const BrickFrame& frame, const CellCorners& corners,
@@ -36,31 +30,20 @@ inline void add_velocity_increment(const BrickFrame& frame, const CellCorners& c
   }
 }
 
-/// Velocity gradient of the block's particles into rows 0..8 (order of Mat3), columns `at` .. `at` + 7.
-/// `fall`: the part of the velocity increment that is gravity's, which strains nobody.
-template <StrainVelocity which, class Rows>
+/// Gradient of node components 4..6 at the block's particles into rows 0..8 (order of Mat3), columns `at` ..
+/// `at` + 7.
+template <class Rows>
 inline void velocity_gradient(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                              const double* nodes, const Vec3<double>& fall, const double* block, Rows& rows,
-                              int at) {
+                              const double* nodes, const double* block, Rows& rows, int at) {
   const auto col = [&](Column c) { return block + layout.offset(c); };
   for (int l = 0; l < block_lanes; l += real_width) {
     const auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
                                 col(Column::position_z) + l);
     Real g[9] = {};
     for_each_cell(p, [&](int node, MaskOf<Real> here) {
-      const double* lowest = nodes + node_doubles * node;
-      double left_out[8] = {};
-      if constexpr (which == StrainVelocity::regularised) {
-        for (int n = 0; n < 8; ++n) left_out[n] = -lowest[corners.offset[n] + 7];
-      }
+      const double* lowest = nodes + node_doubles * node + 4;
       for (int a = 0; a < 3; ++a) {
-        Vec3<Real> ga;
-        if constexpr (which == StrainVelocity::second) {
-          ga = scaled_gradient(CornerValues(lowest + 4 + a, corners), p);
-        } else {
-          const CornerValues v(lowest + a, corners), dv(lowest + 4 + a, corners);
-          ga = scaled_gradient(v.plus(left_out, dv, fall[a]), p);
-        }
+        const Vec3<Real> ga = scaled_gradient(CornerValues(lowest + a, corners), p);
         for (int j = 0; j < 3; ++j) g[3 * a + j] = select(here, ga[j], g[3 * a + j]);
       }
     });
@@ -71,12 +54,10 @@ inline void velocity_gradient(const BrickFrame& frame, const CellCorners& corner
 }
 
 /// Volumetric strain of the cells that hold the block's particles: dt times the mean of div v over each cell,
-/// which for trilinear functions is its value at the centre. `component`: first of the velocity in the node
-/// records.
+/// which for trilinear functions is its value at the centre; of node components 4..6.
 template <class Row>
 inline void cell_strain(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                        const double* nodes, int component, double dt, const double* block, Row& row,
-                        int at) {
+                        const double* nodes, double dt, const double* block, Row& row, int at) {
   const auto col = [&](Column c) { return block + layout.offset(c); };
   for (int l = 0; l < block_lanes; l += real_width) {
     auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
@@ -84,7 +65,7 @@ inline void cell_strain(const BrickFrame& frame, const CellCorners& corners, con
     p.fx = p.fy = p.fz = Real(0.5);
     Real strain(0.0);
     for_each_cell(p, [&](int node, MaskOf<Real> here) {
-      const double* lowest = nodes + node_doubles * node + component;
+      const double* lowest = nodes + node_doubles * node + 4;
       Real divergence(0.0);
       for (int a = 0; a < 3; ++a) {
         divergence += scaled_gradient(CornerValues(lowest + a, corners), p)[a] * Real(frame.inverse_cell[a]);

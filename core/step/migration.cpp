@@ -117,7 +117,7 @@ void Migration::collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& h
       dispose(static_cast<std::size_t>(cohort.body), columns, l.eroded, harvest);
     } else {
       const BrickCoord to = grid.geometry().brick_at(x);
-      if (to == brick.coord) continue;  // exactly on the grid's upper face
+      if (to == brick.coord) continue;  // on the grid's upper face, or within round-off of the brick's own
       if (!adjacent(to, brick.coord)) {
         complain(body, " moved over more than a brick in one step");
         continue;
@@ -167,7 +167,7 @@ void Migration::collect(std::vector<std::vector<Leaver>>& leavers) {
   wanted_.clear();
   left_now_ = 0;
   first_left_ = complaint_ = {};
-#pragma omp parallel for schedule(dynamic, 16)
+#pragma omp parallel for schedule(dynamic, 16) num_threads(static_cast <int>(harvests_.size()))
   for (std::size_t s = 0; s < leavers.size(); ++s) {
     if (leavers[s].empty()) continue;
     collect_from(static_cast<Slot>(s), leavers[s], harvests_[static_cast<std::size_t>(omp_get_thread_num())]);

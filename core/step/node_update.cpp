@@ -125,4 +125,17 @@ void second_velocities(double mass_cutoff, const double* momenta, const Boundary
   constrain_second_velocity(faces, record);
 }
 
+void regularised_velocities(const Vec3<double>& fall, const BoundaryFaces& faces, int nodes, double* record) {
+  const Half g(Half::vector{fall.x, fall.y, fall.z, 0});
+  for (int n = 0; n < nodes; ++n) {
+    double* at = record + node_doubles * n;
+    store(at + 4, load<Half>(at) - Half(at[7]) * (load<Half>(at + 4) - g));
+  }
+  constrain_second_velocity(faces, record);
+  // A wall that has stopped a node took all of its velocity; what was left out of that strains nobody.
+  faces.for_each_node(record, [](int axis, int, Boundary boundary, double* at) {
+    if (boundary == Boundary::rigid_wall && at[axis] == 0) at[4 + axis] = 0;
+  });
+}
+
 }  // namespace mpm::core

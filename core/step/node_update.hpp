@@ -74,6 +74,11 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
 void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
                        double* record);
 
+/// Components 4..6 become USL's velocity of the strain rate: that at the end of the step less the share of
+/// the increment, gravity's part `fall` apart, that component 7 leaves out. After the particles have taken
+/// their increment.
+void regularised_velocities(const Vec3<double>& fall, const BoundaryFaces& faces, int nodes, double* record);
+
 template <class F>
 void BoundaryFaces::for_each_node(double* nodes, F f) const {
   const int s = shape_.side();

@@ -45,9 +45,10 @@ Passes::Passes(Model& model, Exchange& exchange)
   forces_.gravity = to_vec(solution.gravity);
   forces_.damping = solution.damping;
   if (solution.scheme == Scheme::usl) {
-    double density = 0;
-    for (const auto& m : model.materials) density += m->reference_density();
-    density /= static_cast<double>(model.materials.size());
+    // The lightest material's: a floor above what a light body's full nodes weigh would freeze it beside a
+    // heavy one.
+    double density = std::numeric_limits<double>::infinity();
+    for (const Body& b : model.bodies) density = std::min(density, b.model->reference_density());
     forces_.strain_mass_floor = usl_mass_floor * density * model.grid->geometry().cell_volume();
   }
   velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
@@ -63,7 +64,7 @@ Passes::Passes(Model& model, Exchange& exchange)
 
 template <class F>
 void Passes::for_bricks(int first, int last, F f) {
-#pragma omp parallel for schedule(dynamic, 4)
+#pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast <int>(workplaces_.size()))
   for (int s = first; s < last; ++s)
     f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]);
 }
@@ -71,7 +72,7 @@ void Passes::for_bricks(int first, int last, F f) {
 // --- particles to grid ------------------------------------------------------------------------------------
 
 template <Mapped what>
-void Passes::map_brick(Slot s) {
+[[gnu::noinline]] void Passes::map_brick(Slot s) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
@@ -135,7 +136,7 @@ void Passes::move_nodes(Slot s, Workplace& at) {
 
 // --- particles --------------------------------------------------------------------------------------------
 
-void Passes::hold_velocities(const Body& body, const BrickFrame&, Cohort& cohort, Workplace& at) {
+void Passes::hold_velocities(const Body& body, const Cohort& cohort, Workplace& at) {
   BlockPool& pool = *body.pool;
   const ColumnLayout& layout = pool.layout();
   double work = 0;
@@ -152,6 +153,7 @@ void Passes::hold_velocities(const Body& body, const BrickFrame&, Cohort& cohort
     } else {
       const double speed = std::sqrt(*v[0] * *v[0] + *v[1] * *v[1] + *v[2] * *v[2]);
       if (speed > velocity_limit_) {
+        work += 0.5 * lane[layout.offset(Column::mass)] * (velocity_limit_ * velocity_limit_ - speed * speed);
         for (int a = 0; a < 3; ++a) *v[a] *= velocity_limit_ / speed;
         ++at.found.limited;
       }
@@ -160,7 +162,7 @@ void Passes::hold_velocities(const Body& body, const BrickFrame&, Cohort& cohort
   if (work != 0) at.found.work.add(work);
 }
 
-void Passes::velocities_of_brick(Slot s, Workplace& at) {
+[[gnu::noinline]] void Passes::velocities_of_brick(Slot s, Workplace& at) {
   BrickGrid& grid = *model_.grid;
   Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
@@ -173,35 +175,40 @@ void Passes::velocities_of_brick(Slot s, Workplace& at) {
                              body.pool->block(cohort.blocks[b]));
     }
     if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
-      hold_velocities(body, frame, cohort, at);
+      hold_velocities(body, cohort, at);
     }
   }
 }
 
-void Passes::note_speeds(const Batch& batch, StepFindings& found) const {
-  const ColumnLayout& layout = *batch.layout;
-  Real fastest(0.0);
+namespace {
+/// Largest of v(block, lane) over the lanes in use.
+template <class F>
+double largest(const Batch& batch, F v) {
+  Real most(0.0);
   for (int b = 0; b < batch.blocks; ++b) {
-    const double* block = batch.block[b];
     const int used = std::min(block_lanes, batch.particles - block_lanes * b);
     for (int l = 0; l < block_lanes; l += real_width) {
-      const Real x = load<Real>(block + layout.offset(Column::velocity_x) + l);
-      const Real y = load<Real>(block + layout.offset(Column::velocity_y) + l);
-      const Real z = load<Real>(block + layout.offset(Column::velocity_z) + l);
-      const Real speed = load<Real>(batch.critical_speed + block_lanes * b + l) + sqrt(x * x + y * y + z * z);
+      const Real value = v(b, l);
       if (l + real_width <= used) {
-        fastest = max(speed, fastest);
+        most = max(value, most);
       } else {
         double each[real_width];
-        store(each, speed);
-        for (int i = 0; l + i < used; ++i) fastest = max(Real(each[i]), fastest);
+        store(each, value);
+        for (int i = 0; l + i < used; ++i) most = max(Real(each[i]), most);
       }
     }
   }
-  found.fastest = std::max(found.fastest, reduce_max(fastest));
+  return reduce_max(most);
 }
 
-void Passes::stress_of_brick(Slot s, StrainVelocity which, Workplace& at) {
+Real speed(const ColumnLayout& layout, const double* block, int lane) {
+  const auto v = [&](Column c) { return load<Real>(block + layout.offset(c) + lane); };
+  const Real x = v(Column::velocity_x), y = v(Column::velocity_y), z = v(Column::velocity_z);
+  return sqrt(x * x + y * y + z * z);
+}
+}  // namespace
+
+[[gnu::noinline]] void Passes::stress_of_brick(Slot s, Velocities velocities, Workplace& at) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
@@ -210,41 +217,64 @@ void Passes::stress_of_brick(Slot s, StrainVelocity which, Workplace& at) {
   batch.time = model_.clock.time + dt;
   batch.dt = dt;
   batch.cell_size = grid.geometry().smallest_cell();
-  const Vec3<double> fall = dt * forces_.gravity;
+  const bool by_cells = model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
+  double fastest = 0;
   for (const Cohort& cohort : brick.cohorts) {
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     BlockPool& pool = *body.pool;
-    batch.layout = &pool.layout();
+    const ColumnLayout& layout = pool.layout();
+    batch.layout = &layout;
     for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
       batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
       batch.particles =
           static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
-        prefetch(pool, cohort, at_block + 2, Column::position_x, pool.layout().columns());
+        prefetch(pool, cohort, at_block + 2, Column::position_x, layout.columns());
         batch.block[b] = pool.block(cohort.blocks[at_block]);
-        if (which == StrainVelocity::second) {
-          velocity_gradient<StrainVelocity::second>(frame, corners, pool.layout(), at.nodes.data(), fall,
-                                                    batch.block[b], batch.gradient, block_lanes * b);
-        } else {
-          velocity_gradient<StrainVelocity::regularised>(frame, corners, pool.layout(), at.nodes.data(), fall,
-                                                         batch.block[b], batch.gradient, block_lanes * b);
-        }
-        if (model_.options.volume_update == static_cast<int>(VolumeUpdate::cell)) {
-          cell_strain(frame, corners, pool.layout(), at.nodes.data(), which == StrainVelocity::second ? 4 : 0,
-                      dt, batch.block[b], batch.cell_volumetric_strain, block_lanes * b);
+        velocity_gradient(frame, corners, layout, at.nodes.data(), batch.block[b], batch.gradient,
+                          block_lanes * b);
+        if (by_cells) {
+          cell_strain(frame, corners, layout, at.nodes.data(), dt, batch.block[b],
+                      batch.cell_volumetric_strain, block_lanes * b);
         }
       }
       batch.events = {};
       body.model->update(batch, model_.options);
       at.found.events += batch.events;
       keep_sound_speed(batch);
-      note_speeds(batch, at.found);
+      fastest = std::max(fastest, largest(batch, [&](int b, int l) {
+                           const Real critical = load<Real>(batch.critical_speed + block_lanes * b + l);
+                           return velocities == Velocities::of_next_step
+                                      ? critical + speed(layout, batch.block[b], l)
+                                      : critical;
+                         }));
     }
   }
+  if (velocities == Velocities::of_next_step)
+    at.found.fastest = std::max(at.found.fastest, fastest);
+  else
+    critical_[static_cast<std::size_t>(s)] = fastest;
 }
 
-void Passes::move_brick(Slot s, Workplace& at) {
+/// The largest |v| of the brick's particles.
+double Passes::fastest_of_brick(Slot s, Workplace& at) const {
+  Batch& batch = at.batch;
+  double fastest = 0;
+  for (const Cohort& cohort : model_.grid->brick(s).cohorts) {
+    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      batch.blocks = 1;
+      batch.particles = used_lanes(cohort, b);
+      batch.block[0] = pool.block(cohort.blocks[b]);
+      fastest = std::max(fastest,
+                         largest(batch, [&](int, int l) { return speed(pool.layout(), batch.block[0], l); }));
+    }
+  }
+  return fastest;
+}
+
+[[gnu::noinline]] void Passes::move_brick(Slot s, Workplace& at) {
   BrickGrid& grid = *model_.grid;
   Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
@@ -271,7 +301,7 @@ void Passes::move_brick(Slot s, Workplace& at) {
       } else {
         move_with_grid(frame, corners, layout, at.nodes.data(), dt, block);
       }
-      if (works && !body.prescribed_velocity) {
+      if (works) {
         const double* m = block + layout.offset(Column::mass);
         for (int i = 0; i < used; ++i) {
           for (int a = 0; a < 3; ++a) {
@@ -325,19 +355,20 @@ void Passes::update_stress_and_move() {
     sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
     second_velocities(0, at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
                       shared_.nodes(), at.nodes.data());
-    stress_of_brick(s, StrainVelocity::second, at);
+    stress_of_brick(s, Velocities::of_next_step, at);
     move_brick(s, at);
   });
 }
 
 void Passes::update_stress_and_map_forces() {
   const BrickGrid& grid = *model_.grid;
+  critical_.resize(static_cast<std::size_t>(grid.owned()));
   map_after<Mapped::force>([&](Slot s, Workplace& at) {
     sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
     second_velocities(grid.geometry().mass_cutoff, at.nodes.data(),
                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                       at.nodes.data());
-    stress_of_brick(s, StrainVelocity::second, at);
+    stress_of_brick(s, Velocities::of_last_step, at);
   });
 }
 
@@ -352,6 +383,9 @@ void Passes::update_velocities_and_move() {
                  BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                  at.nodes.data());
     velocities_of_brick(s, at);
+    // The wave speeds are of the stress pass; each brick's largest stands for all of its particles.
+    at.found.fastest =
+        std::max(at.found.fastest, critical_[static_cast<std::size_t>(s)] + fastest_of_brick(s, at));
     move_brick(s, at);
   });
 }
@@ -360,8 +394,12 @@ void Passes::update_all() {
   leavers_.resize(static_cast<std::size_t>(model_.grid->owned()));
   for_bricks(0, model_.grid->owned(), [&](Slot s, Workplace& at) {
     move_nodes(s, at);
-    stress_of_brick(s, StrainVelocity::regularised, at);
     velocities_of_brick(s, at);
+    const BrickGrid& grid = *model_.grid;
+    regularised_velocities(dt * forces_.gravity,
+                           BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
+                           at.nodes.data());
+    stress_of_brick(s, Velocities::of_next_step, at);
     move_brick(s, at);
   });
 }

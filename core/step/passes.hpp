@@ -71,11 +71,13 @@ class Passes {
   void map_brick(Slot s);
   template <Mapped what, class F>
   void map_after(F work);
-  void stress_of_brick(Slot s, StrainVelocity which, Workplace& at);
+  /// Whether the particles' velocities are already those with which the next step begins.
+  enum class Velocities { of_last_step, of_next_step };
+  void stress_of_brick(Slot s, Velocities velocities, Workplace& at);
+  double fastest_of_brick(Slot s, Workplace& at) const;
   void velocities_of_brick(Slot s, Workplace& at);
   void move_brick(Slot s, Workplace& at);
-  void hold_velocities(const Body& body, const BrickFrame& frame, Cohort& cohort, Workplace& at);
-  void note_speeds(const Batch& batch, StepFindings& found) const;
+  void hold_velocities(const Body& body, const Cohort& cohort, Workplace& at);
 
   Model& model_;
   Exchange& exchange_;
@@ -85,6 +87,7 @@ class Passes {
   double erosion_volume_;
   std::vector<Workplace> workplaces_;
   std::vector<std::vector<Leaver>> leavers_;  ///< by slot
+  std::vector<double> critical_;              ///< by slot; USF: largest critical speed of the stress pass
 };
 
 }  // namespace mpm::core

@@ -79,19 +79,6 @@ struct CornerValues {
         d10(lowest[c.offset[3]] - a10),
         d01(lowest[c.offset[5]] - a01),
         d11(lowest[c.offset[7]] - a11) {}
-  /// a + k (b - c), corner by corner.
-  CornerValues plus(const double k[8], const CornerValues& b, double c) const {
-    CornerValues r = *this;
-    r.a00 += k[0] * (b.a00 - c);
-    r.a10 += k[2] * (b.a10 - c);
-    r.a01 += k[4] * (b.a01 - c);
-    r.a11 += k[6] * (b.a11 - c);
-    r.d00 = (a00 + d00 + k[1] * (b.a00 + b.d00 - c)) - r.a00;
-    r.d10 = (a10 + d10 + k[3] * (b.a10 + b.d10 - c)) - r.a10;
-    r.d01 = (a01 + d01 + k[5] * (b.a01 + b.d01 - c)) - r.a01;
-    r.d11 = (a11 + d11 + k[7] * (b.a11 + b.d11 - c)) - r.a11;
-    return r;
-  }
 };
 
 template <class T>

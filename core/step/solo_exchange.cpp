@@ -46,7 +46,9 @@ void SoloExchange::claim(BrickGrid& grid, std::span<const BrickCoord> wanted) {
 void SoloExchange::retire(BrickGrid& grid, std::span<const BrickCoord> empty) {
   if (empty.empty()) return;
   std::vector<BrickCoord> owned = owned_bricks(grid);
-  std::erase_if(owned, [&](BrickCoord b) { return std::find(empty.begin(), empty.end(), b) != empty.end(); });
+  std::vector<BrickCoord> sorted(empty.begin(), empty.end());
+  std::sort(sorted.begin(), sorted.end());
+  std::erase_if(owned, [&](BrickCoord b) { return std::binary_search(sorted.begin(), sorted.end(), b); });
   grid.reset(std::move(owned), {});
 }
 

@@ -64,6 +64,7 @@ void Stepper::step() {
     phase.seconds += std::chrono::duration<double>(now - before).count();
     before = now;
   }
+  if (!failure_.empty()) throw NumericalFailure(failure_);
 }
 
 void Stepper::choose_time_step() {
@@ -89,8 +90,7 @@ void Stepper::agree() {
 
   // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to
   // stop.
-  const bool trouble =
-      found.events.not_finite > 0 || !migration_.complaint().empty() || std::isnan(found.fastest);
+  const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty();
   double news[4] = {critical_step(*model_.grid, found.fastest), migration_.wants_new_bricks() ? -1.0 : 0.0,
                     trouble ? -1.0 : 0.0, stop_requested_ ? -1.0 : 0.0};
   exchange_.minimum(news);
@@ -103,14 +103,18 @@ void Stepper::agree() {
   std::string what;
   if (news[2] < 0) {
     Witness mine = migration_.complaint();
-    if (mine.empty() && trouble) mine = first_not_finite(model_);
+    if (found.events.not_finite > 0) {
+      const Witness lost = first_not_finite(model_);
+      if (!lost.empty()) mine.offer(lost.identity, [&] { return lost.words; });
+    }
     what = first_of_all(exchange_, mine).words;
-  } else if (clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
+    if (what.empty()) what = "a particle on its way between bricks is no number";
+  } else if (std::isfinite(clock.first_critical_dt) &&
+             clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
     what = fmt::format("the critical time step has fallen to {:.3g}, {:.1g} of the first one",
                        clock.critical_dt, clock.critical_dt / clock.first_critical_dt);
   }
-  if (!what.empty())
-    throw NumericalFailure(fmt::format("step {}, time {:.9g}: {}", clock.step, clock.time, what));
+  if (!what.empty()) failure_ = fmt::format("step {}, time {:.9g}: {}", clock.step, clock.time, what);
 }
 
 }  // namespace mpm::core

@@ -25,6 +25,7 @@ class NumericalFailure : public std::runtime_error {
 
 class Stepper {
  public:
+  /// From here on denormal numbers count as zero in the calling thread and its OpenMP threads.
   Stepper(Model& model, Exchange& exchange);
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
@@ -62,6 +63,7 @@ class Stepper {
   std::vector<Phase> phases_;
   Incidents incidents_;
   bool claim_ = false;
+  std::string failure_;  ///< agreed upon; thrown once every particle is home
   bool stop_requested_ = false;
   bool stop_agreed_ = false;
 };

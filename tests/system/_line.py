@@ -6,9 +6,9 @@ and 2-82 to 2-92 (energy and pressure together), in the form that physics/materi
 
 import numpy as np
 
-# Share of a cell's mass below which USL's strain leaves out part of a node's increment: 0.05 in core/step/passes.cpp. A
+# Share of a cell's mass below which USL's strain leaves out part of a node's increment: 0.2 in core/step/passes.cpp. A
 # column one cell wide between symmetry planes has its nodes on the four edges, each with a quarter of the line's mass.
-USL_MASS_FLOOR = 4 * 0.05
+USL_MASS_FLOOR = 4 * 0.2
 
 
 class Line:

@@ -115,6 +115,17 @@ class Collision(Case):
         direct = self.run_in("direct", [longer])
         self.assertEqual(continued.state, direct.state)
 
+    def test_ranks_without_particles(self):
+        """One brick of particles flies through the room; most ranks have nothing to do, and then it is their turn."""
+        output = PRINT + EVERYTHING
+        text = _mpm.scene([_mpm.block("mote", (1, 4, 4), (4, 4, 4), (900, 0, 0), of="copper")],
+                          _mpm.grid((0, 0, 0), (26, 16, 12)), _mpm.solution(END, factor=0.5), [SOFT, HARD], output)
+        expected = self.state(text, "alone")
+        for ranks in (2, 5):
+            self.assertEqual(self.state(text, "some", ranks=ranks), expected)
+            halfway = _mpm.restarts(self.folder / "some")[0]
+            self.assertEqual(self.run_in("again", [halfway], ranks=6 - ranks).state, expected)
+
     def test_messages_that_never_travel_eagerly(self):
         limits = ["--mca", "btl_vader_eager_limit", "64", "--mca", "btl_self_eager_limit", "64"]
         self.assertEqual(self.state(collision(), "rendezvous", ranks=4, mpirun=limits), self.state(collision(), "alone"))

@@ -1,9 +1,7 @@
 """The command line, and what the files of a run hold: each well-formed, each with its provenance."""
 
-import json
 import re
 import struct
-import unittest
 import xml.etree.ElementTree as ElementTree
 
 import h5py

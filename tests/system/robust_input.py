@@ -49,6 +49,8 @@ SCENES = [
     ("too many cells", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8, 8, 8), cell=1e-12), SHORT), ["cells"]),
     ("a wall between nodes", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8.5, 8, 8), "020000"), SHORT), ["XMax", "8.5"]),
     ("the end before the beginning", without('EndTime value="0.1"', 'EndTime value="-0.1"'), ["EndTime", "-0.1"]),
+    ("too many threads", without("<EndTime", '<OpenMPSetting nthread="100000"/><EndTime'), ["OpenMPSetting", "100000", "1024"]),
+    ("two bodies of one name", _mpm.scene([BODY, BODY], ROOMY, SHORT), ["cube", "already"]),
     ("known, but not implemented", without("<Output>", '<Contact enable="1"/><Output>'), ["Contact", "not implemented"]),
     ("a particle file that is not there", one_body(
         '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'), ["grains.txt", "no such file"]),

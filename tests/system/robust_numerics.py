@@ -7,7 +7,7 @@ import math
 import h5py
 
 import _mpm
-from _mpm import DONE, NUMERICAL_FAILURE, STOPPED, Case
+from _mpm import NUMERICAL_FAILURE, STOPPED, Case
 
 ROOM = (16, 8, 8)
 YOUNG, POISSON, DENSITY = 1000.0, 0.3, 1.0  # of _mpm.material()
@@ -59,6 +59,22 @@ class Failures(Case):
     def test_particle_outside_at_level_2(self):
         self.check_failure(scene(FLIGHT, '<Warn type="grid" level="2"/>', faces="000000"), self.PARTICLE)
 
+    def test_negative_internal_energy_at_level_2(self):
+        fluid = _mpm.material(strength='type="Null"', more='<EquationOfState type="Polynomial" E0="-1" c0="0" c1="1000" '
+                              'c2="0" c3="0" c4="0" c5="0" c6="0"/>')
+        text = scene(BOUNCE, '<Warn type="ie|vol" level="2"/>').replace(_mpm.material(), fluid)
+        self.check_failure(text, r'step 1, time [\d.e+-]+: 1536 particle\(s\) with internal energy below zero; the first: '
+                           r'particle 0 of body "left" at \([^)]*\)')
+
+    def test_volume_that_vanishes_at_level_2(self):
+        """Two fluids that flow through each other in steps which are too long for them."""
+        fluid = _mpm.material(strength='type="Null"', more='<EquationOfState type="Polynomial" c0="0" c1="1" c2="0" c3="0" '
+                              'c4="0" c5="0" c6="0"/>')
+        bodies = [_mpm.block("left", (1, 2, 2), (6, 4, 4), (20, 0, 0)), _mpm.block("right", (8, 2, 2), (6, 4, 4), (-20, 0, 0))]
+        text = scene(bodies, '<Warn type="vol" level="2"/>').replace(_mpm.material(), fluid)
+        self.check_failure(text.replace('<TimeStep factor="0.5"/>', '<TimeStep specified="0.1"/>'),
+                           r"step \d+, time [\d.e+-]+: \d+ particle\(s\) whose volume would have vanished.*")
+
     def test_last_good_restart_file_is_named(self):
         self.write(scene(FLIGHT, '<Warn type="grid" level="2"/>', faces="000000", output='<Restart time_interval="0.1"/>'))
         outcome = self.run_in("out", [self.folder / "case.xmp"], code=NUMERICAL_FAILURE)
@@ -68,9 +84,9 @@ class Failures(Case):
 
 
 class Leaving(Case):
-    def fly(self, more="", **changes):
+    def fly(self, more="", ranks=1, **changes):
         self.write(scene(FLIGHT, more, faces="000000", **changes))
-        return self.run_in("out", [self.folder / "case.xmp"])
+        return self.run_in("out", [self.folder / "case.xmp"], ranks=ranks)
 
     def test_booked(self):
         """The whole body leaves stressless, so that the books have to balance to round-off."""
@@ -84,6 +100,19 @@ class Leaving(Case):
             self.assertAlmostEqual(found["bodies"][0]["mass"], 64 - left / 8, delta=1e-9)
             self.assertAlmostEqual(found["momentum"][0], 10 * (64 - left / 8), delta=1e-9)
             self.assertEqual(found["bodies"][0]["centre"][0] is None, left == 512)
+
+    def test_outputs_and_restarts_without_particles(self):
+        output = ('<PostProcessing time_interval="0.2" h5part="1" vtk_data="1" var="pres"/><Restart time_interval="0.2"/>'
+                  '<TimeHistory var="pres"><Particle x="9" y="4" z="4"/><Point x="9" y="4" z="4"/></TimeHistory>')
+        state = self.fly(output=output).state
+        for ranks in (2, 3):
+            self.assertEqual(self.fly(output=output, ranks=ranks).state, state)
+            again = self.run_in("again", [self.folder / "out/case.pe"], ranks=ranks - 1)
+            self.assertEqual(again.state, state)
+        with h5py.File(self.folder / "out/case.h5part") as file:
+            self.assertEqual(file["Step#0"]["x"].shape, (512,))
+            self.assertEqual(file[f"Step#{len(file) - 1}"]["x"].shape, (0,))
+        self.assertTrue(math.isnan(_mpm.table(self.folder / "out/case_curv.dat")["pres[particle1]"][-1]))
 
     def test_warnings(self):
         steps = [line for line in self.fly('<Warn type="grid"/>').out.splitlines() if line.startswith("warning: ")]
@@ -147,11 +176,10 @@ class Walls(Case):
         return self.run_blocks(boundary, 0, -1, 0.3)
 
     def check_stopped(self, block):
-        """Nothing got through; the block is on its way back, without more energy than it had."""
+        """Nothing got through; the block is on its way back."""
         self.assertEqual(block["particles"], 512)
         self.assertGreater(block["gap"], 1)
         self.assertLess(block["outward"], -0.5 * self.SPEED)
-        self.assertGreater(block["outward"], -1.01 * self.SPEED)
 
     def test_free(self):
         """The front layers have left, the rest goes on as before."""
@@ -187,6 +215,13 @@ class Walls(Case):
         self.assertAlmostEqual(block["outward"], -self.SPEED, delta=1e-9)
         self.assertAlmostEqual(block["along"], self.SPEED / 5, delta=1e-9)
         self.assertLess(block["internal"], 1e-12)
+
+    def test_walls_give_no_energy(self):
+        for boundary in (1, 2, 4):
+            with self.subTest(boundary=boundary):
+                block = self.throw(boundary)
+                self.assertGreater(block["outward"], -1.01 * self.SPEED, "faster than it came")
+                self.assertLess(strict_summary(self.folder / "out")["energy"]["relative_drift"], 0.03)
 
 
 class Prescribed(Case):

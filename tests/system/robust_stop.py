@@ -116,6 +116,15 @@ class Stop(Case):
                 self.assertEqual(len(_mpm.table(self.out / "case.sta")["step"]), 3)
                 self.assertEqual(_mpm.summary(self.out)["status"], "stopped")
 
+    def test_reader_of_the_console_goes(self):
+        """`mpm_run case | head -1` reads one line; the run has others to write for."""
+        process = _mpm.start(self.line)
+        process.stdout.readline()
+        process.stdout.close()
+        self.assertEqual(process.wait(60), _mpm.DONE, process.stderr.read())
+        process.stderr.close()
+        self.assertIn(Stop.undisturbed, (self.out / "case.out").read_text())
+
     def test_stopped_twice(self):
         self.check_stopped(stopped_by([signal.SIGUSR1], arguments=self.line), "signal 10")
         again = stopped_by([signal.SIGUSR1], arguments=[self.out / "case.pe", *self.line[1:]])
@@ -140,6 +149,20 @@ class Restart(Case):
         outcome = self.run_in("out", [self.out / "case.pe"])
         self.assertIn(f"from {self.files[0]}", outcome.out)
         self.assertEqual(outcome.state, self.state)
+
+    def test_job_whose_name_ends_in_a_number(self):
+        numbered = self.case.rename(self.folder / "case_17.xmp")
+        self.assertEqual(self.run_in("numbered", [numbered]).state, self.state)
+        for ranks in (1, 2):
+            outcome = self.run_in("numbered", [self.folder / "numbered/case_17.pe"], ranks=ranks)
+            self.assertEqual(outcome.state, self.state)
+
+    def test_run_that_has_ended(self):
+        """Going on from its last restart file changes nothing and repeats no row."""
+        before = (self.out / "case.sta").read_text()
+        outcome = self.run_in("out", [self.out / "case.pe"])
+        self.assertEqual(outcome.state, self.state)
+        self.assertEqual((self.out / "case.sta").read_text(), before)
 
     def test_from_the_folder_itself(self):
         self.files[1].unlink()

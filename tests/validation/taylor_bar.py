@@ -11,7 +11,7 @@ import json
 import sys
 import xml.etree.ElementTree as ElementTree
 
-import _common
+import _common  # first: it says where the next one is
 import bar as taylor
 import matplotlib
 
@@ -47,8 +47,19 @@ def case(model, scheme, factor):
     return ElementTree.tostring(root, encoding="unicode")
 
 
-def measure(out, model, scheme, factor, may_fail=False):
-    folder = out / f"{model}-{scheme}-{factor:g}"
+def measure(options, model, scheme, factor, may_fail=False):
+    """One row of the tables; it is kept beside the run, which --reuse then spares."""
+    folder = options.out / f"{model}-{scheme}-{factor:g}"
+    kept = folder / "row.json"
+    if not (options.reuse and kept.exists()):
+        row = measured(folder, model, scheme, factor, may_fail)
+        kept.write_text(json.dumps(row))
+    row = json.loads(kept.read_text())
+    print(" ".join(f"{k}={row[k]:{how}}" for k, (_, how) in COLUMNS.items()), file=sys.stderr, flush=True)
+    return row
+
+
+def measured(folder, model, scheme, factor, may_fail):
     seconds = _common.run(folder, case(model, scheme, factor), "taylor_bar", may_fail)
     if seconds is None:
         s = json.loads((folder / "taylor_bar.summary.json").read_text())
@@ -89,21 +100,17 @@ def main():
     parser.add_argument("--factor", type=float, default=0.4, help="of the critical time step")
     parser.add_argument("--factors", nargs="*", type=float, default=[0.2, 0.3, 0.4, 0.5, 0.6, 0.8],
                         help="time step study with the default model; empty: none")
+    parser.add_argument("--reuse", action="store_true", help="keep the runs that --out already holds")
     options = parser.parse_args()
     verdict = _common.Verdict()
     print(_common.machine(), "\n", flush=True)
 
     if options.factors:
-        study = [measure(options.out, "default", s, f, may_fail=True) for s in options.schemes for f in options.factors]
+        study = [measure(options, "default", s, f, may_fail=True) for s in options.schemes for f in options.factors]
         _common.write(options.out, "time_step", study, COLUMNS)
         print()
 
-    rows = []
-    for model in options.models:
-        for scheme in options.schemes:
-            rows.append(measure(options.out, model, scheme, options.factor))
-            print(" ".join(f"{k}={rows[-1][k]:{how}}" for k, (_, how) in COLUMNS.items()), file=sys.stderr, flush=True)
-    print()
+    rows = [measure(options, model, scheme, options.factor) for model in options.models for scheme in options.schemes]
     _common.write(options.out, "models", rows, COLUMNS)
     plot(rows, options.out / "error_against_time.png")
     print(f"\n{options.out}/error_against_time.png")
