@@ -61,6 +61,8 @@ Types types_of(Kind kind, bool double_precision) {
 
 std::string group_name(int n) { return fmt::format("Step#{}", n); }
 
+std::string lost_name(int n) { return fmt::format("lost#{}", n); }
+
 std::vector<BodyFacts> facts_of_all(const core::Model& model) {
   std::vector<BodyFacts> facts;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) facts.push_back(facts_of(model, b));
@@ -121,20 +123,24 @@ H5PartWriter::H5PartWriter(Settings settings, const core::Model& model, core::Ex
 }
 
 int H5PartWriter::open_existing(double last) {
+  int kept = 0;
+  {
+    const hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::read);
+    while (hdf5::has_link(file, group_name(kept)) &&
+           hdf5::read_double(hdf5::open_group(file, group_name(kept)), "TimeValue") <= last) {
+      ++kept;
+    }
+  }
   File(settings_.path, File::Mode::change).reserve(std::filesystem::file_size(settings_.path) + bytes_per_group);
   hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
-  const auto exists = [&](int n) { return hdf5::has_link(file, group_name(n)); };
-  int kept = 0;
-  while (exists(kept) && hdf5::read_double(hdf5::open_group(file, group_name(kept)), "TimeValue") <= last) ++kept;
-  for (int n = kept; exists(n); ++n) {
+  for (int n = kept; hdf5::has_link(file, group_name(n)); ++n) {
     hdf5::check(H5Ldelete(file, group_name(n).c_str(), H5P_DEFAULT), "drop a later time of '" + settings_.path + "'");
   }
   // The workshop of a run that was killed may be in any state: it is never opened again.
-  for (int n = 0; hdf5::has_link(file, workshop); ++n) {
-    const std::string aside = fmt::format("lost#{}", n);
-    if (!hdf5::has_link(file, aside)) hdf5::rename_link(file, workshop, aside);
-  }
-  hdf5::create_group(file, workshop);
+  int lost = 0;
+  while (hdf5::has_link(file, lost_name(lost))) ++lost;
+  if (hdf5::has_link(file, workshop)) hdf5::rename_link(file, workshop, lost_name(lost));
+  hdf5::create_group_before_link(file, workshop);
   file.close("write '" + settings_.path + "'");
   return kept;
 }

@@ -156,6 +156,13 @@ Handle create_group(hid_t parent, const std::string& name) {
                 "make group '" + name + "'");
 }
 
+void create_group_before_link(hid_t parent, const std::string& name) {
+  const std::string doing = "make group '" + name + "'";
+  const Handle group(H5Gcreate_anon(parent, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, doing);
+  check(H5Fflush(parent, H5F_SCOPE_GLOBAL), doing);
+  check(H5Olink(group, parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), doing);
+}
+
 Handle open_group(hid_t parent, const std::string& name) {
   return Handle(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "open group '" + name + "'");
 }

@@ -51,6 +51,8 @@ Handle create_file(const std::string& path, hsize_t user_block = 0, std::size_t 
 Handle open_file_together(const std::string& path, core::Exchange& exchange);
 
 Handle create_group(hid_t parent, const std::string& name);
+/// As create_group, but the group is in the file before its name is: a kill leaves the parent as it was or complete.
+void create_group_before_link(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
 /// Contiguous, its place in the file fixed at once and not filled. `shape` has one or two entries.
 Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::span<const hsize_t> shape);

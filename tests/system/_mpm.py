@@ -69,6 +69,15 @@ def scene(bodies, grid, solution, materials=None, output="", more=""):
     return "\n".join(lines)
 
 
+BOUNCING = [block("left", (1, 2, 2), (6, 4, 4), (2, 1, 0)), block("right", (9, 2, 2), (6, 4, 4), (-3, 0, 1))]
+
+
+def bounce(end, output="", rows=10, bodies=None):
+    """Two blocks that bounce between walls and off each other: 1536 particles, about 90 steps per unit of time."""
+    return scene(bodies or BOUNCING, grid((0, 0, 0), (16, 8, 8), "222222"), solution(end),
+                 output=f'<Console print_time="{end / rows}"/>' + output)
+
+
 # Runs -------------------------------------------------------------------------------------------------------------
 
 
@@ -158,6 +167,11 @@ def restarts(folder, job="case"):
 
 def names(folder):
     return sorted(str(p.relative_to(folder)) for p in pathlib.Path(folder).rglob("*"))
+
+
+def contents(folder):
+    """Bytes of every file in the folder."""
+    return {str(p.relative_to(folder)): p.read_bytes() for p in pathlib.Path(folder).rglob("*") if p.is_file()}
 
 
 def summary(folder, job="case"):

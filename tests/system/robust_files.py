@@ -24,12 +24,6 @@ def restarts_every(interval):
     return f'<Restart time_interval="{interval}"/>'
 
 
-def bounce(output):
-    bodies = [_mpm.block("left", (1, 2, 2), (6, 4, 4), (2, 1, 0)), _mpm.block("right", (9, 2, 2), (6, 4, 4), (-3, 0, 1))]
-    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), (16, 8, 8), "222222"), _mpm.solution(END),
-                      output=f'<Console print_time="{END / 10}"/>' + output)
-
-
 def run_limited(arguments, size, ranks):
     """No file of the ranks may grow beyond `size` bytes, once they have begun to compute: MPI has its own files."""
     process = _mpm.start(arguments, ranks=ranks)
@@ -58,7 +52,7 @@ class Files(Case):
         super().setUp()
         self.out = self.folder / "out"
         if not Files.undisturbed:
-            outcome = self.run_in("undisturbed", [self.write(bounce(PICTURES))])
+            outcome = self.run_in("undisturbed", [self.write(_mpm.bounce(END, PICTURES))])
             Files.undisturbed = outcome.state
             Files.times = times_of(self.folder / "undisturbed/case.h5part")
 
@@ -81,7 +75,7 @@ class Files(Case):
 class FullDisk(Files):
     def test_limit_that_the_pictures_reach(self):
         """The .h5part file grows to the limit; restart files are smaller."""
-        case = self.write(bounce(PICTURES + restarts_every(END / 9)))
+        case = self.write(_mpm.bounce(END, PICTURES + restarts_every(END / 9)))
         for ranks in (1, 2):
             with self.subTest(ranks=ranks):
                 shutil.rmtree(self.out, ignore_errors=True)
@@ -97,7 +91,7 @@ class FullDisk(Files):
                 self.assertEqual(times_of(self.out / "case.h5part"), Files.times)
 
     def test_limit_below_a_restart_file(self):
-        case = self.write(bounce(restarts_every(END / 4)))
+        case = self.write(_mpm.bounce(END, restarts_every(END / 4)))
         for ranks in (1, 2):
             with self.subTest(ranks=ranks):
                 outcome = run_limited([case, "--output-dir", self.out], 100_000, ranks)
@@ -105,14 +99,14 @@ class FullDisk(Files):
                 self.assertEqual(_mpm.restarts(self.out), [])
 
     def test_limit_below_everything(self):
-        case = self.write(bounce(""))
+        case = self.write(_mpm.bounce(END, ""))
         forbid = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
         outcome = _mpm.run([case, "--output-dir", self.out], preexec_fn=forbid)
         self.check_failed(outcome, r"cannot write '?.*case\.(out|sta).*File too large")
 
     def test_tables_on_a_device_that_is_full(self):
         history = '<TimeHistory var="pres"><Point x="4" y="4" z="4"/></TimeHistory>'
-        case = self.write(bounce(history + restarts_every(END / 4)))
+        case = self.write(_mpm.bounce(END, history + restarts_every(END / 4)))
         for name in ("case.out", "case.sta", "case_curv.dat"):
             for ranks in (1, 2):
                 with self.subTest(name, ranks=ranks):
@@ -124,14 +118,15 @@ class FullDisk(Files):
 
     def mount(self, size):
         self.out.mkdir(exist_ok=True)
-        done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", self.out], capture_output=True, text=True)
+        command = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", self.out]
+        done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             self.skipTest(f"no right to mount a small disk: {done.stderr.strip()}")
         self.addCleanup(subprocess.run, ["umount", "-l", self.out], check=False)
 
     def test_disk_that_the_pictures_fill(self):
         self.mount("2m")
-        case = self.write(bounce(PICTURES + restarts_every(END / 9)))
+        case = self.write(_mpm.bounce(END, PICTURES + restarts_every(END / 9)))
         outcome = _mpm.run([case, "--output-dir", self.out], ranks=2)
         self.check_failed(outcome, "No space left on device")
         self.assertEqual(len(_mpm.restarts(self.out)), 2)
@@ -143,9 +138,9 @@ class FullDisk(Files):
         self.go_on(into="elsewhere")
 
     def test_disk_that_restart_files_fill(self):
-        """Two fit, the third, for which a third of a megabyte more than it needs is reserved, does not: the two stay."""
+        """Two fit; the third, for which 300 kB more than it needs are reserved, does not: the two stay."""
         self.mount("900k")
-        case = self.write(bounce(restarts_every(END / 9)))
+        case = self.write(_mpm.bounce(END, restarts_every(END / 9)))
         for ranks in (1, 2):
             with self.subTest(ranks=ranks):
                 outcome = _mpm.run([case, "--output-dir", self.out], ranks=ranks)
@@ -159,7 +154,7 @@ class FullDisk(Files):
 class Killed(Files):
     def test_killed_ten_times_while_restart_files_are_written(self):
         """A restart file after every step, so that most of the time one is being written."""
-        case = self.write(bounce(restarts_every(1e-9)))
+        case = self.write(_mpm.bounce(END, restarts_every(1e-9)))
         moments = random.Random(1)
         rounds = kills = 0
         while kills < 10 and rounds < 30:
@@ -181,7 +176,7 @@ class Killed(Files):
         self.assertEqual([name for name in _mpm.names(self.out) if ".part" in name], [], "what the killed runs left")
 
     def test_one_of_two_ranks_killed(self):
-        case = self.write(bounce(PICTURES + restarts_every(END / 20)))
+        case = self.write(_mpm.bounce(END, PICTURES + restarts_every(END / 20)))
         process = _mpm.start([case, "--output-dir", self.out], ranks=2)
         _mpm.read_until(process, 30)
         os.kill(_mpm.children(process)[-1], signal.SIGKILL)
@@ -194,7 +189,7 @@ class Killed(Files):
 class Damaged(Files):
     def setUp(self):
         super().setUp()
-        case = self.write(bounce(restarts_every(END / 4)))
+        case = self.write(_mpm.bounce(END, restarts_every(END / 4)))
         self.run_in("out", [case])
         self.old, self.new = _mpm.restarts(self.out)
         self.bytes = self.new.read_bytes()
@@ -217,7 +212,8 @@ class Damaged(Files):
         for count, (what, damaged) in enumerate(self.damages()):
             with self.subTest(what):
                 self.new.write_bytes(damaged)
-                outcome = self.run_in("again", [self.new], code=FILE_ERROR, timeout=20, ranks=2 if count % 5 == 2 else 1)
+                ranks = 2 if count % 5 == 2 else 1
+                outcome = self.run_in("again", [self.new], code=FILE_ERROR, timeout=20, ranks=ranks)
                 self.assertEqual(outcome.complaint.count(self.new.name), 1, outcome)
                 self.assertFalse((self.folder / "again").exists(), "a damaged file starts nothing")
                 if count % 3 == 0:

@@ -9,8 +9,15 @@ from _mpm import FILE_ERROR, INPUT_ERROR, Case
 
 ROOMY = _mpm.grid((0, 0, 0), (8, 8, 8))
 SHORT = _mpm.solution(0.1)
-BODY = _mpm.block("cube", (2, 2, 2), (4, 4, 4))
+
+
+def cube(name="cube", x=2, **more):
+    return _mpm.block(name, (x, 2, 2), (4, 4, 4), **more)
+
+
+BODY = cube()
 GOOD = _mpm.scene([BODY], ROOMY, SHORT)
+GRAINS = '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'
 DIMENSIONS = '<DomainDecomposition dimension0="3" dimension1="2" dimension2="1"/>'
 BOMB = ('<?xml version="1.0"?>\n<!DOCTYPE PeneBlast [<!ENTITY a0 "ha">'
         + "".join(f'<!ENTITY a{i} "{10 * f"&a{i - 1};"}">' for i in range(1, 12)) + "]>\n"
@@ -19,7 +26,7 @@ OUTSIDER = ('<?xml version="1.0"?>\n<!DOCTYPE PeneBlast [<!ENTITY secret SYSTEM 
             + GOOD.split("\n", 1)[1].replace('name="cube"', 'name="&secret;"'))
 
 
-def without(old, new):
+def changed(old, new):
     """The good scene with one thing changed."""
     assert old in GOOD, old
     return GOOD.replace(old, new)
@@ -29,46 +36,52 @@ def one_body(body):
     return _mpm.scene([body], ROOMY, SHORT)
 
 
+def in_grid(grid):
+    return _mpm.scene([BODY], grid, SHORT)
+
+
 # Name, text of the file, what the message has to say.
 SCENES = [
     ("empty file", "", ["case.xmp", "empty"]),
     ("text that is no XML", "Hello", ["case.xmp:1"]),
     ("zeros", b"\0" * 4096, ["case.xmp"]),
     ("another root", '<?xml version="1.0"?><html/>', ["case.xmp:1", "PeneBlast"]),
-    ("infinite", without('vx="0"', 'vx="inf"'), ["vx", "inf"]),
-    ("a word for a number", without('Young="1000"', 'Young="stiff"'), ["Young", "stiff"]),
-    ("negative density of a body", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), attributes='density="-1"')), ["density", "-1"]),
-    ("dp below 0", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), dp=-0.5)), ["dp", "-0.5"]),
-    ("unknown element", without("<EndTime", '<EndTim value="1"/><EndTime'), ["EndTim", "EndTime"]),
-    ("unknown attribute", without("Young=", 'Yuong="1" Young='), ["Yuong", "Young"]),
-    ("unknown strength model", without("IsoElastic", "IsoElastik"), ["IsoElastik", "IsoElastic"]),
-    ("missing attribute", without('Poisson="0.3"', ""), ["Poisson"]),
-    ("missing Grid", _mpm.scene([BODY], "", SHORT), ["Grid"]),
+    ("infinite", changed('vx="0"', 'vx="inf"'), ["vx", "inf"]),
+    ("a word for a number", changed('Young="1000"', 'Young="stiff"'), ["Young", "stiff"]),
+    ("negative density of a body", one_body(cube(attributes='density="-1"')), ["density", "-1"]),
+    ("dp below 0", one_body(cube(dp=-0.5)), ["dp", "-0.5"]),
+    ("unknown element", changed("<EndTime", '<EndTim value="1"/><EndTime'), ["EndTim", "EndTime"]),
+    ("unknown attribute", changed("Young=", 'Yuong="1" Young='), ["Yuong", "Young"]),
+    ("unknown strength model", changed("IsoElastic", "IsoElastik"), ["IsoElastik", "IsoElastic"]),
+    ("missing attribute", changed('Poisson="0.3"', ""), ["Poisson"]),
+    ("missing Grid", in_grid(""), ["Grid"]),
     ("missing Material", GOOD.replace(_mpm.material(), ""), ["Material"]),
-    ("cells larger than the grid", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8, 8, 8), cell=10), SHORT), ["DCell", "10"]),
-    ("too many cells", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8, 8, 8), cell=1e-12), SHORT), ["cells"]),
-    ("a wall between nodes", _mpm.scene([BODY], _mpm.grid((0, 0, 0), (8.5, 8, 8), "020000"), SHORT), ["XMax", "8.5"]),
-    ("the end before the beginning", without('EndTime value="0.1"', 'EndTime value="-0.1"'), ["EndTime", "-0.1"]),
-    ("too many threads", without("<EndTime", '<OpenMPSetting nthread="100000"/><EndTime'), ["OpenMPSetting", "100000", "1024"]),
+    ("cells larger than the grid", in_grid(_mpm.grid((0, 0, 0), (8, 8, 8), cell=10)), ["DCell", "10"]),
+    ("too many cells", in_grid(_mpm.grid((0, 0, 0), (8, 8, 8), cell=1e-12)), ["cells"]),
+    ("a wall between nodes", in_grid(_mpm.grid((0, 0, 0), (8.5, 8, 8), "020000")), ["XMax", "8.5"]),
+    ("the end before the beginning", changed('EndTime value="0.1"', 'EndTime value="-0.1"'), ["EndTime", "-0.1"]),
+    ("too many threads", changed("<EndTime", '<OpenMPSetting nthread="100000"/><EndTime'),
+     ["OpenMPSetting", "100000", "1024"]),
     ("two bodies of one name", _mpm.scene([BODY, BODY], ROOMY, SHORT), ["cube", "already"]),
-    ("known, but not implemented", without("<Output>", '<Contact enable="1"/><Output>'), ["Contact", "not implemented"]),
-    ("a particle file that is not there", one_body(
-        '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'), ["grains.txt", "no such file"]),
+    ("known, but not implemented", changed("<Output>", '<Contact enable="1"/><Output>'),
+     ["Contact", "not implemented"]),
+    ("a particle file that is not there", one_body(GRAINS), ["grains.txt", "no such file"]),
 ]
 SCENES_ON_TWO_RANKS_TOO = [
     ("cut in half", GOOD[: len(GOOD) // 2], ["case.xmp:"]),
-    ("a tag that is not closed", without("</Component>", ""), ["case.xmp:", "Component"]),
+    ("a tag that is not closed", changed("</Component>", ""), ["case.xmp:", "Component"]),
     ("entity bomb", BOMB, ["case.xmp:", "DOCTYPE"]),
     ("external entity", OUTSIDER, ["case.xmp:", "DOCTYPE"]),
-    ("not a number", without('Young="1000"', 'Young="nan"'), ["Young", "nan"]),
-    ("negative density", without('ReferenceDensity value="1.0"', 'ReferenceDensity value="-1"'), ["ReferenceDensity", "-1"]),
-    ("dp 0", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), dp=0)), ["dp", "0"]),
-    ("a body outside the grid", one_body(_mpm.block("far", (20, 2, 2), (4, 4, 4))), ["far", "outside the grid", "x from 20 to 24"]),
-    ("a body half outside", one_body(_mpm.block("half", (6, 2, 2), (4, 4, 4))), ["half", "outside", "256 particles"]),
-    ("a billion billion particles", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-6)), ["1e+18", "dp"]),
-    ("more particles than memory", one_body(_mpm.block("dust", (2, 2, 2), (4, 4, 4), dp=4e-4)), ["1e+12", "GiB", "dp"]),
-    ("unknown material", one_body(_mpm.block("cube", (2, 2, 2), (4, 4, 4), of="sofft")), ["sofft", "did you mean 'soft'"]),
-    ("dimensions that are not the number of ranks", _mpm.scene([BODY], ROOMY, SHORT, more=DIMENSIONS), ["dimension0", "= 6", "number of ranks"]),
+    ("not a number", changed('Young="1000"', 'Young="nan"'), ["Young", "nan"]),
+    ("negative density", changed('Density value="1.0"', 'Density value="-1"'), ["ReferenceDensity", "-1"]),
+    ("dp 0", one_body(cube(dp=0)), ["dp", "0"]),
+    ("a body outside the grid", one_body(cube("far", 20)), ["far", "outside the grid", "from 20 to 24"]),
+    ("a body half outside", one_body(cube("half", 6)), ["half", "outside", "256 particles"]),
+    ("a billion billion particles", one_body(cube("dust", dp=4e-6)), ["1e+18", "dp"]),
+    ("more particles than memory", one_body(cube("dust", dp=4e-4)), ["1e+12", "GiB", "dp"]),
+    ("unknown material", one_body(cube(of="sofft")), ["sofft", "did you mean 'soft'"]),
+    ("dimensions that are not the number of ranks", _mpm.scene([BODY], ROOMY, SHORT, more=DIMENSIONS),
+     ["dimension0", "= 6", "number of ranks"]),
 ]
 
 # Name, the command line behind the program's name, exit code, what the message has to say. {} is the test's folder,
@@ -128,7 +141,8 @@ class BadInput(Case):
             self.check_scene(*scene)
 
     def test_all_faults_of_a_file_at_once(self):
-        text = without('Young="1000"', 'Young="nan"').replace('dp="0.5"', 'dp="0"').replace('material="soft"', 'material="sooft"')
+        text = changed('Young="1000"', 'Young="nan"').replace('dp="0.5"', 'dp="0"')
+        text = text.replace('material="soft"', 'material="sooft"')
         self.check_scene("three faults", text, ['Young="nan"', 'dp="0"', 'material="sooft"'])
 
     def test_command_lines(self):
@@ -154,8 +168,7 @@ class BadInput(Case):
             self.expect([self.folder / "good.xmp", "--output-dir", folder], FILE_ERROR, [str(closed), "ermission"], 1)
 
     def test_bad_particle_files(self):
-        grains = '<Body name="grains" material="soft" type="Point"><Geometry file="grains.txt"/></Body>'
-        self.write(one_body(grains))
+        self.write(one_body(GRAINS))
         for name, lines, words in [("not a number", "1 2 2 2\n1 3 nan 2\n", ["grains.txt:2"]),
                                    ("too few", "1 2 2 2\n1 3 2\n", ["grains.txt:2"]),
                                    ("mass below zero", "-1 2 2 2\n", ["grains.txt:1"]),
@@ -164,17 +177,18 @@ class BadInput(Case):
             for ranks in (1, 2) if name == "outside" else (1,):
                 with self.subTest(name, ranks=ranks):
                     self.write(lines, "grains.txt")
-                    self.expect([self.folder / "case.xmp", "--output-dir", self.folder / "out"], INPUT_ERROR, words, ranks)
+                    line = [self.folder / "case.xmp", "--output-dir", self.folder / "out"]
+                    self.expect(line, INPUT_ERROR, words, ranks)
                     self.nothing_left(["case.xmp", "grains.txt"])
 
     def test_files_of_an_earlier_run_stay(self):
         """Bad input must not cost the results of the good input before it."""
         self.write(GOOD)
         self.run_in("out", [self.folder / "case.xmp"])
-        before = {name: (self.folder / "out" / name).read_bytes() for name in _mpm.names(self.folder / "out")}
-        self.write(one_body(_mpm.block("far", (20, 2, 2), (4, 4, 4))))
+        before = _mpm.contents(self.folder / "out")
+        self.write(one_body(cube("half", 6)))
         self.run_in("out", [self.folder / "case.xmp"], code=INPUT_ERROR)
-        self.assertEqual({name: (self.folder / "out" / name).read_bytes() for name in _mpm.names(self.folder / "out")}, before)
+        self.assertEqual(_mpm.contents(self.folder / "out"), before)
 
 
 if __name__ == "__main__":

@@ -6,14 +6,11 @@ import signal
 import _mpm
 from _mpm import FILE_ERROR, INPUT_ERROR, STOPPED, Case
 
-# Two blocks that bounce between walls and off each other; at most a second or so.
-END = 9
-BODIES = [_mpm.block("left", (1, 2, 2), (6, 4, 4), (2, 1, 0)), _mpm.block("right", (9, 2, 2), (6, 4, 4), (-3, 0, 1))]
+END = 9  # at most a second or so
 
 
-def bounce(output="", end=END, bodies=BODIES):
-    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), (16, 8, 8), "222222"), _mpm.solution(end),
-                      output=f'<Console print_time="{END / 30}"/>' + output)
+def bounce(output="", end=END, **more):
+    return _mpm.bounce(end, output, rows=30 * end / END, **more)
 
 
 def stopped_by(signals, ranks=1, target=lambda process: [process.pid], arguments=(), percent=20, **more):
@@ -170,7 +167,7 @@ class Restart(Case):
             self.assertEqual(_mpm.run(words, cwd=self.out).state, self.state)
 
     def test_missing_file_does_not_start_anew(self):
-        before = {name: (self.out / name).read_bytes() for name in _mpm.names(self.out)}
+        before = _mpm.contents(self.out)
         for name, words in [("case_7.pe", [str(self.files[1])]), ("other.pe", ["nothing was started"]),
                             ("other_7.pe", ["nothing was started"])]:
             for ranks in (1, 2):
@@ -178,7 +175,7 @@ class Restart(Case):
                     outcome = self.run_in("out", [self.out / name], code=FILE_ERROR, ranks=ranks)
                     for word in ["no such file", name, *words]:
                         self.assertEqual(outcome.complaint.count(word), 1, outcome)
-                    self.assertEqual({name: (self.out / name).read_bytes() for name in _mpm.names(self.out)}, before)
+                    self.assertEqual(_mpm.contents(self.out), before)
 
     def test_other_input_that_is_missing(self):
         outcome = self.run_in("new", [self.files[0], "-rt", self.folder / "none.xmp"], code=INPUT_ERROR)
@@ -196,16 +193,18 @@ class Restart(Case):
         self.assertEqual(rows["time"][-1], END / 8)
 
     def test_other_input_of_another_name_writes_its_own_files(self):
-        before = {name: (self.out / name).read_bytes() for name in _mpm.names(self.out)}
+        before = _mpm.contents(self.out)
         longer = self.write(bounce(end=END / 8), "longer.xmp")
         self.run_in("out", [self.files[0], "-rt", longer])
-        self.assertEqual({name: (self.out / name).read_bytes() for name in before}, before)
+        after = _mpm.contents(self.out)
+        self.assertEqual({name: after[name] for name in before}, before)
         self.assertEqual(_mpm.table(self.out / "longer.sta")["time"][-1], END / 8)
 
     def test_a_body_that_is_taken_out(self):
         """-rt with Deactive="1": the body is gone, and the books say what it took along."""
-        left, right = BODIES
-        other = self.write(bounce(end=END / 8, bodies=[left, right.replace('type="Block"', 'type="Block" Deactive="1"')]), "other.xmp")
+        left, right = _mpm.BOUNCING
+        bodies = [left, right.replace('type="Block"', 'type="Block" Deactive="1"')]
+        other = self.write(bounce(end=END / 8, bodies=bodies), "other.xmp")
         for ranks in (1, 2):
             outcome = self.run_in("other", [self.files[0], "-rt", other], ranks=ranks)
             found = _mpm.summary(self.folder / "other", "other")

@@ -172,7 +172,7 @@ TEST_CASE("The cell's strain is that of its middle, the same for all its particl
   over(
       c,
       [&](const double* block) {
-        cell_strain(c.frame(), corners, c.pool.layout(), nodes.data(), 4, 1, block, strain, 0);
+        cell_strain(c.frame(), corners, c.pool.layout(), nodes.data(), 1, block, strain, 0);
       },
       [&](const std::vector<double>& p, const double*, int lane) {
         const TransferCase::Place at = c.place(p);
