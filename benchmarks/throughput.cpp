@@ -1,14 +1,14 @@
-// How fast the explicit step is, and how near to what the machine allows: particle-steps per second and core, bytes
-// of state and of traffic per particle-step, shares of the memory and arithmetic ceilings, the ratio to the naive
-// reference stepper, seconds per phase and peak memory, for each scheme and size, all measured in one run. The same
-// bar in a larger box of empty space follows.
+// How fast the explicit step is, and how near to what the machine allows: particle-steps per second and core,
+// bytes of state and of traffic per particle-step, shares of the memory and arithmetic ceilings, the ratio to
+// the naive reference stepper, seconds per phase and peak memory, for each scheme and size, all measured in
+// one run. The same bar in a larger box of empty space follows.
+#include <cstdio>
+#include <optional>
+
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <omp.h>
 #include <sys/resource.h>
-
-#include <CLI/CLI.hpp>
-#include <cstdio>
-#include <optional>
 
 #include "benchmarks/common/bar.hpp"
 #include "benchmarks/common/ceilings.hpp"
@@ -50,8 +50,8 @@ Ceilings measure_ceilings_apart(int threads) {
   }));
 }
 
-/// Steps of a run with the time of each phase. A repeat is a whole number of tidy intervals, so that each pays its
-/// share of what is done only now and then.
+/// Steps of a run with the time of each phase. A repeat is a whole number of tidy intervals, so that each
+/// pays its share of what is done only now and then.
 struct Stopwatch {
   explicit Stopwatch(const core::Stepper& s) : stepper(s), phases(s.phases().size()) {}
   Seconds run(int steps) {
@@ -108,7 +108,8 @@ Json measure(const BarInput& input, const Options& o) {
     bytes += cost.bytes();
     node_bytes += cost.node_read + cost.node_written;
     operations += cost.operations;
-    phases.push_back({{"phase", name}, {"ns", best_phases[p]}, {"bytes", cost.bytes()}, {"operations", cost.operations}});
+    phases.push_back(
+        {{"phase", name}, {"ns", best_phases[p]}, {"bytes", cost.bytes()}, {"operations", cost.operations}});
   }
   return {{"particles", n},
           {"bricks", bar.model.grid->owned()},
@@ -159,38 +160,48 @@ struct Row {
 
   double get(const char* key) const { return r[key]; }
   double million_per_core() const { return 1e3 / get("best_ns"); }
-  double floor_ns(const Ceilings& c, int threads) const { return 1e9 * get("moved_bytes") * threads / c.bandwidth(); }
+  double floor_ns(const Ceilings& c, int threads) const {
+    return 1e9 * get("moved_bytes") * threads / c.bandwidth();
+  }
 };
 
 void print_tables(const std::vector<Row>& rows, const Ceilings& c, int threads) {
-  fmt::print("\nceilings, {} thread(s): triad {:.1f} GB/s, in-place read and write {:.1f} GB/s, FMA {:.1f} GFLOP/s\n", threads,
-             1e-9 * c.triad, 1e-9 * c.in_place, 1e-9 * c.flops);
+  fmt::print(
+      "\nceilings, {} thread(s): triad {:.1f} GB/s, in-place read and write {:.1f} GB/s, FMA {:.1f} "
+      "GFLOP/s\n",
+      threads, 1e-9 * c.triad, 1e-9 * c.in_place, 1e-9 * c.flops);
   fmt::print("\nns are a core's time per particle-step; floor: the bytes moved at the larger bandwidth.\n");
-  fmt::print("{:<5} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>6} {:>6} {:>6} {:>7} {:>7} {:>8} {:>7}\n", "", "particles", "best ns",
-             "median", "M/s/core", "state B", "moved B", "FLOP", "DRAM", "FLOP", "floor", "x floor", "naive ns", "x naive");
+  fmt::print("{:<5} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>6} {:>6} {:>6} {:>7} {:>7} {:>8} {:>7}\n", "",
+             "particles", "best ns", "median", "M/s/core", "state B", "moved B", "FLOP", "DRAM", "FLOP",
+             "floor", "x floor", "naive ns", "x naive");
   for (const Row& row : rows) {
     const double ns = row.get("best_ns"), floor = row.floor_ns(c, threads);
     const double naive = row.reference ? (*row.reference)["best_ns"].get<double>() : 0;
-    fmt::print("{:<5} {:>9.0f} {:>8.2f} {:>8.2f} {:>8.1f} {:>7.0f} {:>7.0f} {:>6.0f} {:>5.0f}% {:>5.0f}% {:>7.2f} {:>7.2f} {:>8} {:>7}\n",
-               row.scheme, row.get("particles"), ns, row.get("median_ns"), row.million_per_core(), row.get("state_bytes"),
-               row.get("moved_bytes"), row.get("operations"), 100 * floor / ns,
-               100 * row.get("operations") * threads / (1e-9 * c.flops * ns), floor, ns / floor,
-               naive > 0 ? fmt::format("{:.1f}", naive) : "-", naive > 0 ? fmt::format("{:.1f}", naive / ns) : "-");
+    fmt::print(
+        "{:<5} {:>9.0f} {:>8.2f} {:>8.2f} {:>8.1f} {:>7.0f} {:>7.0f} {:>6.0f} {:>5.0f}% {:>5.0f}% {:>7.2f} "
+        "{:>7.2f} {:>8} {:>7}\n",
+        row.scheme, row.get("particles"), ns, row.get("median_ns"), row.million_per_core(),
+        row.get("state_bytes"), row.get("moved_bytes"), row.get("operations"), 100 * floor / ns,
+        100 * row.get("operations") * threads / (1e-9 * c.flops * ns), floor, ns / floor,
+        naive > 0 ? fmt::format("{:.1f}", naive) : "-", naive > 0 ? fmt::format("{:.1f}", naive / ns) : "-");
   }
   fmt::print("\nmemory: peak resident against state and occupied bricks\n");
   for (const Row& row : rows) {
-    fmt::print("{:<5} {:>9.0f} {:>10.1f} MB peak {:>10.1f} MB state and bricks, ratio {:.2f} ({:.1f} MB before the case)\n",
-               row.scheme, row.get("particles"), 1e-6 * row.get("peak_memory"), 1e-6 * row.get("state_and_bricks"),
-               row.get("peak_memory") / row.get("state_and_bricks"), 1e-6 * row.get("memory_at_start"));
+    fmt::print(
+        "{:<5} {:>9.0f} {:>10.1f} MB peak {:>10.1f} MB state and bricks, ratio {:.2f} ({:.1f} MB before the "
+        "case)\n",
+        row.scheme, row.get("particles"), 1e-6 * row.get("peak_memory"), 1e-6 * row.get("state_and_bricks"),
+        row.get("peak_memory") / row.get("state_and_bricks"), 1e-6 * row.get("memory_at_start"));
   }
   fmt::print("\nphases of the best repeat\n");
   for (const Row& row : rows) {
-    fmt::print("{:<5} {:>9.0f} {:<30} {:>8} {:>6} {:>8} {:>7} {:>7}\n", row.scheme, row.get("particles"), "", "ns", "share", "bytes",
-               "GB/s", "GFLOP/s");
+    fmt::print("{:<5} {:>9.0f} {:<30} {:>8} {:>6} {:>8} {:>7} {:>7}\n", row.scheme, row.get("particles"), "",
+               "ns", "share", "bytes", "GB/s", "GFLOP/s");
     for (const Json& p : row.r["phases"]) {
       const double ns = p["ns"], bytes = p["bytes"], operations = p["operations"];
-      fmt::print("{:<15} {:<30} {:>8.3f} {:>5.1f}% {:>8.0f} {:>7.1f} {:>7.1f}\n", "", p["phase"].get<std::string>(), ns,
-                 100 * ns / row.get("best_ns"), bytes, bytes / ns, operations / ns);
+      fmt::print("{:<15} {:<30} {:>8.3f} {:>5.1f}% {:>8.0f} {:>7.1f} {:>7.1f}\n", "",
+                 p["phase"].get<std::string>(), ns, 100 * ns / row.get("best_ns"), bytes, bytes / ns,
+                 operations / ns);
     }
   }
 }
@@ -208,37 +219,46 @@ struct File {
   std::FILE* handle;
 };
 
-void write_csv(const std::string& path, const Facts& facts, const std::vector<Row>& rows, const Ceilings& c, int threads) {
+void write_csv(const std::string& path, const Facts& facts, const std::vector<Row>& rows, const Ceilings& c,
+               int threads) {
   const File file(path);
   write_head(file.handle, facts);
-  fmt::print(file.handle,
-             "scheme,particles,threads,repeats,steps_per_repeat,best_ns,median_ns,best_wall_ns,median_wall_ns,"
-             "million_particle_steps_per_s_core,state_bytes,moved_bytes,moved_node_bytes,operations,"
-             "triad_bytes_per_s,in_place_bytes_per_s,fma_flops,share_dram,share_flop,floor_ns,ratio_to_floor,"
-             "reference_best_ns,reference_median_ns,ratio_to_reference,peak_memory,state_and_bricks,peak_over_state\n");
+  fmt::print(
+      file.handle,
+      "scheme,particles,threads,repeats,steps_per_repeat,best_ns,median_ns,best_wall_ns,median_wall_ns,"
+      "million_particle_steps_per_s_core,state_bytes,moved_bytes,moved_node_bytes,operations,"
+      "triad_bytes_per_s,in_place_bytes_per_s,fma_flops,share_dram,share_flop,floor_ns,ratio_to_floor,"
+      "reference_best_ns,reference_median_ns,ratio_to_reference,peak_memory,state_and_bricks,peak_over_"
+      "state\n");
   for (const Row& row : rows) {
     const double ns = row.get("best_ns"), floor = row.floor_ns(c, threads);
     const double best = row.reference ? (*row.reference)["best_ns"].get<double>() : std::nan("");
     const double median = row.reference ? (*row.reference)["median_ns"].get<double>() : std::nan("");
-    fmt::print(file.handle, "{},{:.0f},{},{:.0f},{:.0f},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.0f},{:.1f},{:.1f},{:.0f},", row.scheme,
-               row.get("particles"), threads, row.get("repeats"), row.get("steps"), ns, row.get("median_ns"),
-               row.get("best_wall_ns"), row.get("median_wall_ns"), row.million_per_core(), row.get("state_bytes"),
-               row.get("moved_bytes"), row.get("moved_node_bytes"), row.get("operations"));
-    fmt::print(file.handle, "{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.0f},{:.0f},{:.4g}\n", c.triad,
-               c.in_place, c.flops, floor / ns, row.get("operations") * threads / (1e-9 * c.flops * ns), floor, ns / floor,
-               best, median, best / ns, row.get("peak_memory"), row.get("state_and_bricks"),
+    fmt::print(file.handle,
+               "{},{:.0f},{},{:.0f},{:.0f},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.0f},{:.1f},{:.1f},{:.0f},",
+               row.scheme, row.get("particles"), threads, row.get("repeats"), row.get("steps"), ns,
+               row.get("median_ns"), row.get("best_wall_ns"), row.get("median_wall_ns"),
+               row.million_per_core(), row.get("state_bytes"), row.get("moved_bytes"),
+               row.get("moved_node_bytes"), row.get("operations"));
+    fmt::print(file.handle,
+               "{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.0f},{:.0f},{:.4g}\n",
+               c.triad, c.in_place, c.flops, floor / ns,
+               row.get("operations") * threads / (1e-9 * c.flops * ns), floor, ns / floor, best, median,
+               best / ns, row.get("peak_memory"), row.get("state_and_bricks"),
                row.get("peak_memory") / row.get("state_and_bricks"));
   }
 }
 
-void write_phases_csv(const std::string& path, const Facts& facts, const std::vector<Row>& rows, int threads) {
+void write_phases_csv(const std::string& path, const Facts& facts, const std::vector<Row>& rows,
+                      int threads) {
   const File file(path);
   write_head(file.handle, facts);
   fmt::print(file.handle, "scheme,particles,threads,phase,ns,moved_bytes,operations\n");
   for (const Row& row : rows) {
     for (const Json& p : row.r["phases"]) {
-      fmt::print(file.handle, "{},{:.0f},{},\"{}\",{:.4g},{:.1f},{:.0f}\n", row.scheme, row.get("particles"), threads,
-                 p["phase"].get<std::string>(), p["ns"].get<double>(), p["bytes"].get<double>(), p["operations"].get<double>());
+      fmt::print(file.handle, "{},{:.0f},{},\"{}\",{:.4g},{:.1f},{:.0f}\n", row.scheme, row.get("particles"),
+                 threads, p["phase"].get<std::string>(), p["ns"].get<double>(), p["bytes"].get<double>(),
+                 p["operations"].get<double>());
     }
   }
 }
@@ -249,31 +269,36 @@ void compare_empty_space(const Options& o) {
   constexpr double boxes[2] = {1, 10};
   for (int pair = 0; pair < 3; ++pair) {  // A B A B, so that a drift of the machine meets both
     for (int b = 0; b < 2; ++b) {
-      const Json r = in_child([&] {
-        return measure({.particles = o.empty_space, .box = boxes[b]}, o);
-      });
+      const Json r = in_child([&] { return measure({.particles = o.empty_space, .box = boxes[b]}, o); });
       ns[b].add(r["best_ns"]);
       memory[b].add(r["peak_memory"]);
     }
   }
-  fmt::print("\nempty space: the bar of {:.0f} particles in its box, and in one ten times larger along each axis\n", o.empty_space);
+  fmt::print(
+      "\nempty space: the bar of {:.0f} particles in its box, and in one ten times larger along each axis\n",
+      o.empty_space);
   fmt::print("time   {:.2f} and {:.2f} ns per particle-step, {:+.1f} %\n", ns[0].best(), ns[1].best(),
              100 * (ns[1].best() / ns[0].best() - 1));
-  fmt::print("memory {:.1f} and {:.1f} MB peak, {:+.1f} %\n", 1e-6 * memory[0].best(), 1e-6 * memory[1].best(),
-             100 * (memory[1].best() / memory[0].best() - 1));
+  fmt::print("memory {:.1f} and {:.1f} MB peak, {:+.1f} %\n", 1e-6 * memory[0].best(),
+             1e-6 * memory[1].best(), 100 * (memory[1].best() / memory[0].best() - 1));
 }
 
 Options parse(int argc, char** argv) {
   Options o;
-  CLI::App app("Particle-steps per second of the copper Taylor bar, against what the machine allows.", "throughput");
+  CLI::App app("Particle-steps per second of the copper Taylor bar, against what the machine allows.",
+               "throughput");
   app.add_option("--sizes", o.sizes, "particles")->delimiter(',')->capture_default_str();
   app.add_option("--schemes", o.schemes, "MUSL, USF, USL")->delimiter(',')->capture_default_str();
   app.add_option("--threads", o.threads)->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--warm-up", o.warm_up, "steps before the first that counts")->capture_default_str();
-  app.add_option("--repeats", o.repeats, "at least so many, of 20 steps")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--repeats", o.repeats, "at least so many, of 20 steps")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--seconds", o.seconds, "of measured time per case, at least")->capture_default_str();
-  app.add_option("--reference-limit", o.reference_limit, "no naive stepper above so many particles; 0: none")->capture_default_str();
-  app.add_option("--empty-space", o.empty_space, "particles of the comparison of boxes; 0: none")->capture_default_str();
+  app.add_option("--reference-limit", o.reference_limit, "no naive stepper above so many particles; 0: none")
+      ->capture_default_str();
+  app.add_option("--empty-space", o.empty_space, "particles of the comparison of boxes; 0: none")
+      ->capture_default_str();
   app.add_option("--csv", o.csv, "file for the results");
   app.add_option("--phases-csv", o.phases_csv, "file for the table of phases");
   try {
@@ -296,7 +321,9 @@ int run(int argc, char** argv) {
         if (size <= o.reference_limit) row.reference = in_child([&] { return measure_reference(input); });
         fmt::print("{} with {:.0f} particles: {:.2f} ns\n", scheme, row.get("particles"), row.get("best_ns"));
         rows.push_back(std::move(row));
-      } catch (const std::exception& e) { fmt::print("{} with {:.0f} particles left out: {}\n", scheme, size, e.what()); }
+      } catch (const std::exception& e) {
+        fmt::print("{} with {:.0f} particles left out: {}\n", scheme, size, e.what());
+      }
       std::fflush(stdout);
     }
     // The machine may have a better moment later on.

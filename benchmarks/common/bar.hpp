@@ -1,14 +1,14 @@
-// The copper Taylor bar (thesis 3.5.1, table 3.1) of about so many particles, eight per cell, as an input text, and a
-// run of it in memory on one rank. Units: mm, g, ms; stress MPa.
+// The copper Taylor bar (thesis 3.5.1, table 3.1) of about so many particles, eight per cell, as an input
+// text, and a run of it in memory on one rank. Units: mm, g, ms; stress MPa.
 #pragma once
-
-#include <fmt/format.h>
 
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "apps/common/case.hpp"
 #include "core/setup/build_model.hpp"
@@ -45,19 +45,25 @@ struct BarInput {
     // Whole bricks on each side of the axis, wide enough for the foot to spread.
     const double half = 4 * std::ceil(1.1 * bar_diameter / (4 * cell)) * cell;
     const double height = 4 * std::ceil((bar_length / cell + 1) / 4) * cell;
-    std::string t = R"(<?xml version="1.0" encoding="utf-8"?><PeneBlast version="1.0"><Header><Name value="bar"/></Header>)";
-    t += fmt::format(R"(<Material name="copper"><ReferenceDensity value="8.93e-3"/>{}{}{}</Material>)", strength, eos, failure);
+    std::string t =
+        R"(<?xml version="1.0" encoding="utf-8"?><PeneBlast version="1.0"><Header><Name value="bar"/></Header>)";
+    t += fmt::format(R"(<Material name="copper"><ReferenceDensity value="8.93e-3"/>{}{}{}</Material>)",
+                     strength, eos, failure);
     t += R"(<Component name="bar"><Body name="bar" material="copper" type="Cylinder">)";
-    t += fmt::format(R"(<Geometry x0="0" y0="0" z0="0" dp_bottom="{0}" dp_top="{0}" Bottom_Outer_Radius="{1}" )"
-                     R"(Top_Outer_Radius="{1}" height="{2}"/>{3}{4}</Body></Component>)",
-                     dp, bar_diameter / 2, bar_length, velocity, body);
+    t += fmt::format(
+        R"(<Geometry x0="0" y0="0" z0="0" dp_bottom="{0}" dp_top="{0}" Bottom_Outer_Radius="{1}" )"
+        R"(Top_Outer_Radius="{1}" height="{2}"/>{3}{4}</Body></Component>)",
+        dp, bar_diameter / 2, bar_length, velocity, body);
     t += R"(<Grid><Cell type="regular">)";
     for (const char* axis : {"X", "Y"}) {
-      t += fmt::format(R"(<{0}Min value="{1}" boundary="0"/><{0}Max value="{2}" boundary="0"/>)", axis, -half * box, half * box);
+      t += fmt::format(R"(<{0}Min value="{1}" boundary="0"/><{0}Max value="{2}" boundary="0"/>)", axis,
+                       -half * box, half * box);
     }
     t += fmt::format(R"(<ZMin value="0" boundary="2"/><ZMax value="{}" boundary="0"/>)", height * box);
     t += fmt::format(R"(<DCell dx="{0}" dy="{0}" dz="{0}"/></Cell></Grid>)", cell);
-    t += fmt::format(R"(<Solution algorithm="{}"><EndTime value="0.08"/><TimeStep factor="0.4"/>{}</Solution>)", scheme, solution);
+    t += fmt::format(
+        R"(<Solution algorithm="{}"><EndTime value="0.08"/><TimeStep factor="0.4"/>{}</Solution>)", scheme,
+        solution);
     t += fmt::format(R"(<Output><Console print_time="0.08"/>{}</Output></PeneBlast>)", output);
     return t;
   }
@@ -71,7 +77,8 @@ struct BarRun {
   std::optional<core::Stepper> stepper;
 
   explicit BarRun(const BarInput& input) {
-    scene = std::make_shared<const core::Scene>(io::parse_scene(input.text(), "bar.xmp", physics::catalogue()));
+    scene =
+        std::make_shared<const core::Scene>(io::parse_scene(input.text(), "bar.xmp", physics::catalogue()));
     model = core::prepare_model(scene, apps::make_materials(*scene), io::columns_for(scene->output));
     core::discretise(model, exchange);
     core::start_clock(model, exchange);
@@ -84,14 +91,16 @@ struct BarRun {
   double state_bytes() const {
     double bytes = 0;
     for (const core::Body& b : model.bodies) {
-      bytes += static_cast<double>(b.pool->blocks_in_use()) * b.pool->layout().block_doubles() * sizeof(double);
+      bytes +=
+          static_cast<double>(b.pool->blocks_in_use()) * b.pool->layout().block_doubles() * sizeof(double);
     }
     return bytes;
   }
   /// Nodes of the bricks in use, both arrays.
   double brick_bytes() const { return static_cast<double>(model.grid->owned()) * node_bytes_per_brick(); }
   double node_bytes_per_brick() const {
-    const double doubles = core::record_doubles(core::NodeArray::first) + core::record_doubles(core::NodeArray::second);
+    const double doubles =
+        core::record_doubles(core::NodeArray::first) + core::record_doubles(core::NodeArray::second);
     return doubles * sizeof(double) * model.grid->shape().nodes();
   }
 };

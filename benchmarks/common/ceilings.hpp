@@ -1,19 +1,20 @@
-// How fast the machine is at the two things that bound a time step: moving bytes to and from memory, and multiplying
-// and adding. Measured in the same run as what is compared with them.
+// How fast the machine is at the two things that bound a time step: moving bytes to and from memory, and
+// multiplying and adding. Measured in the same run as what is compared with them.
 //
-// triad      a = b + k c over arrays far larger than the caches; 24 bytes per element (the line of `a` that is
+// triad      a = b + k c over arrays far larger than the caches; 24 bytes per element (the line of `a` that
+// is
 //            fetched before it is written is not counted, as is the custom)
 // in place   a = k a + d; 16 bytes per element, all of which travel
 // FMA        independent chains of fused multiply-adds in registers, two operations each
 #pragma once
 
-#include <omp.h>
-#include <sys/mman.h>
-
 #include <array>
 #include <cstdlib>
 #include <memory>
 #include <new>
+
+#include <omp.h>
+#include <sys/mman.h>
 
 #include "benchmarks/common/clock.hpp"
 #include "core/simd/lanes.hpp"
@@ -118,7 +119,8 @@ inline Ceilings measure_ceilings() {
     c.in_place = best_rate(16.0 * n, 5, [&] { in_place(x); });
   }
   constexpr long rounds = 2'000'000;
-  c.flops = best_rate(2.0 * 8 * fma_chains * rounds * omp_get_max_threads(), 5, [] { multiply_and_add(rounds); });
+  c.flops =
+      best_rate(2.0 * 8 * fma_chains * rounds * omp_get_max_threads(), 5, [] { multiply_and_add(rounds); });
   return c;
 }
 

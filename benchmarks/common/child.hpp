@@ -1,16 +1,16 @@
-// A measurement in a process of its own: its peak memory is its own, and when it dies only its row is missing.
-// The parent must not have started threads before.
+// A measurement in a process of its own: its peak memory is its own, and when it dies only its row is
+// missing. The parent must not have started threads before.
 #pragma once
-
-#include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <exception>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace mpm::benchmarks {
 
@@ -42,12 +42,14 @@ Json in_child(F f) {
   close(ends[1]);
   std::string text;
   char piece[4096];
-  for (ssize_t n; (n = read(ends[0], piece, sizeof piece)) > 0;) text.append(piece, static_cast<std::size_t>(n));
+  for (ssize_t n; (n = read(ends[0], piece, sizeof piece)) > 0;)
+    text.append(piece, static_cast<std::size_t>(n));
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error(WIFSIGNALED(status) ? fmt::format("ended by signal {}", WTERMSIG(status)) : "ended early");
+    throw std::runtime_error(WIFSIGNALED(status) ? fmt::format("ended by signal {}", WTERMSIG(status))
+                                                 : "ended early");
   }
   Json answer = Json::parse(text);
   if (answer.contains("error")) throw std::runtime_error(answer["error"].template get<std::string>());

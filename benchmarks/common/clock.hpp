@@ -1,14 +1,15 @@
 // Time as the benchmarks take it: of the processor and of the wall, several repeats, best and median.
 //
-// With one thread the processor's time of that thread counts, so a machine shared with others disturbs least. With
-// more, threads that wait may sleep or spin, and only the wall tells: a core's time is then wall times threads.
+// With one thread the processor's time of that thread counts, so a machine shared with others disturbs least.
+// With more, threads that wait may sleep or spin, and only the wall tells: a core's time is then wall times
+// threads.
 #pragma once
-
-#include <time.h>
 
 #include <algorithm>
 #include <limits>
 #include <vector>
+
+#include <time.h>
 
 namespace mpm::benchmarks {
 
@@ -19,7 +20,7 @@ inline double seconds_of(clockid_t clock) {
 }
 
 struct Seconds {
-  double cpu = 0;   ///< of the calling thread
+  double cpu = 0;  ///< of the calling thread
   double wall = 0;
   static Seconds now() { return {seconds_of(CLOCK_THREAD_CPUTIME_ID), seconds_of(CLOCK_MONOTONIC)}; }
   friend Seconds operator-(Seconds a, Seconds b) { return {a.cpu - b.cpu, a.wall - b.wall}; }

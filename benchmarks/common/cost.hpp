@@ -1,14 +1,15 @@
-// What each phase of a step moves to and from memory, and what it computes, per particle: counted by hand from the
-// passes (core/step/passes.cpp) and kept here so that whoever changes a pass changes the count.
+// What each phase of a step moves to and from memory, and what it computes, per particle: counted by hand
+// from the passes (core/step/passes.cpp) and kept here so that whoever changes a pass changes the count.
 //
-// Bytes: a block's column is one cache line and travels whole, also where the block is not full. A column counts once
-// as read and once as written per pass, because a brick's particles stay in the cache while a pass works on it, and
-// the passes together are larger than any cache. Node arrays count the same way per brick: a neighbour's records are
-// still in the cache when they are summed. A line that is written before it is read is fetched all the same; that
-// fetch is not counted, nor is what is prefetched in vain, so the floor that follows is a low one.
+// Bytes: a block's column is one cache line and travels whole, also where the block is not full. A column
+// counts once as read and once as written per pass, because a brick's particles stay in the cache while a
+// pass works on it, and the passes together are larger than any cache. Node arrays count the same way per
+// brick: a neighbour's records are still in the cache when they are summed. A line that is written before it
+// is read is fetched all the same; that fetch is not counted, nor is what is prefetched in vain, so the floor
+// that follows is a low one.
 //
-// Operations: + - * / and square root are one each, a fused multiply-add two; comparisons, conversions, minima and
-// selections none. One distinct cell per block is assumed, and a law is IsoHarden with Gruneisen.
+// Operations: + - * / and square root are one each, a fused multiply-add two; comparisons, conversions,
+// minima and selections none. One distinct cell per block is assumed, and a law is IsoHarden with Gruneisen.
 #pragma once
 
 #include <string>
@@ -21,19 +22,19 @@
 namespace mpm::benchmarks {
 
 struct PhaseCost {
-  std::string phase;        ///< as Stepper::phases() names it
-  double read = 0;          ///< bytes per particle
+  std::string phase;  ///< as Stepper::phases() names it
+  double read = 0;    ///< bytes per particle
   double written = 0;
   double node_read = 0;
   double node_written = 0;
-  double operations = 0;    ///< per particle
+  double operations = 0;  ///< per particle
   double bytes() const { return read + written + node_read + node_written; }
 };
 
 /// How full the model's containers are.
 struct Filling {
-  double line = 8;         ///< bytes of a column per particle
-  double first = 0;        ///< bytes of a brick's first node array per particle
+  double line = 8;   ///< bytes of a column per particle
+  double first = 0;  ///< bytes of a brick's first node array per particle
   double second = 0;
   double node_visits = 0;  ///< records added up per particle by one sum of contributions
 
@@ -59,18 +60,19 @@ namespace detail {
 constexpr double position = 3, velocity = 3, mass = 1, volume = 1, deviator = 6, pressures = 2, energy = 1;
 
 // Operations per particle of what the passes are made of.
-constexpr double locating = 16;          // 3 scaled coordinates, their fractions, the node's number
-constexpr double weights = 64;           // of 8 nodes: 3 factors (2 each), their products (2)
-constexpr double gradients = 64;         // of 8 nodes: 2 + 3 + 3
+constexpr double locating = 16;   // 3 scaled coordinates, their fractions, the node's number
+constexpr double weights = 64;    // of 8 nodes: 3 factors (2 each), their products (2)
+constexpr double gradients = 64;  // of 8 nodes: 2 + 3 + 3
 constexpr double momentum_to_nodes = 3 + 8 * 6;
 constexpr double mass_to_nodes = 8 * 2;
 constexpr double force_to_nodes = 13 + 8 * 18;
 constexpr double vector_from_nodes = 3 * 17;
 constexpr double gradient_from_nodes = 3 * 25 + 9;
-constexpr double kinematics = 15, deviatoric = 203, pressure_and_energy = 95;  // physics/material, stage by stage
+constexpr double kinematics = 15, deviatoric = 203,
+                 pressure_and_energy = 95;  // physics/material, stage by stage
 constexpr double law = kinematics + deviatoric + pressure_and_energy;
 constexpr double critical_speed = 7, bounds = 9;
-constexpr double node_operations = 8;    // per record added up; four for the second array
+constexpr double node_operations = 8;  // per record added up; four for the second array
 
 struct Pass {
   double columns_read = 0, columns_written = 0, operations = 0;
@@ -97,11 +99,12 @@ inline Pass kick() { return {position + velocity, velocity, locating + vector_fr
 /// x += dt v; positions are there from the pass before.
 inline Pass drift() { return {0, position, locating + vector_from_nodes + 6 + bounds}; }
 
-/// Strain and stress: reads everything but the identity, the law's own columns (epef) included; velocities for the
-/// critical step. Writes volume, stress, energy and the law's own columns.
+/// Strain and stress: reads everything but the identity, the law's own columns (epef) included; velocities
+/// for the critical step. Writes volume, stress, energy and the law's own columns.
 inline Pass stress(double own_columns) {
   const double written = volume + deviator + pressures + energy + own_columns;
-  return {position + velocity + mass + written, written, locating + gradient_from_nodes + law + critical_speed};
+  return {position + velocity + mass + written, written,
+          locating + gradient_from_nodes + law + critical_speed};
 }
 
 }  // namespace detail
@@ -110,7 +113,8 @@ inline Pass stress(double own_columns) {
 inline std::vector<PhaseCost> phase_costs(core::Scheme scheme, const Filling& fill, double own_columns) {
   using namespace detail;
   std::vector<PhaseCost> costs;
-  const auto add = [&](const char* name, const Pass& p, double node_read, double node_written, double node_ops) {
+  const auto add = [&](const char* name, const Pass& p, double node_read, double node_written,
+                       double node_ops) {
     costs.push_back({name, p.columns_read * fill.line, p.columns_written * fill.line, node_read, node_written,
                      p.operations + node_ops * fill.node_visits});
   };
@@ -148,7 +152,8 @@ inline std::vector<PhaseCost> phase_costs(core::Scheme scheme, const Filling& fi
     }
   }
   // Every so many steps positions are read and, since hardly a brick stays in order, everything is moved.
-  const double all_columns = position + velocity + mass + volume + deviator + pressures + energy + 1 + own_columns;
+  const double all_columns =
+      position + velocity + mass + volume + deviator + pressures + energy + 1 + own_columns;
   const double often = 1.0 / static_cast<double>(core::Stepper::tidy_interval);
   costs.push_back({"tidy", all_columns * fill.line * often, all_columns * fill.line * often, 0, 0, 0});
   return costs;

@@ -1,14 +1,14 @@
 // The machine and the program that a measurement belongs to, for the head of every table and file.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "core/setup/build_model.hpp"
 #include "core/version.hpp"
@@ -47,8 +47,8 @@ inline Facts machine_facts() {
   return {
       {"processor", fmt::format("{}, {} cores seen", model.empty() ? "unknown" : model,
                                 std::thread::hardware_concurrency())},
-      {"memory", fmt::format("{:.1f} GiB, {:.1f} GiB free; huge pages: {}", std::atof(memory.c_str()) / 1048576,
-                             core::available_memory() / 1073741824.0,
+      {"memory", fmt::format("{:.1f} GiB, {:.1f} GiB free; huge pages: {}",
+                             std::atof(memory.c_str()) / 1048576, core::available_memory() / 1073741824.0,
                              first_line("/sys/kernel/mm/transparent_hugepage/enabled"))},
       {"load", load},
       {"compiler", fmt::format("{}, {}", core::compiler, core::build_type)},

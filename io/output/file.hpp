@@ -28,8 +28,8 @@ class File {
   void read_at(std::span<std::byte> into, std::uint64_t offset) const;
   std::uint64_t size() const;
   void truncate(std::uint64_t size);
-  /// Make sure that the file may grow to `size` bytes, without changing what it holds. Where the file system cannot
-  /// promise that, the free space decides.
+  /// Make sure that the file may grow to `size` bytes, without changing what it holds. Where the file system
+  /// cannot promise that, the free space decides.
   void reserve(std::uint64_t size);
   /// To the disk itself.
   void sync();

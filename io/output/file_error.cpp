@@ -1,16 +1,17 @@
 #include "io/output/file_error.hpp"
 
-#include <fmt/format.h>
-
 #include <cerrno>
 #include <system_error>
+
+#include <fmt/format.h>
 
 namespace mpm::io {
 
 FileError system_error(const std::string& doing, const std::string& path, int error) {
   std::string text = fmt::format("cannot {} '{}': {}", doing, path, std::generic_category().message(error));
   if (error == ENOSPC || error == EDQUOT) {
-    text += "; free some space, or choose another folder with --output-dir, and restart from the last .pe file";
+    text +=
+        "; free some space, or choose another folder with --output-dir, and restart from the last .pe file";
   } else if (error == EFBIG) {
     text += "; raise the limit on the size of files (ulimit -f)";
   }

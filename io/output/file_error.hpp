@@ -1,5 +1,5 @@
-// Errors of files: every rank throws the same one, or none does. The program that catches FileError prints what()
-// and leaves with exit code 5.
+// Errors of files: every rank throws the same one, or none does. The program that catches FileError prints
+// what() and leaves with exit code 5.
 #pragma once
 
 #include <stdexcept>
@@ -21,8 +21,8 @@ FileError system_error(const std::string& doing, const std::string& path, int er
 /// Throws the lowest rank's complaint on every rank, if any rank has one. Collective.
 void agree(core::Exchange& exchange, const std::string& complaint);
 
-/// Run f() on this rank; if it throws on any, every rank throws a FileError with that rank's text. There must be
-/// nothing collective in f. Collective.
+/// Run f() on this rank; if it throws on any, every rank throws a FileError with that rank's text. There must
+/// be nothing collective in f. Collective.
 template <class F>
 void together(core::Exchange& exchange, F f) {
   std::string complaint;

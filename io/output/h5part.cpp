@@ -1,9 +1,9 @@
 #include "io/output/h5part.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
+
+#include <fmt/format.h>
 
 #include "io/output/file.hpp"
 #include "io/output/hdf5.hpp"
@@ -23,8 +23,8 @@ constexpr std::uint64_t bytes_per_field = 2048;
 /// Where a time is made before it has its name.
 constexpr const char* workshop = "unfinished";
 constexpr const char* work = "unfinished/step";
-/// Names of root's groups that the file has room for from the start: some thousand times.
-constexpr std::size_t bytes_of_names = 65536;
+/// Of a file without times.
+constexpr std::uint64_t bytes_of_file = 131072;
 
 std::vector<Field> fields_for(const std::vector<Variable>& variables) {
   std::vector<Field> fields{{"x", Kind::real, Variable::posx},
@@ -70,18 +70,20 @@ std::vector<BodyFacts> facts_of_all(const core::Model& model) {
 }
 
 template <class T>
-void fill(const core::Model& model, const RowBatch& batch, const Field& field, const std::vector<BodyFacts>& facts,
-          std::vector<std::byte>& memory) {
+void fill(const core::Model& model, const RowBatch& batch, const Field& field,
+          const std::vector<BodyFacts>& facts, std::vector<std::byte>& memory) {
   T* out = reinterpret_cast<T*>(memory.data());
-  for_each_block(model, batch, [&](std::size_t body, const core::ColumnLayout& layout, const double* block, int used,
-                                   std::size_t first) {
-    const double* identity = block + layout.offset(core::Column::identity);
-    for (int i = 0; i < used; ++i) {
-      const double value =
-          field.kind == Kind::identity ? identity[i] : evaluate(field.variable, layout, block, i, facts[body]);
-      out[first + static_cast<std::size_t>(i)] = static_cast<T>(value);
-    }
-  });
+  for_each_block(model, batch,
+                 [&](std::size_t body, const core::ColumnLayout& layout, const double* block, int used,
+                     std::size_t first) {
+                   const double* identity = block + layout.offset(core::Column::identity);
+                   for (int i = 0; i < used; ++i) {
+                     const double value = field.kind == Kind::identity
+                                              ? identity[i]
+                                              : evaluate(field.variable, layout, block, i, facts[body]);
+                     out[first + static_cast<std::size_t>(i)] = static_cast<T>(value);
+                   }
+                 });
 }
 
 void fill(const core::Model& model, const RowBatch& batch, const Field& field, bool double_precision,
@@ -131,10 +133,12 @@ int H5PartWriter::open_existing(double last) {
       ++kept;
     }
   }
-  File(settings_.path, File::Mode::change).reserve(std::filesystem::file_size(settings_.path) + bytes_per_group);
+  File(settings_.path, File::Mode::change)
+      .reserve(std::filesystem::file_size(settings_.path) + bytes_per_group);
   hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
   for (int n = kept; hdf5::has_link(file, group_name(n)); ++n) {
-    hdf5::check(H5Ldelete(file, group_name(n).c_str(), H5P_DEFAULT), "drop a later time of '" + settings_.path + "'");
+    hdf5::check(H5Ldelete(file, group_name(n).c_str(), H5P_DEFAULT),
+                "drop a later time of '" + settings_.path + "'");
   }
   // The workshop of a run that was killed may be in any state: it is never opened again.
   int lost = 0;
@@ -147,8 +151,8 @@ int H5PartWriter::open_existing(double last) {
 
 void H5PartWriter::create(const core::Scene& scene) {
   const std::string part = part_name(settings_.path);
-  File(part, File::Mode::write_anew).reserve(bytes_per_group + bytes_of_names);
-  hdf5::Handle file = hdf5::create_file(part, 0, bytes_of_names);
+  File(part, File::Mode::write_anew).reserve(bytes_of_file);
+  hdf5::Handle file = hdf5::create_file(part, 0, true);
   hdf5::write_attribute(file, provenance_of(scene));
   hdf5::create_group(file, workshop);
   file.close("write '" + part + "'");
@@ -158,7 +162,8 @@ void H5PartWriter::create(const core::Scene& scene) {
 void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
   std::uint64_t need = bytes_per_group;
   for (const Field& f : fields_) {
-    need += bytes_per_field + static_cast<std::uint64_t>(particles) * types_of(f.kind, settings_.double_precision).bytes;
+    need += bytes_per_field +
+            static_cast<std::uint64_t>(particles) * types_of(f.kind, settings_.double_precision).bytes;
   }
   {
     File space(settings_.path, File::Mode::change);
@@ -166,13 +171,15 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
   }
   hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
   {
-    if (hdf5::has_link(file, work)) hdf5::check(H5Ldelete(file, work, H5P_DEFAULT), "drop what a failed attempt left");
+    if (hdf5::has_link(file, work))
+      hdf5::check(H5Ldelete(file, work, H5P_DEFAULT), "drop what a failed attempt left");
     const hdf5::Handle group = hdf5::create_group(file, work);
     hdf5::write_attribute(group, "TimeValue", clock.time);
     hdf5::write_attribute(group, "step", clock.step);
     const auto rows = static_cast<hsize_t>(particles);
     for (const Field& f : fields_) {
-      hdf5::create_dataset(group, f.name, types_of(f.kind, settings_.double_precision).file, std::span(&rows, 1));
+      hdf5::create_dataset(group, f.name, types_of(f.kind, settings_.double_precision).file,
+                           std::span(&rows, 1));
     }
   }
   file.close("write '" + settings_.path + "'");
@@ -189,8 +196,8 @@ void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchan
       const hdf5::Handle dataset = hdf5::open_dataset(group, field.name);
       for (const RowBatch& batch : batches) {
         fill(model, batch, field, settings_.double_precision, facts, memory);
-        hdf5::write_rows(dataset, types_of(field.kind, settings_.double_precision).memory, batch.rows, memory.data(),
-                         exchange.size() > 1);
+        hdf5::write_rows(dataset, types_of(field.kind, settings_.double_precision).memory, batch.rows,
+                         memory.data(), exchange.size() > 1);
       }
     }
   }
@@ -216,7 +223,8 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
     first_row[b] = particles;
     particles += order.particles[b];
   }
-  const std::vector<RowBatch> batches = cut_into_batches(model, order, first_row, particles_at_once, exchange);
+  const std::vector<RowBatch> batches =
+      cut_into_batches(model, order, first_row, particles_at_once, exchange);
 
   together(exchange, [&] {
     if (exchange.rank() == 0) add_step(model.clock, particles);
@@ -224,9 +232,7 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
   std::string complaint;
   try {
     write_fields(model, exchange, batches);
-  } catch (const FileError& e) {
-    complaint = e.what();
-  }
+  } catch (const FileError& e) { complaint = e.what(); }
   agree(exchange, complaint);
   together(exchange, [&] {
     if (exchange.rank() == 0) name_step();

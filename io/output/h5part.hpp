@@ -1,12 +1,13 @@
-// Job.h5part: all times in one HDF5 file, one group `Step#n` per time, one dataset per quantity (the H5Part schema:
-// A. Adelmann et al., vis.lbl.gov/Research/AcceleratorSAPP). ParaView joins name_0, name_1, name_2 to a vector.
+// Job.h5part: all times in one HDF5 file, one group `Step#n` per time, one dataset per quantity (the H5Part
+// schema: A. Adelmann et al., vis.lbl.gov/Research/AcceleratorSAPP). ParaView joins name_0, name_1, name_2 to
+// a vector.
 //
-// Every group has the attributes TimeValue and step, and x, y, z, velocity_0..2 (reals), id (64-bit), body (32-bit)
-// and the variables asked for. Rows are in the order of particle_order.hpp.
+// Every group has the attributes TimeValue and step, and x, y, z, velocity_0..2 (reals), id (64-bit), body
+// (32-bit) and the variables asked for. Rows are in the order of particle_order.hpp.
 //
-// A time is made in a group that readers do not look for, and gets its name when it is complete; until then nothing
-// changes that the earlier times need. Limit: a kill within the few microseconds of the naming may still hurt.
-// Shown by tests/io/output/h5part_test.cpp.
+// A time is made in a group that readers do not look for, and gets its name when it is complete; until then
+// nothing changes that the earlier times need. Limit: a kill within the few microseconds of the naming may
+// still hurt. Shown by tests/io/output/h5part_test.cpp.
 #pragma once
 
 #include <optional>
@@ -49,7 +50,8 @@ class H5PartWriter {
   int open_existing(double last);
   void create(const core::Scene& scene);
   void add_step(const core::Clock& clock, std::int64_t particles);
-  void write_fields(const core::Model& model, core::Exchange& exchange, const std::vector<struct RowBatch>& batches);
+  void write_fields(const core::Model& model, core::Exchange& exchange,
+                    const std::vector<struct RowBatch>& batches);
   void name_step();
 
   Settings settings_;

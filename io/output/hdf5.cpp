@@ -1,8 +1,8 @@
 #include "io/output/hdf5.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
+
+#include <fmt/format.h>
 
 #include "parallel/communicator.hpp"
 
@@ -10,7 +10,8 @@ namespace mpm::io::hdf5 {
 
 namespace {
 
-/// Once per process: no printing of errors, no clean-up at exit (a file that could not be written would fail again).
+/// Once per process: no printing of errors, no clean-up at exit (a file that could not be written would fail
+/// again).
 void prepare() {
   [[maybe_unused]] static const bool done = [] {
     H5dont_atexit();
@@ -36,21 +37,35 @@ Handle properties(hid_t cls) { return Handle(H5Pcreate(cls), H5Pclose, "make a p
 Handle access_properties() {
   prepare();
   Handle list = properties(H5P_FILE_ACCESS);
-  // Locks fail on some parallel file systems, and would keep viewers from reading a file that is being written.
+  // Locks fail on some parallel file systems, and would keep viewers from reading a file that is being
+  // written.
   check(H5Pset_file_locking(list, false, true), "switch off file locks");
   return list;
 }
 
+/// Of groups whose links stay in their header. HDF5 does that only where the order of creation is to be
+/// known.
+Handle group_properties() {
+  constexpr unsigned most_links = 256;
+  Handle list = properties(H5P_GROUP_CREATE);
+  check(H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED), "keep the order of links");
+  check(H5Pset_link_phase_change(list, most_links, 0), "keep links in the header");
+  return list;
+}
+
 Handle simple_space(std::span<const hsize_t> shape) {
-  return Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose, "make a dataspace");
+  return Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
+                "make a dataspace");
 }
 
 template <class T>
-void write_whole(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, std::span<const T> values) {
+void write_whole(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type,
+                 std::span<const T> values) {
   const hsize_t n = values.size();
   const Handle dataset = create_dataset(parent, name, file_type, std::span(&n, 1));
   if (n == 0) return;
-  check(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "write dataset '" + name + "'");
+  check(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "write dataset '" + name + "'");
 }
 
 template <class Container>
@@ -61,15 +76,16 @@ Container read_whole(hid_t parent, const std::string& name, hid_t memory_type) {
   if (shape.size() != 1) throw FileError("dataset '" + name + "' does not have one dimension");
   values.resize(shape[0]);
   if (values.empty()) return values;
-  check(H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read dataset '" + name + "'");
+  check(H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "read dataset '" + name + "'");
   return values;
 }
 
 template <class T>
 void write_scalar(hid_t object, const std::string& name, hid_t file_type, hid_t memory_type, const T* value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a dataspace");
-  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                         "make attribute '" + name + "'");
+  const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, "make attribute '" + name + "'");
   check(H5Awrite(attribute, memory_type, value), "write attribute '" + name + "'");
 }
 
@@ -93,7 +109,8 @@ std::pair<Handle, Handle> select(hid_t dataset, std::span<const Rows> stretches)
   for (const Rows& r : stretches) {
     const std::array<hsize_t, 2> start{r.first, 0};
     const std::array<hsize_t, 2> count{r.count, extent[1]};
-    check(H5Sselect_hyperslab(file, H5S_SELECT_OR, start.data(), nullptr, count.data(), nullptr), "select rows");
+    check(H5Sselect_hyperslab(file, H5S_SELECT_OR, start.data(), nullptr, count.data(), nullptr),
+          "select rows");
     extent[0] += r.count;
   }
   Handle memory = simple_space(std::span<const hsize_t>(extent.data(), shape.size()));
@@ -135,30 +152,38 @@ Handle open_file(const std::string& path, Access access) {
   return Handle(H5Fopen(path.c_str(), flags, list), H5Fclose, "open '" + path + "'");
 }
 
-Handle create_file(const std::string& path, hsize_t user_block, std::size_t names) {
+Handle create_file(const std::string& path, hsize_t user_block, bool links) {
   const Handle list = access_properties();
   const Handle creation = properties(H5P_FILE_CREATE);
   check(H5Pset_userblock(creation, user_block), "set the user block");
-  if (names > 0) check(H5Pset_local_heap_size_hint(creation, names), "make room for names");
+  if (links) {
+    constexpr unsigned half_node = 512, tree = 16;  // links in half a leaf, branches in half a node
+    constexpr std::size_t bytes_of_names = 32768;
+    check(H5Pset_sym_k(creation, tree, half_node), "make room for links");
+    check(H5Pset_local_heap_size_hint(creation, bytes_of_names), "make room for names");
+  }
   return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, list), H5Fclose, "create '" + path + "'");
 }
 
 Handle open_file_together(const std::string& path, core::Exchange& exchange) {
   if (exchange.size() == 1) return open_file(path, Access::change);
   const Handle list = access_properties();
-  check(H5Pset_fapl_mpio(list, parallel::communicator_of(exchange), MPI_INFO_NULL), "choose MPI for '" + path + "'");
+  check(H5Pset_fapl_mpio(list, parallel::communicator_of(exchange), MPI_INFO_NULL),
+        "choose MPI for '" + path + "'");
   check(H5Pset_all_coll_metadata_ops(list, true), "choose collective access");
   return Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, list), H5Fclose, "open '" + path + "'");
 }
 
 Handle create_group(hid_t parent, const std::string& name) {
-  return Handle(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+  const Handle list = group_properties();
+  return Handle(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, list, H5P_DEFAULT), H5Gclose,
                 "make group '" + name + "'");
 }
 
 void create_group_before_link(hid_t parent, const std::string& name) {
   const std::string doing = "make group '" + name + "'";
-  const Handle group(H5Gcreate_anon(parent, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, doing);
+  const Handle list = group_properties();
+  const Handle group(H5Gcreate_anon(parent, list, H5P_DEFAULT), H5Gclose, doing);
   check(H5Fflush(parent, H5F_SCOPE_GLOBAL), doing);
   check(H5Olink(group, parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), doing);
 }
@@ -266,7 +291,8 @@ bool has_attribute(hid_t object, const std::string& name) {
   return found > 0;
 }
 
-void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values, bool together) {
+void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values,
+                bool together) {
   const auto [file, memory] = select(dataset, stretches);
   const Handle transfer = properties(H5P_DATASET_XFER);
   if (together) check(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE), "choose collective transfer");

@@ -1,18 +1,18 @@
-// Thin owners over HDF5's C interface: handles that close themselves, attributes, rows of datasets. Every return
-// code is checked; a failure is a FileError with the library's innermost message.
+// Thin owners over HDF5's C interface: handles that close themselves, attributes, rows of datasets. Every
+// return code is checked; a failure is a FileError with the library's innermost message.
 //
-// A disk that fills up inside HDF5 cannot be survived: the library keeps what it could not write and fails at every
-// later call. So space is reserved (File::reserve) before HDF5 is let at a file, and structure is made by one rank
-// alone, data by all into space that is there already.
+// A disk that fills up inside HDF5 cannot be survived: the library keeps what it could not write and fails at
+// every later call. So space is reserved (File::reserve) before HDF5 is let at a file, and structure is made
+// by one rank alone, data by all into space that is there already.
 #pragma once
-
-#include <hdf5.h>
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <hdf5.h>
 
 #include "core/step/exchange.hpp"
 #include "io/output/file_error.hpp"
@@ -44,14 +44,16 @@ void check(herr_t status, const std::string& doing);
 enum class Access { read, change };
 /// On this rank alone.
 Handle open_file(const std::string& path, Access access);
-/// A new file. `names`: room in the root group for names of that many bytes together, so that links added later
-/// change few places of the file. On this rank alone.
-Handle create_file(const std::string& path, hsize_t user_block = 0, std::size_t names = 0);
+/// A new file. With `links` there is room in the root group for about a thousand links, so that one more
+/// changes few places of the file and needs no new one. On this rank alone.
+Handle create_file(const std::string& path, hsize_t user_block = 0, bool links = false);
 /// By all ranks together, for change. Collective.
 Handle open_file_together(const std::string& path, core::Exchange& exchange);
 
+/// The links in the group are kept in its own header.
 Handle create_group(hid_t parent, const std::string& name);
-/// As create_group, but the group is in the file before its name is: a kill leaves the parent as it was or complete.
+/// As create_group, but the group is in the file before its name is: a kill leaves the parent as it was or
+/// complete.
 void create_group_before_link(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
 /// Contiguous, its place in the file fixed at once and not filled. `shape` has one or two entries.
@@ -87,8 +89,8 @@ struct Rows {
   hsize_t first = 0;
   hsize_t count = 0;
 };
-/// The rows of all stretches, which ascend and do not overlap, between `dataset` and memory where they follow each
-/// other. Writing in a file that all ranks opened together is collective.
+/// The rows of all stretches, which ascend and do not overlap, between `dataset` and memory where they follow
+/// each other. Writing in a file that all ranks opened together is collective.
 void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values,
                 bool together);
 void read_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, void* values);

@@ -1,10 +1,10 @@
 #include "io/output/history_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <fmt/format.h>
 
 #include "core/step/totals.hpp"
 #include "io/output/provenance.hpp"
@@ -18,8 +18,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int width = 24;
 
-// A target's record: found (0, or infinity on ranks that know nothing of it), the brick it is in, its variables. The
-// minimum over the ranks is what the one rank that knows has said.
+// A target's record: found (0, or infinity on ranks that know nothing of it), the brick it is in, its
+// variables. The minimum over the ranks is what the one rank that knows has said.
 constexpr std::size_t place_entry = 1;
 constexpr std::size_t first_value = 4;
 
@@ -38,7 +38,8 @@ struct Lane {
 double value_of(const Lane& at, Column c) { return at.block[at.pool->layout().offset(c) + at.lane]; }
 
 core::Vec3<double> position_of(const Lane& at) {
-  return {value_of(at, Column::position_x), value_of(at, Column::position_y), value_of(at, Column::position_z)};
+  return {value_of(at, Column::position_x), value_of(at, Column::position_y),
+          value_of(at, Column::position_z)};
 }
 
 /// f(lane) for every particle of a brick, until it returns false.
@@ -47,8 +48,8 @@ bool over_particles(const core::Model& model, const core::Brick& brick, F f) {
   for (const core::Cohort& cohort : brick.cohorts) {
     const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
     for (std::uint32_t i = 0; i < cohort.count; ++i) {
-      const Lane lane{&pool, pool.block(cohort.blocks[i / core::block_lanes]), static_cast<int>(i % core::block_lanes),
-                      cohort.body};
+      const Lane lane{&pool, pool.block(cohort.blocks[i / core::block_lanes]),
+                      static_cast<int>(i % core::block_lanes), cohort.body};
       if (!f(lane)) return false;
     }
   }
@@ -67,7 +68,8 @@ std::optional<Lane> find_in(const core::Model& model, const core::Brick& brick, 
 }
 
 /// Slots of ours where a particle last seen in brick `b` may be.
-std::vector<core::Slot> candidates(const core::BrickGrid& grid, const std::optional<core::BrickCoord>& b, int reach) {
+std::vector<core::Slot> candidates(const core::BrickGrid& grid, const std::optional<core::BrickCoord>& b,
+                                   int reach) {
   std::vector<core::Slot> slots;
   if (reach == everywhere) {
     for (core::Slot s = 0; s < grid.owned(); ++s) slots.push_back(s);
@@ -88,8 +90,8 @@ double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b
 
 }  // namespace
 
-HistoryFile::HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
-                         core::Exchange& exchange)
+HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
+                         std::optional<Continuation> continuation, core::Exchange& exchange)
     : targets_(targets_of(*model.scene)) {
   std::size_t particles = 0;
   for (Target& t : targets_) {
@@ -118,7 +120,8 @@ std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scen
   std::vector<Target> targets;
   for (const core::TimeHistoryInput& history : scene.output.histories) {
     const std::vector<Variable> variables = variables_of(history.variables);
-    for (const auto& p : history.particles) targets.push_back({to_vec(p), true, variables, 0, no_identity, {}});
+    for (const auto& p : history.particles)
+      targets.push_back({to_vec(p), true, variables, 0, no_identity, {}});
     for (const auto& p : history.points) targets.push_back({to_vec(p), false, variables, 0, no_identity, {}});
   }
   return targets;
@@ -145,7 +148,8 @@ void HistoryFile::choose_particles(const core::Model& model, core::Exchange& exc
   }
   exchange.minimum(identity);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (targets_[i].particle && identity[i] < infinity) targets_[i].identity = static_cast<std::uint64_t>(identity[i]);
+    if (targets_[i].particle && identity[i] < infinity)
+      targets_[i].identity = static_cast<std::uint64_t>(identity[i]);
   }
 }
 
@@ -193,7 +197,8 @@ void HistoryFile::look_up(const core::Model& model, int reach, std::vector<doubl
       record[place_entry + 2] = b.z;
       const BodyFacts facts = facts_of(model, static_cast<std::size_t>(found->body));
       for (std::size_t v = 0; v < t.variables.size(); ++v) {
-        record[first_value + v] = evaluate(t.variables[v], found->pool->layout(), found->block, found->lane, facts);
+        record[first_value + v] =
+            evaluate(t.variables[v], found->pool->layout(), found->block, found->lane, facts);
       }
       break;
     }
@@ -259,7 +264,8 @@ void HistoryFile::add(const core::Model& model, core::Exchange& exchange) {
       continue;
     }
     const double* b = record + place_entry;
-    t.last = {static_cast<std::int32_t>(b[0]), static_cast<std::int32_t>(b[1]), static_cast<std::int32_t>(b[2])};
+    t.last = {static_cast<std::int32_t>(b[0]), static_cast<std::int32_t>(b[1]),
+              static_cast<std::int32_t>(b[2])};
   }
   file_->add(row + '\n');
 }

@@ -1,9 +1,9 @@
 // Job_curv.dat: one row per step with the total energies and the histories that the scene asks for.
 //
-// A `Particle` history follows the particle that is nearest to its point when the history starts (of several, the
-// one with the lowest identity) wherever it goes; not-a-number once it is gone. A `Point` history is the average
-// over the particles in the cell around the point, weighted by mass and by the cell's trilinear function of their
-// distance from the point; 0 while the cell is empty. The same bits on any ranks. Shown by
+// A `Particle` history follows the particle that is nearest to its point when the history starts (of several,
+// the one with the lowest identity) wherever it goes; not-a-number once it is gone. A `Point` history is the
+// average over the particles in the cell around the point, weighted by mass and by the cell's trilinear
+// function of their distance from the point; 0 while the cell is empty. The same bits on any ranks. Shown by
 // tests/io/output/history_file_test.cpp.
 #pragma once
 

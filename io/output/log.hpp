@@ -1,10 +1,10 @@
 // Job.out: what the run says, in the file and on the console; said by rank 0 alone.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "io/output/text_file.hpp"
 

@@ -26,23 +26,27 @@ void collect(const core::Model& model, std::vector<CohortRecord>& records, std::
     for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
       const core::Cohort& cohort = brick.cohorts[c];
       if (cohort.count == 0) continue;
-      entries.push_back({{core::key_of(brick.coord), cohort.body, cohort.count, 0}, {s, static_cast<int>(c), 0}});
+      entries.push_back(
+          {{core::key_of(brick.coord), cohort.body, cohort.count, 0}, {s, static_cast<int>(c), 0}});
     }
   }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return before(a.record, b.record); });
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return before(a.record, b.record); });
   for (const Entry& e : entries) {
     records.push_back(e.record);
     places.push_back(e.place);
   }
 }
 
-void add_hashes(const core::Model& model, const std::vector<CohortPlace>& places, std::vector<CohortRecord>& records) {
+void add_hashes(const core::Model& model, const std::vector<CohortPlace>& places,
+                std::vector<CohortRecord>& records) {
 #pragma omp parallel
   {
     std::vector<double> rows;
 #pragma omp for schedule(dynamic, 8)
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const core::Cohort& cohort = model.grid->brick(places[i].slot).cohorts[static_cast<std::size_t>(places[i].cohort)];
+      const core::Cohort& cohort =
+          model.grid->brick(places[i].slot).cohorts[static_cast<std::size_t>(places[i].cohort)];
       const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
       rows.clear();
       append_rows(pool, cohort, rows);

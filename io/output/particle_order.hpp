@@ -1,5 +1,5 @@
-// The order of particles in files that hold all of them: body after body, within a body brick after brick by key,
-// within a brick as stored. It does not depend on ranks or threads.
+// The order of particles in files that hold all of them: body after body, within a body brick after brick by
+// key, within a brick as stored. It does not depend on ranks or threads.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ struct ParticleOrder {
 /// With `hashes` every record carries its hash. Collective.
 ParticleOrder order_particles(const core::Model& model, core::Exchange& exchange, bool hashes);
 
-/// Hash of the state of all particles: names of bodies and columns, and every record of the order. The same for the
-/// same bits, on any number of ranks. Collective.
+/// Hash of the state of all particles: names of bodies and columns, and every record of the order. The same
+/// for the same bits, on any number of ranks. Collective.
 std::uint64_t state_hash(const core::Model& model, core::Exchange& exchange);
 std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::vector<std::string>& bodies);
 /// What state_hash() knows of a body: its name and the names of its columns.

@@ -1,9 +1,9 @@
 #include "io/output/provenance.hpp"
 
+#include <ctime>
+
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-
-#include <ctime>
 
 #include "core/version.hpp"
 
@@ -54,7 +54,8 @@ std::string to_text(const ProvenanceLines& lines, const std::string& prefix) {
 std::string to_xml_comment(const ProvenanceLines& lines) {
   std::string text = to_text(lines, "  ");
   // XML forbids two hyphens in a row in a comment.
-  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at)) text[at + 1] = '_';
+  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at))
+    text[at + 1] = '_';
   return "<!--\n" + text + "-->\n";
 }
 
@@ -76,7 +77,8 @@ std::string safe_name(const std::string& name) {
   std::string out = name;
   for (char& c : out) {
     const auto u = static_cast<unsigned char>(c);
-    if (u <= ' ' || u == 127 || std::string_view("/\\:*?\"<>|[]#,;").find(c) != std::string_view::npos) c = '_';
+    if (u <= ' ' || u == 127 || std::string_view("/\\:*?\"<>|[]#,;").find(c) != std::string_view::npos)
+      c = '_';
   }
   if (out.empty() || out.find_first_not_of('.') == std::string::npos) out = "_" + out;
   return out;

@@ -12,7 +12,8 @@ std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleO
                                        core::Exchange& exchange) {
   std::vector<RowBatch> batches;
   for (const CohortPlace& place : order.mine) {
-    const core::Cohort& cohort = model.grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
+    const core::Cohort& cohort =
+        model.grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
     const std::int64_t base = first_row_of_body[static_cast<std::size_t>(cohort.body)];
     if (base == left_out) continue;
     if (batches.empty() || batches.back().particles + cohort.count > most ||

@@ -1,4 +1,5 @@
-// This rank's particles cut into pieces of bounded memory, for writing datasets that hold all ranks' particles.
+// This rank's particles cut into pieces of bounded memory, for writing datasets that hold all ranks'
+// particles.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +23,9 @@ struct RowBatch {
 
 inline constexpr std::int64_t left_out = -1;
 
-/// The batches of the bodies whose first row in the dataset is given, in the dataset's order; `left_out` for bodies
-/// that it does not hold. At most about `most` particles each. Every rank gets the same number of batches, perhaps
-/// with empty ones at the end, so that writing them can be collective. Collective.
+/// The batches of the bodies whose first row in the dataset is given, in the dataset's order; `left_out` for
+/// bodies that it does not hold. At most about `most` particles each. Every rank gets the same number of
+/// batches, perhaps with empty ones at the end, so that writing them can be collective. Collective.
 std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleOrder& order,
                                        std::span<const std::int64_t> first_row_of_body, std::size_t most,
                                        core::Exchange& exchange);
@@ -35,12 +36,14 @@ void for_each_block(const core::Model& model, const RowBatch& batch, F f) {
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t i = 0; i < batch.parts.size(); ++i) {
     const RowBatch::Part& part = batch.parts[i];
-    const core::Cohort& cohort = model.grid->brick(part.place.slot).cohorts[static_cast<std::size_t>(part.place.cohort)];
+    const core::Cohort& cohort =
+        model.grid->brick(part.place.slot).cohorts[static_cast<std::size_t>(part.place.cohort)];
     const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       const std::size_t done = core::block_lanes * b;
       const int used = static_cast<int>(std::min<std::size_t>(core::block_lanes, cohort.count - done));
-      f(static_cast<std::size_t>(cohort.body), pool.layout(), pool.block(cohort.blocks[b]), used, part.first + done);
+      f(static_cast<std::size_t>(cohort.body), pool.layout(), pool.block(cohort.blocks[b]), used,
+        part.first + done);
     }
   }
 }

@@ -1,8 +1,8 @@
 #include "io/output/status_file.hpp"
 
-#include <fmt/format.h>
-
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "io/output/memory_use.hpp"
 #include "io/output/provenance.hpp"
@@ -19,8 +19,8 @@ constexpr const char* group_columns[] = {"px", "py", "pz", "kinetic", "internal"
 std::string head_of(const core::Model& model) {
   std::string head = fmt::format("#{:>{}}", "step", width - 1);
   const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
-  for (const char* name : {"time", "dt", "kinetic", "internal", "external_work", "total", "relative_drift", "px", "py",
-                           "pz"}) {
+  for (const char* name :
+       {"time", "dt", "kinetic", "internal", "external_work", "total", "relative_drift", "px", "py", "pz"}) {
     add(name);
   }
   const auto add_group = [&](const std::string& kind, const std::string& name) {
@@ -67,8 +67,8 @@ TextFile open_table(const std::string& path, const core::Model& model, const std
 
 }  // namespace
 
-StatusFile::StatusFile(const std::string& path, const core::Model& model, std::optional<std::int64_t> continue_from,
-                       core::Exchange& exchange)
+StatusFile::StatusFile(const std::string& path, const core::Model& model,
+                       std::optional<std::int64_t> continue_from, core::Exchange& exchange)
     : file_(open_table(path, model, head_of(model), continue_from, exchange)),
       memory_(model.scene->output.statistics.memory),
       occupancy_(model.scene->output.statistics.cell_occupancy) {
@@ -86,8 +86,8 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
     add(q.internal);
     for (int a = 0; a < 3; ++a) add(q.mass > 0 ? q.momentum[a] / q.mass : 0);
   };
-  for (const double value : {clock.time, clock.dt, totals.kinetic, totals.internal, totals.external_work, balance.total,
-                             balance.relative_drift}) {
+  for (const double value : {clock.time, clock.dt, totals.kinetic, totals.internal, totals.external_work,
+                             balance.total, balance.relative_drift}) {
     add(value);
   }
   for (int a = 0; a < 3; ++a) add(totals.momentum[a]);

@@ -1,7 +1,7 @@
 // Job.sta: one row per report of the run's state: step, time, energies, momenta, per body and per material.
 //
-// Lines that start with '#' are comments; the last of them names the columns. Numbers have 17 significant digits,
-// enough to see any drift. Shown by tests/io/output/status_file_test.cpp.
+// Lines that start with '#' are comments; the last of them names the columns. Numbers have 17 significant
+// digits, enough to see any drift. Shown by tests/io/output/status_file_test.cpp.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@ namespace mpm::io {
 
 class StatusFile {
  public:
-  /// Keeps the rows up to `continue_from`, a step, of an existing file with the same columns; starts anew without.
-  /// Throws FileError. Collective.
+  /// Keeps the rows up to `continue_from`, a step, of an existing file with the same columns; starts anew
+  /// without. Throws FileError. Collective.
   StatusFile(const std::string& path, const core::Model& model, std::optional<std::int64_t> continue_from,
              core::Exchange& exchange);
 

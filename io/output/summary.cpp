@@ -1,7 +1,6 @@
 #include "io/output/summary.hpp"
 
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "core/version.hpp"
@@ -59,15 +58,16 @@ Json seconds_json(const RunReport& report) {
 double bytes_per_particle(const core::Model& model, const core::Totals& totals) {
   double bytes = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    bytes += static_cast<double>(totals.bodies[b].particles) * model.bodies[b].pool->layout().bytes_per_particle();
+    bytes +=
+        static_cast<double>(totals.bodies[b].particles) * model.bodies[b].pool->layout().bytes_per_particle();
   }
   return totals.particles > 0 ? bytes / static_cast<double>(totals.particles) : 0;
 }
 
 }  // namespace
 
-std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report, int ranks,
-                         const MemoryUse& memory) {
+std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report,
+                         int ranks, const MemoryUse& memory) {
   const core::Scene& scene = *model.scene;
   Json bodies = Json::array();
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -86,7 +86,8 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
       {"end_time", scene.solution.end_time},
       {"particles", totals.particles},
       {"wall_seconds", seconds_json(report)},
-      {"particle_steps_per_second", report.seconds_loop > 0 ? report.particle_steps / report.seconds_loop : 0.0},
+      {"particle_steps_per_second",
+       report.seconds_loop > 0 ? report.particle_steps / report.seconds_loop : 0.0},
       {"bytes_per_particle", bytes_per_particle(model, totals)},
       {"peak_memory_bytes", {{"max", memory.largest}, {"sum", memory.sum}}},
       {"energy", energy_json(model, totals, report)},
@@ -95,7 +96,9 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
       {"bodies", bodies},
       {"input_hash", scene.provenance.hash},
       {"units",
-       {{"time", scene.header.time_unit}, {"length", scene.header.length_unit}, {"mass", scene.header.mass_unit}}},
+       {{"time", scene.header.time_unit},
+        {"length", scene.header.length_unit},
+        {"mass", scene.header.mass_unit}}},
   };
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
@@ -104,21 +107,21 @@ void write_summary(const std::string& path, const core::Model& model, const core
                    const RunReport& report, core::Exchange& exchange) {
   const MemoryUse memory = peak_memory(exchange);
   together(exchange, [&] {
-    if (exchange.rank() == 0) replace_file(path, summary_json(model, totals, report, exchange.size(), memory));
+    if (exchange.rank() == 0)
+      replace_file(path, summary_json(model, totals, report, exchange.size(), memory));
   });
 }
 
 std::string timing_table(const RunReport& report) {
   std::size_t widest = 5;
   for (const auto& [name, spread] : report.phases) widest = std::max(widest, name.size());
-  std::string text =
-      fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>8} {:>10}\n", "phase", widest, "min s", "mean s", "max s", "share",
-                  "imbalance");
+  std::string text = fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>8} {:>10}\n", "phase", widest, "min s",
+                                 "mean s", "max s", "share", "imbalance");
   const auto add = [&](const std::string& name, const core::Exchange::Spread& s) {
     const double share = report.seconds_loop > 0 ? 100 * s.mean / report.seconds_loop : 0;
     const double imbalance = s.mean > 0 ? 100 * (s.max / s.mean - 1) : 0;
-    text += fmt::format("{:<{}} {:>10.3f} {:>10.3f} {:>10.3f} {:>7.1f}% {:>9.1f}%\n", name, widest, s.min, s.mean,
-                        s.max, share, imbalance);
+    text += fmt::format("{:<{}} {:>10.3f} {:>10.3f} {:>10.3f} {:>7.1f}% {:>9.1f}%\n", name, widest, s.min,
+                        s.mean, s.max, share, imbalance);
   };
   core::Exchange::Spread rest{report.seconds_loop, report.seconds_loop, report.seconds_loop};
   for (const auto& [name, spread] : report.phases) {

@@ -1,5 +1,5 @@
-// Job.summary.json: how the run ended and what it reached, for programs to read; and the table of where the time
-// went, for the log.
+// Job.summary.json: how the run ended and what it reached, for programs to read; and the table of where the
+// time went, for the log.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace mpm::io {
 struct RunReport {
   std::string status;  ///< "completed", "stopped" or "failed"
   std::string reason;
-  int threads = 1;     ///< per rank
+  int threads = 1;  ///< per rank
   double seconds_total = 0;
   double seconds_setup = 0;
   double seconds_loop = 0;
@@ -30,14 +30,15 @@ struct RunReport {
 };
 
 /// The text of the file; of a phase the mean over the ranks. Numbers that do not exist are null.
-std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report, int ranks,
-                         const MemoryUse& memory);
+std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report,
+                         int ranks, const MemoryUse& memory);
 
 /// Writes it as a whole, or leaves what was there. Throws FileError. Collective.
 void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,
                    const RunReport& report, core::Exchange& exchange);
 
-/// Seconds per phase over the ranks, shares of the loop and imbalance (max over mean, less one), one line each.
+/// Seconds per phase over the ranks, shares of the loop and imbalance (max over mean, less one), one line
+/// each.
 std::string timing_table(const RunReport& report);
 
 }  // namespace mpm::io

@@ -29,9 +29,7 @@ void TextFile::write_out() noexcept {
   if (!file_) return;
   try {
     if (complaint_.empty()) file_->write(waiting_);
-  } catch (const FileError& e) {
-    complaint_ = e.what();
-  }
+  } catch (const FileError& e) { complaint_ = e.what(); }
   waiting_.clear();
 }
 

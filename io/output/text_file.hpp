@@ -17,8 +17,8 @@ class TextFile {
   ~TextFile();
   TextFile(TextFile&&) = default;
 
-  /// Waits in memory until there is enough of it. Does nothing on other ranks than 0, and never fails: a full disk is
-  /// told by the next flush().
+  /// Waits in memory until there is enough of it. Does nothing on other ranks than 0, and never fails: a full
+  /// disk is told by the next flush().
   void add(std::string_view text) noexcept;
   /// Hand what waits to the system.
   void write_out() noexcept;
@@ -31,9 +31,10 @@ class TextFile {
   std::string complaint_;
 };
 
-/// Cut a table, whose rows start with the step and whose other lines start with '#', after the last whole row of a
-/// step up to `last_step`. The last '#' line before the rows must be `head`, else the table is not of this run: it
-/// is renamed to `<path>.old` and false is returned. False, too, if there is no such file. On one rank.
+/// Cut a table, whose rows start with the step and whose other lines start with '#', after the last whole row
+/// of a step up to `last_step`. The last '#' line before the rows must be `head`, else the table is not of
+/// this run: it is renamed to `<path>.old` and false is returned. False, too, if there is no such file. On
+/// one rank.
 bool cut_table(const std::string& path, const std::string& head, std::int64_t last_step);
 
 }  // namespace mpm::io

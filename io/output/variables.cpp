@@ -77,13 +77,14 @@ BodyFacts facts_of(const core::Model& model, std::size_t body) {
   return {static_cast<int>(body), b.component, b.material, b.model->reference_density()};
 }
 
-double evaluate(Variable v, const ColumnLayout& layout, const double* block, int lane, const BodyFacts& facts) {
+double evaluate(Variable v, const ColumnLayout& layout, const double* block, int lane,
+                const BodyFacts& facts) {
   const auto at = [&](Column c) { return block[layout.offset(c) + lane]; };
   const auto optional = [&](Column c) { return layout.has(c) ? at(c) : 0.0; };
   const auto pressure = [&] { return at(Column::pressure) + at(Column::viscous_pressure); };
   const auto equivalent = [&] {
-    return core::mises(core::Sym3<double>{at(Column::s_xx), at(Column::s_yy), at(Column::s_zz), at(Column::s_xy),
-                                          at(Column::s_yz), at(Column::s_xz)});
+    return core::mises(core::Sym3<double>{at(Column::s_xx), at(Column::s_yy), at(Column::s_zz),
+                                          at(Column::s_xy), at(Column::s_yz), at(Column::s_xz)});
   };
   switch (v) {
     case Variable::seqv: return equivalent();

@@ -1,9 +1,9 @@
 // The words of `var` (manual, table 3.1) and what each means for a particle.
 //
-// To add one: a name in Variable, a row in variable_table and a line in evaluate(). pres is the pressure p of the
-// equation of state, positive in compression and without the artificial viscosity; stresses are the whole Cauchy
-// stress s - (p + q) I. tria is -p over the Mises stress. Numbers of bodies, components and materials count from 0
-// in the order of the input. Shown by tests/io/output/variables_test.cpp.
+// To add one: a name in Variable, a row in variable_table and a line in evaluate(). pres is the pressure p of
+// the equation of state, positive in compression and without the artificial viscosity; stresses are the whole
+// Cauchy stress s - (p + q) I. tria is -p over the Mises stress. Numbers of bodies, components and materials
+// count from 0 in the order of the input. Shown by tests/io/output/variables_test.cpp.
 #pragma once
 
 #include <array>
@@ -17,11 +17,36 @@
 namespace mpm::io {
 
 enum class Variable : int {
-  seqv, epef, pres, density, tria, fail, engk, engi, cp, sigy, damg, body, com, mat, kelv,
-  velocity_0, velocity_1, velocity_2,
-  exx, eyy, ezz,
-  posx, posy, posz,
-  sigma_x, sigma_y, sigma_z, sigma_xy, sigma_yz, sigma_xz,
+  seqv,
+  epef,
+  pres,
+  density,
+  tria,
+  fail,
+  engk,
+  engi,
+  cp,
+  sigy,
+  damg,
+  body,
+  com,
+  mat,
+  kelv,
+  velocity_0,
+  velocity_1,
+  velocity_2,
+  exx,
+  eyy,
+  ezz,
+  posx,
+  posy,
+  posz,
+  sigma_x,
+  sigma_y,
+  sigma_z,
+  sigma_xy,
+  sigma_yz,
+  sigma_xz,
   count
 };
 
@@ -85,7 +110,8 @@ core::ColumnSet columns_for(const std::vector<Variable>& variables);
 core::ColumnSet columns_for(const core::OutputInput& output);
 
 /// The variables that a body of this layout cannot give and that are therefore 0 for it.
-std::vector<Variable> absent_variables(const std::vector<Variable>& variables, const core::ColumnLayout& layout);
+std::vector<Variable> absent_variables(const std::vector<Variable>& variables,
+                                       const core::ColumnLayout& layout);
 
 /// What of a body enters its variables.
 struct BodyFacts {
@@ -96,7 +122,8 @@ struct BodyFacts {
 };
 BodyFacts facts_of(const core::Model& model, std::size_t body);
 
-/// The variable for the particle in `lane` of a block. Angles and rates do not occur; units are the scene's own.
+/// The variable for the particle in `lane` of a block. Angles and rates do not occur; units are the scene's
+/// own.
 double evaluate(Variable v, const core::ColumnLayout& layout, const double* block, int lane,
                 const BodyFacts& facts);
 

@@ -1,10 +1,10 @@
 #include "io/output/vtu.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+
+#include <fmt/format.h>
 
 #include "io/output/file.hpp"
 #include "io/output/particle_order.hpp"
@@ -38,11 +38,13 @@ std::vector<Array> point_arrays(const std::vector<Variable>& variables, bool dou
 }
 
 Array position_array(bool double_precision) {
-  return {"Position", double_precision ? "Float64" : "Float32", double_precision ? std::size_t{8} : 4, 3, Variable::posx};
+  return {"Position", double_precision ? "Float64" : "Float32", double_precision ? std::size_t{8} : 4, 3,
+          Variable::posx};
 }
 
 std::string element(const char* tag, const Array& a) {
-  return fmt::format("<{} type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"", tag, a.type, a.name, a.components);
+  return fmt::format("<{} type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"", tag, a.type, a.name,
+                     a.components);
 }
 
 /// The part of this rank that goes into one file.
@@ -93,7 +95,8 @@ class Appended {
 template <class T>
 void put_values(const Piece& piece, const Array& array, Appended& out) {
   for (const CohortPlace& place : piece.places) {
-    const core::Cohort& cohort = piece.model->grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
+    const core::Cohort& cohort =
+        piece.model->grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
     const core::BlockPool& pool = *piece.model->bodies[static_cast<std::size_t>(cohort.body)].pool;
     const core::ColumnLayout& layout = pool.layout();
     const BodyFacts facts = facts_of(*piece.model, static_cast<std::size_t>(cohort.body));
@@ -122,27 +125,33 @@ void put_array(const Piece& piece, const Array& array, Appended& out) {
 
 std::string vtk_head(const char* type, const core::Scene& scene) {
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + to_xml_comment(provenance_of(scene)) +
-         fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n", type);
+         fmt::format(
+             "<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n",
+             type);
 }
 
 std::string time_field(double time) {
   return fmt::format(
-      "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:.17g}"
+      "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+      "format=\"ascii\">{:.17g}"
       "</DataArray>\n</FieldData>\n",
       time);
 }
 
 /// Cells are vertices: cell i is point i.
-void write_piece(const std::string& path, const Piece& piece, const Array& position, const std::vector<Array>& arrays) {
+void write_piece(const std::string& path, const Piece& piece, const Array& position,
+                 const std::vector<Array>& arrays) {
   std::uint64_t offset = 0;
   const auto declare = [&](const Array& a) {
-    const std::string text = fmt::format("{} format=\"appended\" offset=\"{}\"/>\n", element("DataArray", a), offset);
+    const std::string text =
+        fmt::format("{} format=\"appended\" offset=\"{}\"/>\n", element("DataArray", a), offset);
     offset += 8 + piece.particles * a.bytes * static_cast<std::uint64_t>(a.components);
     return text;
   };
-  std::string head = vtk_head("UnstructuredGrid", *piece.model->scene) + "<UnstructuredGrid>\n" +
-                     time_field(piece.model->clock.time) +
-                     fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfCells=\"{0}\">\n<Points>\n", piece.particles);
+  std::string head =
+      vtk_head("UnstructuredGrid", *piece.model->scene) + "<UnstructuredGrid>\n" +
+      time_field(piece.model->clock.time) +
+      fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfCells=\"{0}\">\n<Points>\n", piece.particles);
   head += declare(position) + "</Points>\n<PointData Vectors=\"velocity\">\n";
   for (const Array& a : arrays) head += declare(a);
   head += "</PointData>\n<Cells>\n";
@@ -174,7 +183,8 @@ std::string index_of_pieces(const std::string& stem, const std::vector<int>& ran
                             const std::vector<Array>& arrays, const core::Model& model) {
   std::string text = vtk_head("PUnstructuredGrid", *model.scene) + "<PUnstructuredGrid GhostLevel=\"0\">\n" +
                      time_field(model.clock.time);
-  text += "<PPoints>\n" + element("PDataArray", position) + "/>\n</PPoints>\n<PPointData Vectors=\"velocity\">\n";
+  text +=
+      "<PPoints>\n" + element("PDataArray", position) + "/>\n</PPoints>\n<PPointData Vectors=\"velocity\">\n";
   for (const Array& a : arrays) text += element("PDataArray", a) + "/>\n";
   text += "</PPointData>\n";
   for (const int r : ranks) text += fmt::format("<Piece Source=\"{}\"/>\n", xml_escaped(piece_name(stem, r)));
@@ -205,7 +215,8 @@ void VtuWriter::read_collection(double last) {
   const std::string path = settings_.folder + "/" + settings_.job + ".pvd";
   if (!std::filesystem::exists(path)) return;
   const std::string text = read_file(path);
-  for (std::size_t at = text.find("<DataSet "); at != std::string::npos; at = text.find("<DataSet ", at + 1)) {
+  for (std::size_t at = text.find("<DataSet "); at != std::string::npos;
+       at = text.find("<DataSet ", at + 1)) {
     const std::string line = text.substr(at, text.find("/>", at) - at);
     const std::string time = attribute_of(line, "timestep"), part = attribute_of(line, "part");
     if (time.empty() || part.empty()) continue;
@@ -216,17 +227,19 @@ void VtuWriter::read_collection(double last) {
 }
 
 void VtuWriter::write_collection(const core::Scene& scene) const {
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + to_xml_comment(provenance_of(scene)) +
-                     "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + to_xml_comment(provenance_of(scene)) +
+      "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
   for (const Entry& e : entries_) {
-    text += fmt::format("<DataSet timestep=\"{:.17g}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", e.time, e.part, e.name,
-                        e.file);
+    text += fmt::format("<DataSet timestep=\"{:.17g}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", e.time,
+                        e.part, e.name, e.file);
   }
   replace_file(settings_.folder + "/" + settings_.job + ".pvd", text + "</Collection>\n</VTKFile>\n");
 }
 
-void VtuWriter::write_set(const std::string& stem, const std::string& name, const std::vector<std::size_t>& bodies,
-                          const core::Model& model, core::Exchange& exchange, int part) {
+void VtuWriter::write_set(const std::string& stem, const std::string& name,
+                          const std::vector<std::size_t>& bodies, const core::Model& model,
+                          core::Exchange& exchange, int part) {
   const std::string folder = settings_.job + "_vtu";
   const std::string path = settings_.folder + "/" + folder + "/";
   const Array position = position_array(settings_.double_precision);
@@ -255,7 +268,8 @@ void VtuWriter::write_set(const std::string& stem, const std::string& name, cons
   together(exchange, [&] {
     if (exchange.rank() != 0) return;
     replace_file(path + stem + ".pvtu", index_of_pieces(stem, ranks, position, arrays, model));
-    entries_.push_back({model.clock.time, part, xml_escaped(name), xml_escaped(folder + "/" + stem + ".pvtu")});
+    entries_.push_back(
+        {model.clock.time, part, xml_escaped(name), xml_escaped(folder + "/" + stem + ".pvtu")});
   });
 }
 
@@ -265,12 +279,13 @@ void VtuWriter::write(const core::Model& model, core::Exchange& exchange) {
     if (!model.bodies[b].no_output) written.push_back(b);
   }
   if (!settings_.per_body) {
-    write_set(fmt::format("{}_{}", settings_.job, model.clock.step), "all bodies", written, model, exchange, 0);
+    write_set(fmt::format("{}_{}", settings_.job, model.clock.step), "all bodies", written, model, exchange,
+              0);
   } else {
     for (const std::size_t b : written) {
       const std::string& name = model.bodies[b].name;
-      write_set(fmt::format("{}_{}_{}", settings_.job, safe_name(name), model.clock.step), name, {b}, model, exchange,
-                static_cast<int>(b));
+      write_set(fmt::format("{}_{}_{}", settings_.job, safe_name(name), model.clock.step), name, {b}, model,
+                exchange, static_cast<int>(b));
     }
   }
   together(exchange, [&] {

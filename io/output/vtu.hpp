@@ -1,8 +1,8 @@
-// Job_vtu/: one unstructured grid of vertices per time, in pieces, one from each rank that has particles, held
-// together by a .pvtu; or one such set per body. Job.pvd lists all times and is replaced as a whole.
+// Job_vtu/: one unstructured grid of vertices per time, in pieces, one from each rank that has particles,
+// held together by a .pvtu; or one such set per body. Job.pvd lists all times and is replaced as a whole.
 //
-// Arrays are appended raw, little-endian, 32-bit reals unless asked. Point data: velocity (vector), id, body and the
-// variables asked for; velocity_0..2 are in the vector. Shown by tests/io/output/vtu_test.cpp.
+// Arrays are appended raw, little-endian, 32-bit reals unless asked. Point data: velocity (vector), id, body
+// and the variables asked for; velocity_0..2 are in the vector. Shown by tests/io/output/vtu_test.cpp.
 #pragma once
 
 #include <optional>

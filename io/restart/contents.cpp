@@ -1,9 +1,9 @@
 #include "io/restart/contents.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <sstream>
+
+#include <fmt/format.h>
 
 #include "io/output/file.hpp"
 #include "io/output/provenance.hpp"
@@ -74,13 +74,16 @@ std::vector<core::Column> columns_named(const std::string& text) {
   for (std::string word; words >> word;) {
     const auto found = std::find_if(core::column_table.begin(), core::column_table.end(),
                                     [&](const core::ColumnInfo& info) { return info.name == word; });
-    if (found == core::column_table.end()) throw FileError("there is no column '" + word + "' in this program");
+    if (found == core::column_table.end())
+      throw FileError("there is no column '" + word + "' in this program");
     columns.push_back(static_cast<core::Column>(found - core::column_table.begin()));
   }
   return columns;
 }
 
-std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) { return i < values.size() ? values[i] : 0; }
+std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) {
+  return i < values.size() ? values[i] : 0;
+}
 
 Books summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::Exchange& exchange) {
   Books books = model.books;
@@ -114,7 +117,8 @@ void write_cohorts(hid_t file, const std::vector<CohortRecord>& cohorts) {
   const hdf5::Handle table = hdf5::create_dataset(file, "cohorts", H5T_STD_U64LE, shape);
   if (cohorts.empty()) return;
   static_assert(sizeof(CohortRecord) == 4 * sizeof(std::uint64_t));
-  hdf5::check(H5Dwrite(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()), "write the cohorts");
+  hdf5::check(H5Dwrite(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()),
+              "write the cohorts");
 }
 
 std::vector<CohortRecord> read_cohorts(hid_t file) {
@@ -123,7 +127,8 @@ std::vector<CohortRecord> read_cohorts(hid_t file) {
   if (shape.size() != 2 || shape[1] != 4) throw FileError("the table of cohorts has another shape");
   std::vector<CohortRecord> cohorts(shape[0]);
   if (cohorts.empty()) return cohorts;
-  hdf5::check(H5Dread(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()), "read the cohorts");
+  hdf5::check(H5Dread(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()),
+              "read the cohorts");
   return cohorts;
 }
 
@@ -131,7 +136,8 @@ void write_books(hid_t file, const Books& books) {
   const hdf5::Handle group = hdf5::create_group(file, "books");
   for (const auto& [name, sum] : sum_names) hdf5::write_all(group, name, (books.*sum).raw());
   for (const auto& [name, count] : count_names) hdf5::write_attribute(group, name, books.*count);
-  for (const auto& [name, count] : event_names) hdf5::write_attribute(group, name, std::int64_t{books.events.*count});
+  for (const auto& [name, count] : event_names)
+    hdf5::write_attribute(group, name, std::int64_t{books.events.*count});
 }
 
 Books read_books(hid_t file) {
@@ -144,7 +150,8 @@ Books read_books(hid_t file) {
     std::copy(limbs.begin(), limbs.end(), raw.begin());
   }
   for (const auto& [name, count] : count_names) books.*count = hdf5::read_int64(group, name);
-  for (const auto& [name, count] : event_names) books.events.*count = static_cast<long>(hdf5::read_int64(group, name));
+  for (const auto& [name, count] : event_names)
+    books.events.*count = static_cast<long>(hdf5::read_int64(group, name));
   return books;
 }
 
@@ -187,9 +194,11 @@ void write_grid(hid_t file, const core::GridGeometry& grid) {
 
 core::GridGeometry read_grid(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "grid");
-  const std::vector<double> origin = hdf5::read_all_double(group, "origin"), cell = hdf5::read_all_double(group, "cell");
+  const std::vector<double> origin = hdf5::read_all_double(group, "origin"),
+                            cell = hdf5::read_all_double(group, "cell");
   const std::vector<std::int64_t> cells = hdf5::read_all_int64(group, "cells");
-  if (origin.size() != 3 || cell.size() != 3 || cells.size() != 3) throw FileError("the grid is not of three dimensions");
+  if (origin.size() != 3 || cell.size() != 3 || cells.size() != 3)
+    throw FileError("the grid is not of three dimensions");
   core::GridGeometry grid;
   for (int a = 0; a < 3; ++a) {
     const auto i = static_cast<std::size_t>(a);
@@ -249,11 +258,13 @@ RestartExtra read_extra(hid_t file) {
 void check_counts(const RestartContents& c) {
   std::vector<std::int64_t> particles(c.bodies.size());
   for (const CohortRecord& r : c.cohorts) {
-    if (r.body < 0 || static_cast<std::size_t>(r.body) >= c.bodies.size()) throw FileError("a cohort has no body");
+    if (r.body < 0 || static_cast<std::size_t>(r.body) >= c.bodies.size())
+      throw FileError("a cohort has no body");
     particles[static_cast<std::size_t>(r.body)] += static_cast<std::int64_t>(r.particles);
   }
   for (std::size_t b = 0; b < c.bodies.size(); ++b) {
-    if (particles[b] != c.bodies[b].particles) throw FileError("the cohorts of body '" + c.bodies[b].name + "' do not add up");
+    if (particles[b] != c.bodies[b].particles)
+      throw FileError("the cohorts of body '" + c.bodies[b].name + "' do not add up");
   }
 }
 
@@ -287,11 +298,13 @@ std::string rows_name(std::size_t body) { return fmt::format("bodies/{}/particle
 std::uint64_t expected_bytes(const RestartContents& c) {
   std::uint64_t bytes = 262144 + c.extra.scene_text.size() + sizeof(CohortRecord) * c.cohorts.size() +
                         8 * c.extra.tracked.size() + 256 * c.extra.numbers.size();
-  for (const BodyRecord& b : c.bodies) bytes += 16384 + 8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
+  for (const BodyRecord& b : c.bodies)
+    bytes += 16384 + 8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
   return bytes;
 }
 
-std::vector<Extent> write_contents(const std::string& path, const RestartContents& c, const core::Scene& scene) {
+std::vector<Extent> write_contents(const std::string& path, const RestartContents& c,
+                                   const core::Scene& scene) {
   hdf5::Handle file = hdf5::create_file(path, guard_bytes(c.bodies.size()));
   std::vector<Extent> rows;
   {
@@ -312,7 +325,8 @@ std::vector<Extent> write_contents(const std::string& path, const RestartContent
     for (std::size_t b = 0; b < c.bodies.size(); ++b) {
       const hdf5::Handle group = hdf5::create_group(bodies, std::to_string(b));
       write_body(group, c.bodies[b]);
-      const std::array<hsize_t, 2> shape{static_cast<hsize_t>(c.bodies[b].particles), c.bodies[b].columns.size()};
+      const std::array<hsize_t, 2> shape{static_cast<hsize_t>(c.bodies[b].particles),
+                                         c.bodies[b].columns.size()};
       const hdf5::Handle data = hdf5::create_dataset(group, "particles", H5T_IEEE_F64LE, shape);
       if (shape[0] > 0) rows.push_back({H5Dget_offset(data), 8 * shape[0] * shape[1]});
     }
@@ -327,7 +341,8 @@ RestartContents read_contents(const std::string& path) {
     const hdf5::Handle file = hdf5::open_file(path, hdf5::Access::read);
     read_run(file, c);
     const hdf5::Handle text = hdf5::open_group(file, "scene");
-    c.provenance = {hdf5::read_string(text, "path"), hdf5::read_string(text, "job"), hdf5::read_string(text, "hash")};
+    c.provenance = {hdf5::read_string(text, "path"), hdf5::read_string(text, "job"),
+                    hdf5::read_string(text, "hash")};
     for (const auto& [name, member] : header_names) c.header.*member = hdf5::read_string(text, name);
     c.grid = read_grid(file);
     c.books = read_books(file);
@@ -336,7 +351,8 @@ RestartContents read_contents(const std::string& path) {
     c.extra.scene_text = hdf5::read_all_bytes(text, "text");
     const hdf5::Handle bodies = hdf5::open_group(file, "bodies");
     const std::int64_t n = hdf5::read_int64(bodies, "bodies");
-    for (std::int64_t b = 0; b < n; ++b) c.bodies.push_back(read_body(hdf5::open_group(bodies, std::to_string(b))));
+    for (std::int64_t b = 0; b < n; ++b)
+      c.bodies.push_back(read_body(hdf5::open_group(bodies, std::to_string(b))));
     check_counts(c);
   } catch (const FileError& e) {
     throw FileError(fmt::format("cannot read the restart file '{}': {}", path, e.what()));

@@ -52,7 +52,8 @@ RestartContents contents_of(const core::Model& model, const RestartExtra& extra,
                             core::Exchange& exchange);
 
 /// Make the file, with room for the particles' rows. Returns where they go. On this rank alone.
-std::vector<Extent> write_contents(const std::string& path, const RestartContents& contents, const core::Scene& scene);
+std::vector<Extent> write_contents(const std::string& path, const RestartContents& contents,
+                                   const core::Scene& scene);
 
 /// Throws FileError. On this rank alone.
 RestartContents read_contents(const std::string& path);

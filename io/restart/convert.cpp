@@ -59,8 +59,9 @@ core::Model model_for(const RestartContents& contents) {
 
 }  // namespace
 
-void restart_to_h5part(const std::string& path, const std::string& h5part, const std::vector<Variable>& variables,
-                       bool double_precision, core::Exchange& exchange) {
+void restart_to_h5part(const std::string& path, const std::string& h5part,
+                       const std::vector<Variable>& variables, bool double_precision,
+                       core::Exchange& exchange) {
   RestartContents contents;
   together(exchange, [&] {
     check_guard(path);

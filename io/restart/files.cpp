@@ -1,10 +1,10 @@
 #include "io/restart/files.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+
+#include <fmt/format.h>
 
 #include "io/output/file.hpp"
 #include "io/restart/guard.hpp"
@@ -28,7 +28,8 @@ std::vector<std::string> names(const std::string& folder, const std::string& job
   for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
     const std::string name = entry.path().filename().string();
     const std::string start = job + "_";
-    if (name.size() <= start.size() + ending.size() || !name.starts_with(start) || !name.ends_with(ending)) continue;
+    if (name.size() <= start.size() + ending.size() || !name.starts_with(start) || !name.ends_with(ending))
+      continue;
     if (all_digits(std::string_view(name).substr(start.size(), name.size() - start.size() - ending.size()))) {
       found.push_back(name);
     }
@@ -46,9 +47,7 @@ constexpr std::int64_t unreadable = std::numeric_limits<std::int64_t>::min();
 std::int64_t time_written(const std::string& path) {
   try {
     return read_guard(path).written;
-  } catch (const FileError&) {
-    return unreadable;
-  }
+  } catch (const FileError&) { return unreadable; }
 }
 
 }  // namespace
@@ -70,7 +69,8 @@ std::vector<std::string> restart_files(const std::string& folder, const std::str
     const std::string path = in_folder(folder, name);
     files.emplace_back(time_written(path), path);
   }
-  std::stable_sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::stable_sort(files.begin(), files.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::string> paths;
   for (const auto& file : files) paths.push_back(file.second);
   return paths;

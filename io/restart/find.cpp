@@ -1,6 +1,6 @@
-#include <fmt/format.h>
-
 #include <sstream>
+
+#include <fmt/format.h>
 
 #include "io/restart/files.hpp"
 #include "io/restart/restart.hpp"
@@ -18,9 +18,7 @@ std::optional<std::string> find_newest_restart(const std::string& folder, const 
     try {
       verify_restart(path, exchange);
       return path;
-    } catch (const FileError& e) {
-      notices.push_back(fmt::format("passed over: {}", e.what()));
-    }
+    } catch (const FileError& e) { notices.push_back(fmt::format("passed over: {}", e.what())); }
   }
   return std::nullopt;
 }

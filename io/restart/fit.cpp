@@ -1,8 +1,8 @@
 #include "io/restart/fit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 
 namespace mpm::io {
 
@@ -58,12 +58,14 @@ class Fitting {
 
   void leave_out(const BodyRecord& record, const core::BodyInput* input) {
     if (input != nullptr && input->deactivated) {
-      notices_.push_back(fmt::format("body '{}' is deactivated: its {} particles are left out, and what they held is "
-                                     "booked as removed",
-                                     record.name, record.particles));
+      notices_.push_back(
+          fmt::format("body '{}' is deactivated: its {} particles are left out, and what they held is "
+                      "booked as removed",
+                      record.name, record.particles));
     } else if (record.particles > 0) {
       complain({model_.scene->provenance.path, 0}, record.name,
-               "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" if it is to be left "
+               "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" if it is "
+               "to be left "
                "out");
     }
   }
@@ -72,16 +74,18 @@ class Fitting {
     const std::string& material = model_.scene->materials[static_cast<std::size_t>(body.material)].name;
     if (material != record.material) {
       complain(where, record.name,
-               fmt::format("its material is '{}', but '{}' in the restart file; bodies keep their material", material,
-                           record.material));
+               fmt::format("its material is '{}', but '{}' in the restart file; bodies keep their material",
+                           material, record.material));
     } else if (body.model->reference_density() != record.reference_density) {
-      complain(where, record.name,
-               fmt::format("its material '{}' has the reference density {:.17g}, but {:.17g} in the restart file",
-                           material, body.model->reference_density(), record.reference_density));
+      complain(
+          where, record.name,
+          fmt::format("its material '{}' has the reference density {:.17g}, but {:.17g} in the restart file",
+                      material, body.model->reference_density(), record.reference_density));
     }
   }
 
-  std::vector<int> sources(const BodyRecord& record, const core::Body& body, const core::SourceLocation& where) {
+  std::vector<int> sources(const BodyRecord& record, const core::Body& body,
+                           const core::SourceLocation& where) {
     // What the law reads back cannot start at zero; what is only shown can.
     core::UpdateOptions options = model_.options;
     options.keep_strain = false;
@@ -106,17 +110,20 @@ class Fitting {
       if (!there) list(shown.has(c) && !needed.has(c) ? started : missing, c);
     }
     if (!missing.empty()) {
-      complain(where, record.name,
-               fmt::format("the scene needs state that the restart file does not have: {}; keep the material laws and "
-                           "the volume update of the run that wrote it",
-                           missing));
+      complain(
+          where, record.name,
+          fmt::format(
+              "the scene needs state that the restart file does not have: {}; keep the material laws and "
+              "the volume update of the run that wrote it",
+              missing));
     }
     if (!started.empty()) {
-      notices_.push_back(fmt::format("body '{}': {} start at zero, for the restart file does not have them", record.name,
-                                     started));
+      notices_.push_back(fmt::format("body '{}': {} start at zero, for the restart file does not have them",
+                                     record.name, started));
     }
     if (!dropped.empty()) {
-      notices_.push_back(fmt::format("body '{}': {} of the restart file are not needed any more", record.name, dropped));
+      notices_.push_back(
+          fmt::format("body '{}': {} of the restart file are not needed any more", record.name, dropped));
     }
     return source;
   }
@@ -129,7 +136,8 @@ class Fitting {
 
 }  // namespace
 
-Fit fit_to_model(const RestartContents& contents, const core::Model& model, std::vector<std::string>& notices) {
+Fit fit_to_model(const RestartContents& contents, const core::Model& model,
+                 std::vector<std::string>& notices) {
   return Fitting(contents, model, notices).run();
 }
 

@@ -12,8 +12,9 @@ namespace mpm::io {
 
 struct Fit {
   struct Body {
-    std::size_t number = 0;     ///< in the model
-    std::vector<int> source;    ///< for each column of the model's layout: its place in the file's rows, or -1 for 0
+    std::size_t number = 0;  ///< in the model
+    std::vector<int>
+        source;  ///< for each column of the model's layout: its place in the file's rows, or -1 for 0
     std::size_t file_columns = 0;
   };
   std::vector<std::optional<Body>> bodies;  ///< of the file; nothing for those that no longer take part
@@ -26,6 +27,7 @@ struct Fit {
 };
 
 /// Throws InputErrors with every difference that cannot be lived with; adds to `notices` those that can.
-Fit fit_to_model(const RestartContents& contents, const core::Model& model, std::vector<std::string>& notices);
+Fit fit_to_model(const RestartContents& contents, const core::Model& model,
+                 std::vector<std::string>& notices);
 
 }  // namespace mpm::io

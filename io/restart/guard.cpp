@@ -1,11 +1,11 @@
 #include "io/restart/guard.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cstring>
+
+#include <fmt/format.h>
 
 #include "io/output/file.hpp"
 #include "io/output/hash.hpp"
@@ -59,7 +59,8 @@ std::string encode(const Guard& guard, std::size_t block_bytes) {
   return block;
 }
 
-std::uint64_t hash_tables(const File& file, std::uint64_t begin, std::uint64_t end, const std::vector<Extent>& rows) {
+std::uint64_t hash_tables(const File& file, std::uint64_t begin, std::uint64_t end,
+                          const std::vector<Extent>& rows) {
   Hash hash;
   std::string buffer;
   const auto add = [&](std::uint64_t from, std::uint64_t to) {
@@ -104,10 +105,11 @@ Guard decode(const File& file, const std::string& path, std::size_t& block_bytes
   guard.tables_hash = take<std::uint64_t>(block, at);
   const auto bodies = take<std::uint64_t>(block, at);
   std::size_t hash_at = block_bytes - sizeof(std::uint64_t);
-  if (take<std::uint64_t>(block, hash_at) != hash_of_block(block)) damaged(path, "its first block fails its checksum");
+  if (take<std::uint64_t>(block, hash_at) != hash_of_block(block))
+    damaged(path, "its first block fails its checksum");
   if (format != restart_format) {
-    throw FileError(fmt::format("the restart file '{}' has format {}, but this program reads format {}", path, format,
-                                restart_format));
+    throw FileError(fmt::format("the restart file '{}' has format {}, but this program reads format {}", path,
+                                format, restart_format));
   }
   for (std::uint64_t b = 0; b < bodies; ++b) {
     const auto offset = take<std::uint64_t>(block, at);
@@ -119,7 +121,8 @@ Guard decode(const File& file, const std::string& path, std::size_t& block_bytes
 }  // namespace
 
 std::uint64_t guard_bytes(std::size_t bodies) {
-  return std::bit_ceil(std::max(smallest_block, head_bytes + sizeof(Extent) * bodies + sizeof(std::uint64_t)));
+  return std::bit_ceil(
+      std::max(smallest_block, head_bytes + sizeof(Extent) * bodies + sizeof(std::uint64_t)));
 }
 
 void seal(const std::string& path, std::int64_t step, std::int64_t after, std::vector<Extent> rows,
@@ -130,7 +133,8 @@ void seal(const std::string& path, std::int64_t step, std::int64_t after, std::v
   Guard guard;
   guard.step = step;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  guard.written = std::max<std::int64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), after + 1);
+  guard.written =
+      std::max<std::int64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), after + 1);
   guard.file_size = file.size();
   guard.tables_hash = hash_tables(file, block_bytes, guard.file_size, rows);
   guard.rows = std::move(rows);

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
+
+#include <fmt/format.h>
 
 #include "core/step/migration.hpp"
 #include "io/output/file.hpp"
@@ -26,9 +26,10 @@ std::vector<std::size_t> share_of(const RestartContents& contents, const core::E
   std::vector<std::size_t> mine;
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < contents.cohorts.size(); ++i) {
-    const std::uint64_t rank = all == 0 ? 0 : static_cast<std::uint64_t>(static_cast<double>(before) /
-                                                                          static_cast<double>(all) *
-                                                                          static_cast<double>(ranks));
+    const std::uint64_t rank =
+        all == 0 ? 0
+                 : static_cast<std::uint64_t>(static_cast<double>(before) / static_cast<double>(all) *
+                                              static_cast<double>(ranks));
     if (std::min(rank, ranks - 1) == static_cast<std::uint64_t>(exchange.rank())) mine.push_back(i);
     before += contents.cohorts[i].particles;
   }
@@ -42,8 +43,8 @@ void convert(const double* row, const std::vector<int>& source, std::vector<doub
 }
 
 /// Book what the bodies held that no longer take part.
-void book_removed(const RestartContents& contents, const Fit& fit, const std::string& path, core::Model& model,
-                  core::Exchange& exchange) {
+void book_removed(const RestartContents& contents, const Fit& fit, const std::string& path,
+                  core::Model& model, core::Exchange& exchange) {
   std::vector<std::size_t> removed;
   for (const std::size_t i : share_of(contents, exchange)) {
     if (fit.of(contents.cohorts[i]) == nullptr) removed.push_back(i);
@@ -52,7 +53,8 @@ void book_removed(const RestartContents& contents, const Fit& fit, const std::st
     for_each_record(path, contents, removed, [&](const CohortRecord& record, const double* rows) {
       const BodyRecord& body = contents.bodies[static_cast<std::size_t>(record.body)];
       const auto at = [&](core::Column c) {
-        return static_cast<std::size_t>(std::find(body.columns.begin(), body.columns.end(), c) - body.columns.begin());
+        return static_cast<std::size_t>(std::find(body.columns.begin(), body.columns.end(), c) -
+                                        body.columns.begin());
       };
       const std::size_t m = at(core::Column::mass), e = at(core::Column::internal_energy);
       const std::size_t v = at(core::Column::velocity_x);
@@ -72,7 +74,8 @@ void read_bricks(const std::string& path, const RestartContents& contents, const
   std::vector<core::BrickCount> counts;
   for (const std::size_t i : share_of(contents, exchange)) {
     const CohortRecord& r = contents.cohorts[i];
-    if (fit.of(r) != nullptr) counts.push_back({core::brick_of_key(r.brick), static_cast<std::int64_t>(r.particles)});
+    if (fit.of(r) != nullptr)
+      counts.push_back({core::brick_of_key(r.brick), static_cast<std::int64_t>(r.particles)});
   }
   exchange.partition(*model.grid, counts, model.scene->decomposition);
 
@@ -104,22 +107,25 @@ void read_bricks(const std::string& path, const RestartContents& contents, const
   });
 }
 
-void refuse_outside(std::int64_t outside, const std::string& first, const core::Model& model, core::Exchange& exchange) {
+void refuse_outside(std::int64_t outside, const std::string& first, const core::Model& model,
+                    core::Exchange& exchange) {
   exchange.sum(std::span(&outside, 1));
   if (outside == 0) return;
   std::string example;
   for (const std::string& line : exchange.gather(first)) {
     if (example.empty()) example = line;
   }
-  throw core::InputErrors(model.scene->grid.source, "Grid",
-                          fmt::format("{} particles of the restart file lie outside of this grid; make it larger. "
-                                      "The first: {}",
-                                      outside, example));
+  throw core::InputErrors(
+      model.scene->grid.source, "Grid",
+      fmt::format("{} particles of the restart file lie outside of this grid; make it larger. "
+                  "The first: {}",
+                  outside, example));
 }
 
-/// Particles to wherever the new grid has them; each brick in the order of cells and identities, as at a start.
-void read_particles(const std::string& path, const RestartContents& contents, const Fit& fit, core::Model& model,
-                    core::Exchange& exchange) {
+/// Particles to wherever the new grid has them; each brick in the order of cells and identities, as at a
+/// start.
+void read_particles(const std::string& path, const RestartContents& contents, const Fit& fit,
+                    core::Model& model, core::Exchange& exchange) {
   const core::GridGeometry& geometry = model.grid->geometry();
   core::Travellers travellers;
   std::map<core::BrickKey, std::int64_t> particles;
@@ -163,7 +169,8 @@ void read_particles(const std::string& path, const RestartContents& contents, co
 }
 
 /// The books of all ranks go on at rank 0.
-void restore_books(const RestartContents& contents, const Fit& fit, core::Model& model, const core::Exchange& exchange) {
+void restore_books(const RestartContents& contents, const Fit& fit, core::Model& model,
+                   const core::Exchange& exchange) {
   const bool keeper = exchange.rank() == 0;
   model.books = keeper ? contents.books : core::Books{};
   model.books.body_eroded.assign(model.bodies.size(), 0);
@@ -202,7 +209,8 @@ RestartResult read_restart(const std::string& path, core::Model& model, core::Ex
   if (same_grid(contents.grid, model.grid->geometry())) {
     read_bricks(path, contents, fit, model, exchange);
   } else {
-    result.notices.push_back("the grid is another than that of the restart file: particles are dealt out anew");
+    result.notices.push_back(
+        "the grid is another than that of the restart file: particles are dealt out anew");
     read_particles(path, contents, fit, model, exchange);
   }
   result.extra = std::move(contents.extra);

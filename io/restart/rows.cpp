@@ -23,7 +23,8 @@ std::size_t RowReader::read(const std::vector<std::size_t>& wanted, std::size_t 
   std::size_t rows = 0, records = 0;
   for (std::size_t i = first; i < wanted.size(); ++i, ++records) {
     const CohortRecord& r = contents_.cohorts[wanted[i]];
-    const bool full = (rows + r.particles) * columns > doubles_at_once || stretches.size() == stretches_at_once;
+    const bool full =
+        (rows + r.particles) * columns > doubles_at_once || stretches.size() == stretches_at_once;
     if (static_cast<std::size_t>(r.body) != body || (records > 0 && full)) break;
     const hsize_t at = first_row_[wanted[i]];
     if (!stretches.empty() && stretches.back().first + stretches.back().count == at) {
@@ -42,9 +43,10 @@ void RowReader::check(const CohortRecord& record, const double* rows) const {
   const BodyRecord& body = contents_.bodies[static_cast<std::size_t>(record.body)];
   if (hash_of(record, rows, static_cast<int>(body.columns.size())) == record.hash) return;
   const auto [x, y, z] = core::brick_of_key(record.brick);
-  throw FileError(fmt::format("the restart file '{}' is damaged: the particles of body '{}' in brick ({}, {}, {}) fail "
-                              "their checksum",
-                              path_, body.name, x, y, z));
+  throw FileError(
+      fmt::format("the restart file '{}' is damaged: the particles of body '{}' in brick ({}, {}, {}) fail "
+                  "their checksum",
+                  path_, body.name, x, y, z));
 }
 
 }  // namespace mpm::io

@@ -1,10 +1,10 @@
 // The particles' rows of a restart file, read by one rank in pieces of bounded memory and checked on the way.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "io/restart/contents.hpp"
 
@@ -14,8 +14,8 @@ class RowReader {
  public:
   RowReader(const std::string& path, const RestartContents& contents);
 
-  /// The next records of `wanted`, which ascends, from number `first` on: as many as fit into the memory of a piece
-  /// and belong to one body. Their rows follow each other in rows(). Returns the number of records.
+  /// The next records of `wanted`, which ascends, from number `first` on: as many as fit into the memory of a
+  /// piece and belong to one body. Their rows follow each other in rows(). Returns the number of records.
   std::size_t read(const std::vector<std::size_t>& wanted, std::size_t first);
   const double* rows() const { return rows_.data(); }
   /// Throws FileError unless the rows are as they were written.
@@ -31,8 +31,8 @@ class RowReader {
 
 /// f(record, its rows) for the records of these numbers, ascending. Throws FileError. On this rank alone.
 template <class F>
-void for_each_record(const std::string& path, const RestartContents& contents, const std::vector<std::size_t>& wanted,
-                     F f) {
+void for_each_record(const std::string& path, const RestartContents& contents,
+                     const std::vector<std::size_t>& wanted, F f) {
   if (wanted.empty()) return;
   RowReader reader(path, contents);
   for (std::size_t first = 0; first < wanted.size();) {

@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t bytes_at_once = std::size_t{8} << 20;
 
 /// The file without its rows, and the space for them.
-std::vector<Extent> make_room(const std::string& part, const RestartContents& contents, const core::Scene& scene) {
+std::vector<Extent> make_room(const std::string& part, const RestartContents& contents,
+                              const core::Scene& scene) {
   // Asked for before HDF5 begins, which does not survive a full disk.
   File(part, File::Mode::write_anew).reserve(expected_bytes(contents));
   std::vector<Extent> rows = write_contents(part, contents, scene);
@@ -25,17 +26,18 @@ std::vector<Extent> make_room(const std::string& part, const RestartContents& co
 
 void fill(const core::Model& model, const RowBatch& batch, int columns, std::vector<double>& rows) {
   rows.resize(batch.particles * static_cast<std::size_t>(columns));
-  for_each_block(model, batch, [&](std::size_t, const core::ColumnLayout&, const double* block, int used,
-                                   std::size_t first) {
-    double* row = rows.data() + first * static_cast<std::size_t>(columns);
-    for (int i = 0; i < used; ++i) {
-      for (int c = 0; c < columns; ++c) *row++ = block[core::block_lanes * c + i];
-    }
-  });
+  for_each_block(
+      model, batch,
+      [&](std::size_t, const core::ColumnLayout&, const double* block, int used, std::size_t first) {
+        double* row = rows.data() + first * static_cast<std::size_t>(columns);
+        for (int i = 0; i < used; ++i) {
+          for (int c = 0; c < columns; ++c) *row++ = block[core::block_lanes * c + i];
+        }
+      });
 }
 
-void write_rows_of(std::size_t body, const std::vector<RowBatch>& batches, hid_t file, const core::Model& model,
-                   core::Exchange& exchange) {
+void write_rows_of(std::size_t body, const std::vector<RowBatch>& batches, hid_t file,
+                   const core::Model& model, core::Exchange& exchange) {
   const int columns = model.bodies[body].pool->layout().columns();
   const hdf5::Handle dataset = hdf5::open_dataset(file, rows_name(body));
   std::vector<double> rows;
@@ -51,7 +53,8 @@ void write_all_rows(const std::string& part, const ParticleOrder& order, const c
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     std::vector<std::int64_t> first_row(model.bodies.size(), left_out);
     first_row[b] = 0;
-    const std::size_t most = bytes_at_once / static_cast<std::size_t>(model.bodies[b].pool->layout().bytes_per_particle());
+    const std::size_t most =
+        bytes_at_once / static_cast<std::size_t>(model.bodies[b].pool->layout().bytes_per_particle());
     batches.push_back(cut_into_batches(model, order, first_row, most, exchange));
   }
   std::string complaint;
@@ -59,9 +62,7 @@ void write_all_rows(const std::string& part, const ParticleOrder& order, const c
     hdf5::Handle file = hdf5::open_file_together(part, exchange);
     for (std::size_t b = 0; b < model.bodies.size(); ++b) write_rows_of(b, batches[b], file, model, exchange);
     file.close("write '" + part + "'");
-  } catch (const FileError& e) {
-    complaint = e.what();
-  }
+  } catch (const FileError& e) { complaint = e.what(); }
   agree(exchange, complaint);
   together(exchange, [&] { File(part, File::Mode::read).sync(); });
 }

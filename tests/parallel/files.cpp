@@ -1,10 +1,11 @@
-// Files that all ranks write and read together: the same contents on any number of ranks, and errors that all ranks
-// report alike.
+// Files that all ranks write and read together: the same contents on any number of ranks, and errors that all
+// ranks report alike.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include <catch2/catch.hpp>
 
 #include "core/step/totals.hpp"
 #include "io/output/file.hpp"
@@ -51,9 +52,7 @@ std::string common_error(F f) {
   std::string text = "nothing was thrown";
   try {
     f();
-  } catch (const io::FileError& e) {
-    text = e.what();
-  }
+  } catch (const io::FileError& e) { text = e.what(); }
   CHECK(same_on_all(text));
   return text;
 }
@@ -85,7 +84,8 @@ TEST_CASE("A restart file is the same on any number of ranks, and is read on any
   const core::Model together = small_model(exchange), alone = small_model(solo);
   const std::uint64_t hash = io::state_hash(alone, solo);
   CHECK(io::state_hash(together, exchange) == hash);
-  const std::string path = io::write_restart(folder.path(), "small", together, {"<PeneBlast/>", {4, 2}, {}}, exchange);
+  const std::string path =
+      io::write_restart(folder.path(), "small", together, {"<PeneBlast/>", {4, 2}, {}}, exchange);
   CHECK(io::restart_state_hash(path) == hash);
   CHECK(io::read_restart_scene(path).text == "<PeneBlast/>");
 
@@ -128,7 +128,9 @@ TEST_CASE("Totals have the same bits on any number of ranks") {
   core::SoloExchange solo;
   const core::Model together = small_model(exchange), alone = small_model(solo);
   const core::Totals a = core::compute_totals(together, exchange), b = core::compute_totals(alone, solo);
-  const auto same = [](double x, double y) { return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y); };
+  const auto same = [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  };
   CHECK(same(a.kinetic, b.kinetic));
   CHECK(same(a.internal, b.internal));
   CHECK(a.particles == b.particles);
@@ -192,7 +194,8 @@ TEST_CASE("Tables have the same rows on any number of ranks") {
   io::HistoryFile history(folder / "all_curv.dat", together, {}, exchange);
   history.add(together, exchange);
   history.flush(exchange);
-  io::StatusFile(folder / "all.sta", together, {}, exchange).add(together, core::compute_totals(together, exchange), exchange);
+  io::StatusFile(folder / "all.sta", together, {}, exchange)
+      .add(together, core::compute_totals(together, exchange), exchange);
   io::HistoryFile other(folder / ("one_curv.dat" + std::to_string(world().rank())), alone, {}, solo);
   other.add(alone, solo);
   other.flush(solo);
@@ -218,7 +221,8 @@ TEST_CASE("A full disk is the same error on every rank, and the last good file s
     const SmallDisk disk(50000);
     CHECK_THAT(common_error([&] { io::write_restart(folder.path(), "small", model, {}, exchange); }),
                Catch::Contains("small_240.pe.part': File too large"));
-    CHECK_THAT(common_error([&] { writer.write(model, exchange); }), Catch::Contains("small.h5part': File too large"));
+    CHECK_THAT(common_error([&] { writer.write(model, exchange); }),
+               Catch::Contains("small.h5part': File too large"));
   }
   CHECK(io::restart_state_hash(good) == hash);
   CHECK_FALSE(std::filesystem::exists(folder / "small_240.pe.part"));
@@ -247,7 +251,8 @@ TEST_CASE("A damaged or missing restart file is the same error on every rank") {
   exchange.any(false);  // all have read it
   if (world().rank() == 0) std::ofstream(path, std::ios::binary) << bad;
   exchange.any(false);
-  CHECK_THAT(common_error([&] { io::verify_restart(path, exchange); }), Catch::Contains("fail their checksum"));
+  CHECK_THAT(common_error([&] { io::verify_restart(path, exchange); }),
+             Catch::Contains("fail their checksum"));
   CHECK_THAT(common_error([&] { io::read_restart(path, copy, exchange); }),
              Catch::Contains("the particles of body 'bar' in brick ("));
   CHECK_THAT(common_error([&] { io::read_restart(folder / "none.pe", copy, exchange); }),

@@ -189,6 +189,11 @@ def table(path):
     return {head: [row[i] for row in rows] for i, head in enumerate(heads)}
 
 
+def pictures(file):
+    """Groups of an open .h5part file in the order of their times."""
+    return [file[name] for name in sorted((n for n in file if n.startswith("Step#")), key=lambda n: int(n[5:]))]
+
+
 # Tests ------------------------------------------------------------------------------------------------------------
 
 

@@ -90,7 +90,7 @@ class CommandLine(Case):
                 self.assertIn(word, outcome.out)
         outcome = _mpm.run(["--version"])
         self.assertEqual(outcome.code, DONE, outcome)
-        self.assertRegex(outcome.out, r"^\d+\.\d+\.\d+ \([0-9a-f]+\)\n$")
+        self.assertRegex(outcome.out, r"^\d+\.\d+\.\d+ \(([0-9a-f]+|unknown)\)\n$")
 
     def test_dry_run(self):
         case = self.write(collision())
@@ -216,10 +216,11 @@ class Results(Case):
     def test_h5part(self):
         with h5py.File(self.out / "case.h5part") as file:
             self.check_provenance({name: value.decode() for name, value in file.attrs.items() if name in PROVENANCE})
-            self.assertEqual(sorted(file), [f"Step#{n}" for n in range(5)])
-            times = [float(file[f"Step#{n}"].attrs["TimeValue"][()]) for n in range(5)]
-            self.assertEqual((times[0], times[-1]), (0, END))
-            for step in file.values():
+            steps = _mpm.pictures(file)
+            times = [float(step.attrs["TimeValue"][()]) for step in steps]
+            self.assertEqual((len(times), times[0], times[-1]), (5, 0, END))
+            self.assertEqual(times, sorted(times))
+            for step in steps:
                 self.assertEqual(sorted(step), FIELDS)
                 self.assertEqual({item.shape for item in step.values()}, {(1024,)})
                 self.assertEqual(len(set(step["id"][()])), 1024)
@@ -290,7 +291,7 @@ class Results(Case):
             self.assertIn(str(target), outcome.out)
             self.assertEqual(_mpm.names(self.folder / "converted"), [target.name])
             with h5py.File(target) as new, h5py.File(self.out / "case.h5part") as old:
-                self.assertEqual(list(new), ["Step#0"])
+                self.assertEqual(len(_mpm.pictures(new)), 1)
                 self.assertEqual(sorted(new["Step#0"]), sorted(old["Step#4"]))
                 for name, item in old["Step#4"].items():
                     self.assertTrue((new["Step#0"][name][()] == item[()]).all(), name)

@@ -86,9 +86,9 @@ class Stop(Case):
     def test_terminate_under_mpirun(self):
         """Open MPI's mpirun passes SIGTERM on after a second, kills another second later, and ends with a code of its
         own. The run has to be long enough for that."""
-        self.write(bounce(end=4 * END))
+        self.write(bounce(end=12 * END))
         undisturbed = self.run_in("undisturbed", [self.case]).state
-        outcome = stopped_by([signal.SIGTERM], ranks=2, arguments=self.line, percent=2)
+        outcome = stopped_by([signal.SIGTERM], ranks=2, arguments=self.line, percent=0.5)
         self.assertNotIn(outcome.code, (0, None), outcome)
         [restart] = _mpm.restarts(self.out)
         self.assertEqual(self.run_in("out", [restart]).state, undisturbed)

@@ -1,7 +1,8 @@
 #include "core/step/totals.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
+
+#include <catch2/catch.hpp>
 
 using namespace mpm::core;
 

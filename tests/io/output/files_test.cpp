@@ -1,10 +1,10 @@
 // The files themselves: replaced as a whole, errors that say why, a disk that is full.
-#include <sys/resource.h>
-
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+
+#include <catch2/catch.hpp>
+#include <sys/resource.h>
 
 #include "io/output/file.hpp"
 #include "io/output/h5part.hpp"
@@ -27,7 +27,8 @@ TEST_CASE("A file is replaced as a whole") {
 }
 
 TEST_CASE("An error names the file and the reason") {
-  CHECK_THROWS_WITH(io::replace_file("/nowhere/a", ""), "cannot write '/nowhere/a.part': No such file or directory");
+  CHECK_THROWS_WITH(io::replace_file("/nowhere/a", ""),
+                    "cannot write '/nowhere/a.part': No such file or directory");
   CHECK_THROWS_WITH(io::read_file("/nowhere/a"), "cannot read '/nowhere/a': No such file or directory");
   core::SoloExchange solo;
   CHECK_THROWS_AS(io::Log("/nowhere/a.out", false, false, solo), io::FileError);
@@ -71,7 +72,8 @@ TEST_CASE("On a full disk an .h5part file keeps its earlier times and may go on 
   const std::string good = io::read_file(folder / "a.h5part");
   {
     const SmallDisk disk(good.size() + 20000);
-    CHECK_THROWS_WITH(writer.write(model, solo), Catch::Contains("a.h5part") && Catch::Contains("File too large"));
+    CHECK_THROWS_WITH(writer.write(model, solo),
+                      Catch::Contains("a.h5part") && Catch::Contains("File too large"));
   }
   CHECK(io::read_file(folder / "a.h5part") == good);
   writer.write(model, solo);

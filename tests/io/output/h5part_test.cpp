@@ -1,11 +1,11 @@
 #include "io/output/h5part.hpp"
 
-#include <catch2/catch.hpp>
-
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
+
+#include <catch2/catch.hpp>
 
 #include "io/output/file.hpp"
 #include "io/output/hdf5.hpp"
@@ -44,8 +44,9 @@ TEST_CASE("An h5part file holds every particle of every time") {
   const Folder folder("h5part");
   core::SoloExchange solo;
   core::Model model = small_model(solo);
-  io::H5PartWriter writer({folder / "a.h5part", io::variables_of({"seqv", "fail", "velocity_1", "body"}), false, {}},
-                          model, solo);
+  io::H5PartWriter writer(
+      {folder / "a.h5part", io::variables_of({"seqv", "fail", "velocity_1", "body"}), false, {}}, model,
+      solo);
   writer.write(model, solo);
   model.clock.time = 0.5;
   model.clock.step = 240;
@@ -58,21 +59,24 @@ TEST_CASE("An h5part file holds every particle of every time") {
   const hdf5::Handle second = hdf5::open_group(file, "Step#1");
   CHECK(hdf5::read_double(second, "TimeValue") == 0.5);
   CHECK(hdf5::read_int64(second, "step") == 240);
-  CHECK(names_in(second) == std::set<std::string>{"x", "y", "z", "velocity_0", "velocity_1", "velocity_2", "id", "body",
-                                                  "seqv", "fail"});
+  CHECK(names_in(second) == std::set<std::string>{"x", "y", "z", "velocity_0", "velocity_1", "velocity_2",
+                                                  "id", "body", "seqv", "fail"});
   CHECK(type_of(second, "x") == std::pair{H5T_FLOAT, std::size_t{4}});
   CHECK(type_of(second, "id") == std::pair{H5T_INTEGER, std::size_t{8}});
   CHECK(type_of(second, "body") == std::pair{H5T_INTEGER, std::size_t{4}});
 
-  const std::vector<double> id = column(file, 1, "id"), x = column(file, 1, "x"), body = column(file, 1, "body");
+  const std::vector<double> id = column(file, 1, "id"), x = column(file, 1, "x"),
+                            body = column(file, 1, "body");
   const std::vector<double> v = column(file, 0, "velocity_2");
   REQUIRE(id.size() == 601);
   CHECK(std::set<double>(id.begin(), id.end()).size() == 601);
   CHECK(std::is_sorted(body.begin(), body.end()));
   for (std::size_t i = 0; i < id.size(); ++i) {
     const auto b = static_cast<std::size_t>(id[i] / 300);
-    const std::vector<double> p = small_particle(model.bodies[b].pool->layout(), static_cast<std::uint64_t>(id[i]));
-    if (body[i] != static_cast<double>(b) || x[i] != static_cast<float>(p[0]) || v[i] != static_cast<float>(p[5])) {
+    const std::vector<double> p =
+        small_particle(model.bodies[b].pool->layout(), static_cast<std::uint64_t>(id[i]));
+    if (body[i] != static_cast<double>(b) || x[i] != static_cast<float>(p[0]) ||
+        v[i] != static_cast<float>(p[5])) {
       FAIL("particle " << id[i]);
     }
   }

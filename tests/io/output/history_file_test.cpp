@@ -1,8 +1,8 @@
 #include "io/output/history_file.hpp"
 
-#include <catch2/catch.hpp>
-
 #include <sstream>
+
+#include <catch2/catch.hpp>
 
 #include "core/step/totals.hpp"
 #include "io/output/file.hpp"
@@ -40,8 +40,11 @@ core::Model three_particles(core::SoloExchange& solo, const std::array<std::arra
   for (std::size_t i = 0; i < 3; ++i) {
     const core::ColumnLayout& layout = model.bodies[0].pool->layout();
     std::vector<double> columns(static_cast<std::size_t>(layout.columns()));
-    const auto set = [&](Column c, double v) { columns[static_cast<std::size_t>(layout.offset(c) / core::block_lanes)] = v; };
-    for (int a = 0; a < 3; ++a) set(core::next(Column::position_x, a), positions[i][static_cast<std::size_t>(a)]);
+    const auto set = [&](Column c, double v) {
+      columns[static_cast<std::size_t>(layout.offset(c) / core::block_lanes)] = v;
+    };
+    for (int a = 0; a < 3; ++a)
+      set(core::next(Column::position_x, a), positions[i][static_cast<std::size_t>(a)]);
     set(Column::mass, static_cast<double>(i + 1));
     set(Column::pressure, static_cast<double>(i + 1));
     set(Column::identity, static_cast<double>(10 - i));
@@ -75,10 +78,12 @@ TEST_CASE("Histories follow the nearest particles, and points average their cell
   const std::vector<double> row = rows_of(folder / "a_curv.dat").at(0);
   const core::Energies energies = core::compute_energies(model, solo);
   // Weights 1 * 1 and 2 * 0.5 at the first point; nothing near the second; the third is outside.
-  const std::vector<double> expected{0, 0, energies.kinetic, energies.internal, 2, 0.75, 3, 10, 1.5, 0.5, 0, 0, 0, 0};
+  const std::vector<double> expected{
+      0, 0, energies.kinetic, energies.internal, 2, 0.75, 3, 10, 1.5, 0.5, 0, 0, 0, 0};
   CHECK(row == expected);
-  CHECK_THAT(io::read_file(folder / "a_curv.dat"), Catch::Contains("pres[particle2]") && Catch::Contains("posx[point3]") &&
-                                                       Catch::Contains("# particle1: identity 9, nearest to (0.5, 0.5, 0.5)"));
+  CHECK_THAT(io::read_file(folder / "a_curv.dat"),
+             Catch::Contains("pres[particle2]") && Catch::Contains("posx[point3]") &&
+                 Catch::Contains("# particle1: identity 9, nearest to (0.5, 0.5, 0.5)"));
 }
 
 TEST_CASE("A particle is followed into other bricks, and lost when it is gone") {

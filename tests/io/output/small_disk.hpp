@@ -1,15 +1,16 @@
-// Disks that fill up: a limit on the size of files, and a file system of few bytes where the user may mount one.
+// Disks that fill up: a limit on the size of files, and a file system of few bytes where the user may mount
+// one.
 #pragma once
-
-#include <sys/mount.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <string>
+
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace mpm::tests {
 
@@ -18,7 +19,7 @@ class SmallDisk {
  public:
   explicit SmallDisk(std::size_t bytes) : old_action_(std::signal(SIGXFSZ, SIG_IGN)) {
     getrlimit(RLIMIT_FSIZE, &old_);
-    const struct rlimit limit {bytes, old_.rlim_max};
+    const struct rlimit limit { bytes, old_.rlim_max };
     setrlimit(RLIMIT_FSIZE, &limit);
   }
   ~SmallDisk() {
@@ -37,7 +38,8 @@ class SmallDisk {
 class FullFileSystem {
  public:
   explicit FullFileSystem(std::size_t bytes)
-      : path_((std::filesystem::temp_directory_path() / ("mpm_disk_" + std::to_string(::getpid()))).string()) {
+      : path_(
+            (std::filesystem::temp_directory_path() / ("mpm_disk_" + std::to_string(::getpid()))).string()) {
     std::filesystem::create_directories(path_);
     const std::string options = "size=" + std::to_string(bytes);
     if (mount("tmpfs", path_.c_str(), "tmpfs", 0, options.c_str()) == 0) return;

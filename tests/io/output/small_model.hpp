@@ -1,8 +1,6 @@
-// A model made by hand for the tests of files: three bodies of two materials on a grid of 12^3 unit cells, every
-// column filled with numbers of its own. The same particles in the same order on any ranks.
+// A model made by hand for the tests of files: three bodies of two materials on a grid of 12^3 unit cells,
+// every column filled with numbers of its own. The same particles in the same order on any ranks.
 #pragma once
-
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,6 +8,8 @@
 #include <string>
 #include <system_error>
 #include <vector>
+
+#include <unistd.h>
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
@@ -73,9 +73,10 @@ inline std::shared_ptr<core::Scene> small_scene() {
 /// Bodies and an empty grid.
 inline core::Model prepared_model(std::shared_ptr<const core::Scene> scene, const SmallSetup& setup = {}) {
   core::Model model;
-  const core::ColumnSet copper{core::Column::effective_plastic_strain, core::Column::temperature, core::Column::failed};
-  model.materials.push_back(std::make_unique<SmallMaterial>("copper", 8.93e-3,
-                                                            setup.only_one_material ? core::ColumnSet() : copper));
+  const core::ColumnSet copper{core::Column::effective_plastic_strain, core::Column::temperature,
+                               core::Column::failed};
+  model.materials.push_back(std::make_unique<SmallMaterial>(
+      "copper", 8.93e-3, setup.only_one_material ? core::ColumnSet() : copper));
   model.materials.push_back(std::make_unique<SmallMaterial>("wax", 1e-3, core::ColumnSet()));
   core::GridGeometry geometry;
   geometry.cell = geometry.inverse_cell = {1, 1, 1};

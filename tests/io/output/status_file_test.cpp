@@ -1,8 +1,8 @@
 #include "io/output/status_file.hpp"
 
-#include <catch2/catch.hpp>
-
 #include <sstream>
+
+#include <catch2/catch.hpp>
 
 #include "io/output/file.hpp"
 #include "tests/io/output/small_model.hpp"

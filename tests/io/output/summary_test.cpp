@@ -1,9 +1,9 @@
 #include "io/output/summary.hpp"
 
-#include <catch2/catch.hpp>
-
-#include <nlohmann/json.hpp>
 #include <set>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "io/output/file.hpp"
 #include "tests/io/output/small_model.hpp"
@@ -40,13 +40,31 @@ TEST_CASE("The summary keeps its contract") {
   const core::Totals totals = core::compute_totals(model, solo);
   io::write_summary(folder / "a.summary.json", model, totals, report(), solo);
   const auto summary = nlohmann::json::parse(io::read_file(folder / "a.summary.json"));
-  const std::set<std::string> contract{
-      "job", "version", "git", "status", "reason", "ranks", "threads", "steps", "time", "end_time", "particles",
-      "wall_seconds", "particle_steps_per_second", "bytes_per_particle", "peak_memory_bytes", "energy", "momentum",
-      "angular_momentum", "bodies", "input_hash", "units"};
+  const std::set<std::string> contract{"job",
+                                       "version",
+                                       "git",
+                                       "status",
+                                       "reason",
+                                       "ranks",
+                                       "threads",
+                                       "steps",
+                                       "time",
+                                       "end_time",
+                                       "particles",
+                                       "wall_seconds",
+                                       "particle_steps_per_second",
+                                       "bytes_per_particle",
+                                       "peak_memory_bytes",
+                                       "energy",
+                                       "momentum",
+                                       "angular_momentum",
+                                       "bodies",
+                                       "input_hash",
+                                       "units"};
   CHECK(keys(summary) == contract);
-  CHECK(keys(summary["energy"]) == std::set<std::string>{"kinetic", "internal", "external_work", "dissipated_by_contact",
-                                                         "total", "initial_total", "relative_drift"});
+  CHECK(keys(summary["energy"]) == std::set<std::string>{"kinetic", "internal", "external_work",
+                                                         "dissipated_by_contact", "total", "initial_total",
+                                                         "relative_drift"});
   CHECK(keys(summary["wall_seconds"]) ==
         std::set<std::string>{"total", "setup", "loop", "output", "particles to grid", "migrate"});
   CHECK(keys(summary["peak_memory_bytes"]) == std::set<std::string>{"max", "sum"});
@@ -61,9 +79,9 @@ TEST_CASE("The summary keeps its contract") {
   CHECK(summary["bytes_per_particle"].get<double>() == Approx(8 * (18 * 601 + 3 * 301) / 601.0));
   REQUIRE(summary["bodies"].size() == 3);
   const auto& bar = summary["bodies"][0];
-  CHECK(keys(bar) == std::set<std::string>{"name", "material", "component", "particles", "active", "failed", "eroded",
-                                           "mass", "centre", "velocity", "lower", "upper", "kinetic", "internal",
-                                           "max_epef", "max_temperature"});
+  CHECK(keys(bar) == std::set<std::string>{"name", "material", "component", "particles", "active", "failed",
+                                           "eroded", "mass", "centre", "velocity", "lower", "upper",
+                                           "kinetic", "internal", "max_epef", "max_temperature"});
   CHECK(bar["component"] == "flyer");
   CHECK(bar["active"].get<int>() + bar["failed"].get<int>() == 300);
   CHECK(bar["failed"].get<int>() > 0);
@@ -83,7 +101,8 @@ TEST_CASE("A body without particles has no place") {
 
 TEST_CASE("The timing table names every phase, the rest and the loop") {
   const std::string table = io::timing_table(report());
-  CHECK_THAT(table, Catch::Contains("particles to grid      1.000      2.000      3.000    20.0%      50.0%"));
+  CHECK_THAT(table,
+             Catch::Contains("particles to grid      1.000      2.000      3.000    20.0%      50.0%"));
   CHECK_THAT(table, Catch::Contains("other                  3.000      4.000      5.000    40.0%"));
   CHECK_THAT(table, Catch::Contains("loop                             10.000"));
 }

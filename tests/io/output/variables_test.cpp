@@ -39,7 +39,8 @@ struct OneParticle {
   }
   void set(Column c, double value) { block[static_cast<std::size_t>(layout.offset(c) + 3)] = value; }
   double operator()(Variable v) const {
-    return io::evaluate(v, layout, block.data(), 3, {.body = 1, .component = 2, .material = 5, .reference_density = 4});
+    return io::evaluate(v, layout, block.data(), 3,
+                        {.body = 1, .component = 2, .material = 5, .reference_density = 4});
   }
 };
 
@@ -47,7 +48,8 @@ struct OneParticle {
 
 TEST_CASE("Each variable is what the manual says") {
   OneParticle p({Column::effective_plastic_strain, Column::failed, Column::sound_speed, Column::yield_stress,
-                 Column::damage, Column::temperature, Column::strain_xx, Column::strain_yy, Column::strain_zz});
+                 Column::damage, Column::temperature, Column::strain_xx, Column::strain_yy,
+                 Column::strain_zz});
   p.set(Column::effective_plastic_strain, 0.25);
   p.set(Column::failed, 2);
   p.set(Column::sound_speed, 70);
@@ -60,14 +62,34 @@ TEST_CASE("Each variable is what the manual says") {
   const double mises = std::sqrt(1.5 * (400 + 100 + 100 + 2 * (1 + 4 + 9)));
   CHECK(p(Variable::seqv) == Approx(mises).epsilon(1e-15));
   CHECK(p(Variable::tria) == Approx(-60 / mises).epsilon(1e-15));
-  const std::pair<Variable, double> expected[] = {
-      {Variable::epef, 0.25}, {Variable::pres, 60}, {Variable::density, 4}, {Variable::fail, 1},
-      {Variable::engk, 0.5 * 8 * (16 + 25 + 36)}, {Variable::engi, 0.5 * 8 / 4.0}, {Variable::cp, 70},
-      {Variable::sigy, 90}, {Variable::damg, 0.75}, {Variable::body, 1}, {Variable::com, 2}, {Variable::mat, 5},
-      {Variable::kelv, 300}, {Variable::velocity_0, 4}, {Variable::velocity_1, 5}, {Variable::velocity_2, 6},
-      {Variable::exx, 0.1}, {Variable::eyy, 0.2}, {Variable::ezz, 0.3}, {Variable::posx, 1}, {Variable::posy, 2},
-      {Variable::posz, 3}, {Variable::sigma_x, 20 - 67}, {Variable::sigma_y, -10 - 67}, {Variable::sigma_z, -10 - 67},
-      {Variable::sigma_xy, 1}, {Variable::sigma_yz, 2}, {Variable::sigma_xz, 3}};
+  const std::pair<Variable, double> expected[] = {{Variable::epef, 0.25},
+                                                  {Variable::pres, 60},
+                                                  {Variable::density, 4},
+                                                  {Variable::fail, 1},
+                                                  {Variable::engk, 0.5 * 8 * (16 + 25 + 36)},
+                                                  {Variable::engi, 0.5 * 8 / 4.0},
+                                                  {Variable::cp, 70},
+                                                  {Variable::sigy, 90},
+                                                  {Variable::damg, 0.75},
+                                                  {Variable::body, 1},
+                                                  {Variable::com, 2},
+                                                  {Variable::mat, 5},
+                                                  {Variable::kelv, 300},
+                                                  {Variable::velocity_0, 4},
+                                                  {Variable::velocity_1, 5},
+                                                  {Variable::velocity_2, 6},
+                                                  {Variable::exx, 0.1},
+                                                  {Variable::eyy, 0.2},
+                                                  {Variable::ezz, 0.3},
+                                                  {Variable::posx, 1},
+                                                  {Variable::posy, 2},
+                                                  {Variable::posz, 3},
+                                                  {Variable::sigma_x, 20 - 67},
+                                                  {Variable::sigma_y, -10 - 67},
+                                                  {Variable::sigma_z, -10 - 67},
+                                                  {Variable::sigma_xy, 1},
+                                                  {Variable::sigma_yz, 2},
+                                                  {Variable::sigma_xz, 3}};
   for (const auto& [v, value] : expected) {
     INFO(io::info_of(v).name);
     CHECK(p(v) == value);

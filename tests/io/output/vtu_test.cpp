@@ -1,9 +1,9 @@
 #include "io/output/vtu.hpp"
 
+#include <cstring>
+
 #include <catch2/catch.hpp>
 #include <libxml/parser.h>
-
-#include <cstring>
 
 #include "io/output/file.hpp"
 #include "tests/io/output/small_model.hpp"
@@ -25,7 +25,8 @@ struct Vtu {
       appended = text.substr(first, last - first);
       text.erase(first, last - first);
     }
-    document = xmlReadMemory(text.data(), static_cast<int>(text.size()), path.c_str(), nullptr, XML_PARSE_NONET);
+    document =
+        xmlReadMemory(text.data(), static_cast<int>(text.size()), path.c_str(), nullptr, XML_PARSE_NONET);
   }
   ~Vtu() { xmlFreeDoc(document); }
   Vtu(const Vtu&) = delete;
@@ -54,7 +55,9 @@ struct Vtu {
  private:
   static xmlNodePtr find(xmlNodePtr node, const std::string& tag, const std::string& name) {
     for (; node != nullptr; node = node->next) {
-      if (reinterpret_cast<const char*>(node->name) == tag && (name.empty() || attribute(node, "Name") == name)) return node;
+      if (reinterpret_cast<const char*>(node->name) == tag &&
+          (name.empty() || attribute(node, "Name") == name))
+        return node;
       if (xmlNodePtr found = find(node->children, tag, name)) return found;
     }
     return nullptr;
@@ -74,8 +77,9 @@ TEST_CASE("One set of grids per time: well-formed, complete, listed") {
   const Folder folder("vtu");
   core::SoloExchange solo;
   core::Model model = small_model(solo);
-  io::VtuWriter writer({folder.path(), "small", false, io::variables_of({"seqv", "mat", "velocity_0"}), false, {}}, model,
-                       solo);
+  io::VtuWriter writer(
+      {folder.path(), "small", false, io::variables_of({"seqv", "mat", "velocity_0"}), false, {}}, model,
+      solo);
   writer.write(model, solo);
 
   const Vtu index(folder / "small_vtu/small_120.pvtu");
@@ -103,10 +107,11 @@ TEST_CASE("One set of grids per time: well-formed, complete, listed") {
   CHECK((types.size() == 601 && types.back() == 1));
   CHECK(piece.values<float>("seqv").size() == 601);
   // After the last array there is nothing.
-  CHECK(std::stoul(Vtu::attribute(piece.find("DataArray", "types"), "offset")) + 8 + 601 == piece.appended.size());
+  CHECK(std::stoul(Vtu::attribute(piece.find("DataArray", "types"), "offset")) + 8 + 601 ==
+        piece.appended.size());
   const std::size_t i = 77;
-  const std::vector<double> p = small_particle(model.bodies[static_cast<std::size_t>(id[i] / 300)].pool->layout(),
-                                               static_cast<std::uint64_t>(id[i]));
+  const std::vector<double> p = small_particle(
+      model.bodies[static_cast<std::size_t>(id[i] / 300)].pool->layout(), static_cast<std::uint64_t>(id[i]));
   for (std::size_t a = 0; a < 3; ++a) {
     CHECK(x[3 * i + a] == static_cast<float>(p[a]));
     CHECK(v[3 * i + a] == static_cast<float>(p[3 + a]));

@@ -1,11 +1,11 @@
 // Bad luck: damaged, cut and foreign files, full disks, runs that were killed while writing.
+#include <filesystem>
+#include <fstream>
+
+#include <catch2/catch.hpp>
 #include <omp.h>
 #include <signal.h>
 #include <sys/wait.h>
-
-#include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
 
 #include "io/output/file.hpp"
 #include "io/output/particle_order.hpp"
@@ -32,17 +32,20 @@ std::string complaint(const std::string& path) {
   core::Model copy = prepared_model(small_scene());
   try {
     io::read_restart(path, copy, solo);
-  } catch (const io::FileError& e) {
-    return e.what();
-  }
+  } catch (const io::FileError& e) { return e.what(); }
   return {};
 }
 
 std::vector<std::string> files_in(const Folder& folder) {
   std::vector<std::string> names;
-  for (const auto& e : std::filesystem::directory_iterator(folder.path())) names.push_back(e.path().filename().string());
+  for (const auto& e : std::filesystem::directory_iterator(folder.path()))
+    names.push_back(e.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
+}
+
+void wait_for(const std::string& path) {
+  for (int i = 0; i < 3000 && !std::filesystem::exists(path); ++i) ::usleep(10000);
 }
 
 }  // namespace
@@ -50,7 +53,8 @@ std::vector<std::string> files_in(const Folder& folder) {
 TEST_CASE("No byte of a restart file can change unnoticed") {
   const Folder folder("restart_bytes");
   core::SoloExchange solo;
-  const std::string path = io::write_restart(folder.path(), "small", at_step(solo, 1), {"<PeneBlast/>", {1}, {{"a", 2}}}, solo);
+  const std::string path =
+      io::write_restart(folder.path(), "small", at_step(solo, 1), {"<PeneBlast/>", {1}, {{"a", 2}}}, solo);
   const std::string good = io::read_file(path);
   REQUIRE(complaint(path).empty());
   REQUIRE(good.size() > 20000);
@@ -60,7 +64,8 @@ TEST_CASE("No byte of a restart file can change unnoticed") {
     bad[at] = static_cast<char>(bad[at] ^ (1 << (at % 8)));
     std::ofstream(path, std::ios::binary) << bad;
     const std::string text = complaint(path);
-    if (text.find("small_1.pe") == std::string::npos || text.find("damaged") == std::string::npos) ++unnoticed;
+    if (text.find("small_1.pe") == std::string::npos || text.find("damaged") == std::string::npos)
+      ++unnoticed;
   }
   CHECK(tried > 1000);
   CHECK(unnoticed == 0);
@@ -72,8 +77,8 @@ TEST_CASE("A restart file that was cut anywhere says so") {
   const std::string path = io::write_restart(folder.path(), "small", at_step(solo, 1), {}, solo);
   const std::uint64_t size = std::filesystem::file_size(path);
   std::filesystem::resize_file(path, size - 1);
-  CHECK_THAT(complaint(path), Catch::Contains("is damaged: it has " + std::to_string(size - 1) + " bytes instead of " +
-                                              std::to_string(size)));
+  CHECK_THAT(complaint(path), Catch::Contains("is damaged: it has " + std::to_string(size - 1) +
+                                              " bytes instead of " + std::to_string(size)));
   std::filesystem::resize_file(path, 600);
   CHECK_THAT(complaint(path), Catch::Contains("has 600 bytes instead of"));
   std::filesystem::resize_file(path, 100);
@@ -85,7 +90,8 @@ TEST_CASE("A restart file that was cut anywhere says so") {
 TEST_CASE("Each part of a restart file has a complaint of its own") {
   const Folder folder("restart_parts");
   core::SoloExchange solo;
-  const std::string path = io::write_restart(folder.path(), "small", at_step(solo, 1), {"here is the scene", {}, {}}, solo);
+  const std::string path =
+      io::write_restart(folder.path(), "small", at_step(solo, 1), {"here is the scene", {}, {}}, solo);
   const std::string good = io::read_file(path);
   const auto after_change_at = [&](std::size_t at) {
     std::string bad = good;
@@ -94,7 +100,8 @@ TEST_CASE("Each part of a restart file has a complaint of its own") {
     return complaint(path);
   };
   CHECK_THAT(after_change_at(30), Catch::Contains("its first block fails its checksum"));
-  CHECK_THAT(after_change_at(good.find("here is the scene")), Catch::Contains("its tables fail their checksum"));
+  CHECK_THAT(after_change_at(good.find("here is the scene")),
+             Catch::Contains("its tables fail their checksum"));
   const double x = small_particle(prepared_model(small_scene()).bodies[0].pool->layout(), 0)[5];
   const std::size_t row = good.find(std::string(reinterpret_cast<const char*>(&x), sizeof x));
   REQUIRE(row != std::string::npos);
@@ -111,11 +118,14 @@ TEST_CASE("The newest two restart files are kept") {
   std::ofstream(folder / "small_3.pe.part") << "left by a run that was killed";
   std::ofstream(folder / "small_x.pe") << "somebody else's";
   std::ofstream(folder / "small_2_3.pe") << "another job's";
-  for (const int step : {10, 20, 30}) io::write_restart(folder.path(), "small", at_step(solo, step), {}, solo);
-  CHECK(files_in(folder) == std::vector<std::string>{"small_20.pe", "small_2_3.pe", "small_30.pe", "small_x.pe"});
+  for (const int step : {10, 20, 30})
+    io::write_restart(folder.path(), "small", at_step(solo, step), {}, solo);
+  CHECK(files_in(folder) ==
+        std::vector<std::string>{"small_20.pe", "small_2_3.pe", "small_30.pe", "small_x.pe"});
   // Written last counts, not the number: the run was started again from an earlier step.
   io::write_restart(folder.path(), "small", at_step(solo, 5), {}, solo);
-  CHECK(files_in(folder) == std::vector<std::string>{"small_2_3.pe", "small_30.pe", "small_5.pe", "small_x.pe"});
+  CHECK(files_in(folder) ==
+        std::vector<std::string>{"small_2_3.pe", "small_30.pe", "small_5.pe", "small_x.pe"});
   std::vector<std::string> notices;
   CHECK(io::find_newest_restart(folder.path(), "small", solo, notices) == folder / "small_5.pe");
   CHECK(notices.empty());
@@ -135,7 +145,8 @@ TEST_CASE("The newest restart file that is whole is found") {
   std::ofstream(newest, std::ios::binary) << bytes;
   CHECK(io::find_newest_restart(folder.path(), "small", solo, notices) == folder / "small_10.pe");
   REQUIRE(notices.size() == 1);
-  CHECK_THAT(notices[0], Catch::Contains("passed over: the restart file") && Catch::Contains("small_20.pe' is damaged"));
+  CHECK_THAT(notices[0],
+             Catch::Contains("passed over: the restart file") && Catch::Contains("small_20.pe' is damaged"));
 }
 
 TEST_CASE("On a full disk the last good restart file stays, and nothing half-written") {
@@ -164,11 +175,15 @@ TEST_CASE("A full file system is survived, too") {
   core::SoloExchange solo;
   std::string newest;
   // Two are kept, a third does not fit beside them.
-  CHECK_THROWS_WITH([&] {
-    for (const int step : {10, 20, 30}) newest = io::write_restart(disk.path(), "small", at_step(solo, step, 2000), {}, solo);
-  }(), Catch::Contains("small_30.pe.part': No space left on device"));
+  CHECK_THROWS_WITH(
+      [&] {
+        for (const int step : {10, 20, 30})
+          newest = io::write_restart(disk.path(), "small", at_step(solo, step, 2000), {}, solo);
+      }(),
+      Catch::Contains("small_30.pe.part': No space left on device"));
   std::vector<std::string> notices;
-  CHECK(io::find_newest_restart(disk.path(), "small", solo, notices).value_or("") == disk.path() + "/small_20.pe");
+  CHECK(io::find_newest_restart(disk.path(), "small", solo, notices).value_or("") ==
+        disk.path() + "/small_20.pe");
   CHECK(notices.empty());
 }
 
@@ -185,6 +200,7 @@ TEST_CASE("A run that is killed while it writes leaves the earlier file") {
       omp_set_num_threads(1);  // the other threads have stayed behind
       for (;;) io::write_restart(folder.path(), "small", model, {}, solo);
     }
+    if (i == 19) wait_for(folder / "small_2.pe");
     ::usleep(static_cast<useconds_t>(3000 + 1700 * i));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);

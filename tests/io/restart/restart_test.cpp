@@ -1,8 +1,9 @@
 #include "io/restart/restart.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+
+#include <catch2/catch.hpp>
 
 #include "core/step/totals.hpp"
 #include "io/output/file.hpp"
@@ -98,8 +99,8 @@ TEST_CASE("What a restart file shows to other programs") {
   CHECK(io::hdf5::read_all_bytes(file, "scene/text") == "<PeneBlast/>");
   const io::hdf5::Handle bar = io::hdf5::open_group(file, "bodies/0");
   CHECK(io::hdf5::read_string(bar, "name") == "bar");
-  CHECK_THAT(io::hdf5::read_string(bar, "columns"), Catch::StartsWith("position_x position_y") &&
-                                                        Catch::EndsWith("temperature failed"));
+  CHECK_THAT(io::hdf5::read_string(bar, "columns"),
+             Catch::StartsWith("position_x position_y") && Catch::EndsWith("temperature failed"));
   CHECK(io::hdf5::shape_of(io::hdf5::open_dataset(bar, "particles")) == std::vector<hsize_t>{300, 21});
 }
 
@@ -123,9 +124,10 @@ TEST_CASE("On another grid the particles are dealt out anew") {
   SmallSetup smaller;
   smaller.cells = 8;
   core::Model outside = prepared_model(small_scene(), smaller);
-  CHECK_THROWS_WITH(io::read_restart(path, outside, solo),
-                    Catch::Contains("folder/small.xmp:7: <Grid>") &&
-                        Catch::Contains("particles of the restart file lie outside of this grid; make it larger"));
+  CHECK_THROWS_WITH(
+      io::read_restart(path, outside, solo),
+      Catch::Contains("folder/small.xmp:7: <Grid>") &&
+          Catch::Contains("particles of the restart file lie outside of this grid; make it larger"));
 }
 
 TEST_CASE("A body may be deactivated; what it held is booked") {
@@ -177,11 +179,14 @@ TEST_CASE("A scene that does not fit is refused with every difference") {
   core::Model copy = prepared_model(scene);
   CHECK_THROWS_WITH(
       io::read_restart(path, copy, solo),
-      Catch::Contains("<Body name=\"dust\">: the restart file has this body, but the scene does not; add it, with "
-                      "Deactive=\"1\" if it is to be left out") &&
-          Catch::Contains("folder/small.xmp:5: <Body name=\"bar\">: the scene needs state that the restart file does not "
-                          "have: effective_plastic_strain, temperature, failed; keep the material laws") &&
-          Catch::Contains("<Body name=\"wall <&> floor\">: its material is 'ice', but 'wax' in the restart file"));
+      Catch::Contains(
+          "<Body name=\"dust\">: the restart file has this body, but the scene does not; add it, with "
+          "Deactive=\"1\" if it is to be left out") &&
+          Catch::Contains(
+              "folder/small.xmp:5: <Body name=\"bar\">: the scene needs state that the restart file does not "
+              "have: effective_plastic_strain, temperature, failed; keep the material laws") &&
+          Catch::Contains(
+              "<Body name=\"wall <&> floor\">: its material is 'ice', but 'wax' in the restart file"));
 }
 
 TEST_CASE("What is only shown may start at zero or go") {
@@ -197,7 +202,8 @@ TEST_CASE("What is only shown may start at zero or go") {
   core::Model copy = prepared_model(small_scene(), with_yield);
   const io::RestartResult result = io::read_restart(path, copy, solo);
   REQUIRE(result.notices.size() == 6);
-  CHECK(result.notices[0] == "body 'bar': yield_stress start at zero, for the restart file does not have them");
+  CHECK(result.notices[0] ==
+        "body 'bar': yield_stress start at zero, for the restart file does not have them");
   CHECK(result.notices[1] == "body 'bar': sound_speed of the restart file are not needed any more");
   core::for_each_block(copy, [](int, const core::ColumnLayout& layout, const double* block, int used) {
     const auto identity = static_cast<std::uint64_t>(block[layout.offset(Column::identity)]);
@@ -206,7 +212,9 @@ TEST_CASE("What is only shown may start at zero or go") {
       const auto column = static_cast<Column>(c);
       if (!layout.has(column)) continue;
       const double value = block[layout.offset(column)];
-      if (value != (column == Column::yield_stress ? 0 : expected[static_cast<std::size_t>(layout.offset(column) / 8)])) {
+      if (value != (column == Column::yield_stress
+                        ? 0
+                        : expected[static_cast<std::size_t>(layout.offset(column) / 8)])) {
         FAIL(core::name_of(column) << " of particle " << identity << " among " << used);
       }
     }
