@@ -13,6 +13,7 @@ outermost centres; it also takes away the stairs of a lattice cut to a circle. T
 Experiment: G. R. Johnson and T. J. Holmquist (1988), as quoted in P. Huang's thesis (Tsinghua, 2010), table 5.1.
 """
 
+import functools
 import json
 import pathlib
 
@@ -105,6 +106,7 @@ class Bar:
         points = np.column_stack([(r * np.cos(a)).ravel(), (r * np.sin(a)).ravel(), np.full(a.size, LENGTH)])
         return self.lattice.carry(points, self.now)[:, 2]
 
+    @functools.cached_property
     def sizes(self):
         """L, D and W in mm."""
         radius, height, _ = self.side()

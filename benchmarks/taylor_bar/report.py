@@ -24,7 +24,7 @@ def many(count, thing):
 
 
 def table(bar):
-    sizes = bar.sizes()
+    sizes = bar.sizes
     relative, mean = taylor.errors(sizes)
     s = bar.summary
     lines = [
@@ -81,7 +81,7 @@ def draw_section(axes, bar, top_strain):
     axes.text(0, l + 0.4, "first shape", ha="center", va="bottom", fontsize=8.5, color=FIRST)
     axes.axhline(0, color=SURFACE, lw=1.4)
 
-    sizes = bar.sizes()
+    sizes = bar.sizes
     e = taylor.EXPERIMENT
     height, waist, foot = sizes["L"], sizes["W"] / 2, sizes["D"] / 2
     dimension(axes, (-8.6, 0), (-8.6, height), f"L {height:.2f}\n({e['L']})", (-8.9, height / 2), ha="right", va="center")

@@ -87,8 +87,9 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   }
   // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel
   // them through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the
-  // grid, and what stops it acts on the particles too: only so do they come to rest there, and can they leave
-  // again.
+  // grid, and what stops it acts on the particles too: only so do they come to rest there, can they leave
+  // again, and does a wall that lets go give no energy. With USF some is left, in proportion to the step: its
+  // strain has used the node's velocity before it is known to be stopped.
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     if (boundary == Boundary::fixed) {
       for (int a = 0; a < 3; ++a) at[a] = at[4 + a] = 0;
@@ -102,13 +103,14 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
 }
 
 namespace {
-/// Components 4..6 obey the walls.
+/// Components 4..6 obey the walls. A node that a rigid wall has stopped (component 0..2 is zero) strains
+/// nobody either: moving for the strain alone, it would do work on the particles out of nothing.
 void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     if (boundary == Boundary::fixed) {
       for (int a = 0; a < 3; ++a) at[4 + a] = 0;
     } else if (boundary == Boundary::symmetry ||
-               (boundary == Boundary::rigid_wall && sign * at[4 + axis] > 0)) {
+               (boundary == Boundary::rigid_wall && (sign * at[4 + axis] > 0 || at[axis] == 0))) {
       at[4 + axis] = 0;
     }
   });
@@ -132,10 +134,6 @@ void regularised_velocities(const Vec3<double>& fall, const BoundaryFaces& faces
     store(at + 4, load<Half>(at) - Half(at[7]) * (load<Half>(at + 4) - g));
   }
   constrain_second_velocity(faces, record);
-  // A wall that has stopped a node took all of its velocity; what was left out of that strains nobody.
-  faces.for_each_node(record, [](int axis, int, Boundary boundary, double* at) {
-    if (boundary == Boundary::rigid_wall && at[axis] == 0) at[4 + axis] = 0;
-  });
 }
 
 }  // namespace mpm::core

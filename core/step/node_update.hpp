@@ -44,6 +44,8 @@ struct NodeForces {
   /// USL: nodes lighter than this take only the share m / floor of their velocity increment into the strain
   /// rate.
   double strain_mass_floor = 0;
+  bool wall_reaction =
+      true;  ///< a rigid wall takes the momentum of the nodes that it stops from the particles
 };
 
 /// A brick's faces that lie on a constrained face of the grid, found once per pass.

@@ -20,13 +20,13 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
+std::string git_text() { return std::string(core::git_hash) + (core::git_dirty ? "-dirty" : ""); }
+
 ProvenanceLines provenance_of(const core::Scene& scene) {
-  std::string git(core::git_hash);
-  if (core::git_dirty) git += " with changes";
   ProvenanceLines lines{
       {"program", "mpm_run"},
       {"version", std::string(core::version)},
-      {"git", git},
+      {"git", git_text()},
       {"build", fmt::format("{}, {}, {}, {} lanes", core::compiler, core::build_type, core::architecture,
                             core::simd_lanes)},
       {"job", scene.provenance.job_name},

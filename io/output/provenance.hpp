@@ -12,6 +12,9 @@ namespace mpm::io {
 /// Names and values in the order in which they are printed; nothing empty. Values are one line each, UTF-8.
 using ProvenanceLines = std::vector<std::pair<std::string, std::string>>;
 
+/// The hash of the sources; `-dirty` at its end if they had changes on top.
+std::string git_text();
+
 /// Program, version, git hash, build, job, input file and its hash, units, and the date of the call (UTC).
 ProvenanceLines provenance_of(const core::Scene& scene);
 

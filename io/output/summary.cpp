@@ -1,10 +1,13 @@
 #include "io/output/summary.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/version.hpp"
 #include "io/output/file.hpp"
+#include "io/output/provenance.hpp"
 
 namespace mpm::io {
 
@@ -76,7 +79,7 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
   const Json summary{
       {"job", scene.provenance.job_name},
       {"version", core::version},
-      {"git", core::git_hash},
+      {"git", git_text()},
       {"status", report.status},
       {"reason", report.reason},
       {"ranks", ranks},

@@ -72,6 +72,19 @@ std::vector<Variable> absent_variables(const std::vector<Variable>& variables, c
   return absent;
 }
 
+std::vector<std::string> absence_notices(const std::vector<Variable>& variables, const core::Model& model) {
+  std::vector<std::string> notices;
+  for (const core::Body& body : model.bodies) {
+    std::string words;
+    for (const Variable v : absent_variables(variables, body.pool->layout())) {
+      words.append(words.empty() ? "" : ", ").append(info_of(v).name);
+    }
+    if (!words.empty())
+      notices.push_back("body '" + body.name + "' does not have " + words + ": written as 0");
+  }
+  return notices;
+}
+
 BodyFacts facts_of(const core::Model& model, std::size_t body) {
   const core::Body& b = model.bodies[body];
   return {static_cast<int>(body), b.component, b.material, b.model->reference_density()};

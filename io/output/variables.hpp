@@ -112,6 +112,8 @@ core::ColumnSet columns_for(const core::OutputInput& output);
 /// The variables that a body of this layout cannot give and that are therefore 0 for it.
 std::vector<Variable> absent_variables(const std::vector<Variable>& variables,
                                        const core::ColumnLayout& layout);
+/// One line per body that cannot give some of the variables, for the log.
+std::vector<std::string> absence_notices(const std::vector<Variable>& variables, const core::Model& model);
 
 /// What of a body enters its variables.
 struct BodyFacts {

@@ -191,6 +191,15 @@ std::string index_of_pieces(const std::string& stem, const std::vector<int>& ran
   return text + "</PUnstructuredGrid>\n</VTKFile>\n";
 }
 
+/// What a body is called in file names: its own name as far as that goes, and as often as it is unique.
+std::string file_name_of(const core::Model& model, std::size_t body) {
+  const std::string name = safe_name(model.bodies[body].name);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (b != body && safe_name(model.bodies[b].name) == name) return fmt::format("{}_body{}", name, body);
+  }
+  return name;
+}
+
 std::string attribute_of(const std::string& line, const std::string& name) {
   const std::string start = name + "=\"";
   const std::size_t at = line.find(start);
@@ -283,9 +292,9 @@ void VtuWriter::write(const core::Model& model, core::Exchange& exchange) {
               0);
   } else {
     for (const std::size_t b : written) {
-      const std::string& name = model.bodies[b].name;
-      write_set(fmt::format("{}_{}_{}", settings_.job, safe_name(name), model.clock.step), name, {b}, model,
-                exchange, static_cast<int>(b));
+      const std::string stem =
+          fmt::format("{}_{}_{}", settings_.job, file_name_of(model, b), model.clock.step);
+      write_set(stem, model.bodies[b].name, {b}, model, exchange, static_cast<int>(b));
     }
   }
   together(exchange, [&] {

@@ -150,7 +150,7 @@ TEST_CASE("An .h5part file holds the same on any number of ranks") {
   core::SoloExchange solo;
   const SharedFolder folder("parallel_h5part", exchange);
   core::Model together = small_model(exchange), alone = small_model(solo);
-  together.bodies[0].no_output = alone.bodies[0].no_output = world().rank() >= 0;
+  together.bodies[0].no_output = alone.bodies[0].no_output = true;
   const auto variables = io::variables_of({"tria", "com", "SigmaXY"});
   io::H5PartWriter writer({folder / "all.h5part", variables, false, {}}, together, exchange);
   for (int i = 0; i < 3; ++i) writer.write(together, exchange);

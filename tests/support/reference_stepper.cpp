@@ -326,7 +326,9 @@ void ReferenceStepper::final_velocities() {
   for_active_nodes([&](const Index& index, Node& node) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (case_.scheme == ReferenceScheme::musl) node.w[a] /= node.m;
-      if (stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
+      const bool held = case_.wall_reaction && node.v[a] == 0 &&
+                        (stop(index, a, 1) == Stop::wall || stop(index, a, -1) == Stop::wall);
+      if (held || stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
     }
   });
 }

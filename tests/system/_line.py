@@ -55,15 +55,19 @@ class Line:
 
         mass, momentum = to_nodes(share * self.mass), to_nodes(share * self.mass * self.v)
         if self.algorithm == "USF":
-            signal = self.stress(rate(velocity_of(momentum)), dt) + np.abs(self.v)
+            wave = self.stress(rate(velocity_of(momentum)), dt)
         dv = dt * velocity_of(to_nodes(slope * self.volume * (self.p + self.q)))
         velocity = at_wall(velocity_of(momentum) + dv)
+        self.v += (share * dv[node]).sum(axis=0)
         if self.algorithm == "USL":
             left_out = np.maximum(0, 1 - mass / (USL_MASS_FLOOR * self.density * self.cell))
-            signal = self.stress(rate(velocity - left_out * dv), dt) + np.abs(self.v)
-        self.v += (share * dv[node]).sum(axis=0)
+            wave = self.stress(rate(at_wall(velocity - left_out * dv)), dt)
         if self.algorithm == "MUSL":
-            signal = self.stress(rate(velocity_of(to_nodes(share * self.mass * self.v))), dt) + np.abs(self.v)
+            wave = self.stress(rate(velocity_of(to_nodes(share * self.mass * self.v))), dt)
+        signal = wave + np.abs(self.v)
+        if self.algorithm == "USF":  # wave speeds and velocities are of two passes: each brick's largest of both
+            bricks = [lower // 4 == brick for brick in range(lower.max() // 4 + 1)]
+            signal = np.array([wave[b].max() + np.abs(self.v[b]).max() for b in bricks if b.any()])
         self.x += dt * (share * velocity[node]).sum(axis=0)
         self.critical = self.cell / signal.max()
 

@@ -66,7 +66,7 @@ def measured(folder, model, scheme, factor, may_fail):
         nothing = dict.fromkeys([*COLUMNS][5:], float("nan"))
         return {"model": model, "particles": s["particles"], "scheme": scheme, "factor": factor, "steps": s["steps"], **nothing}
     bar = taylor.Bar(folder)
-    sizes = bar.sizes()
+    sizes = bar.sizes
     relative, mean = taylor.errors(sizes)
     s = bar.summary
     return {"model": model, "particles": s["particles"], "scheme": scheme, "factor": factor, "steps": s["steps"], **sizes,
@@ -99,7 +99,7 @@ def main():
     parser.add_argument("--models", nargs="+", default=["default", "M1", "M2", "M3"], choices=LAYERS)
     parser.add_argument("--schemes", nargs="+", default=SCHEMES, choices=SCHEMES)
     parser.add_argument("--factor", type=float, default=0.4, help="of the critical time step")
-    parser.add_argument("--factors", nargs="*", type=float, default=[0.2, 0.3, 0.4, 0.5, 0.6, 0.8],
+    parser.add_argument("--factors", nargs="*", type=float, default=[0.2, 0.3, 0.4, 0.5, 0.6, 0.9],
                         help="time step study with the default model; empty: none")
     parser.add_argument("--reuse", action="store_true", help="keep the runs that --out already holds")
     options = parser.parse_args()

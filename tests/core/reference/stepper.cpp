@@ -190,8 +190,8 @@ TEST_CASE("faces: symmetry holds, a rigid wall stops and lets go", "[reference]"
     const auto [height, speed] = flight(4, -1, true);
     CHECK(speed > 0.5);
     CHECK(speed < 1);
-    CHECK(height > 0.2);
-    CHECK(flight(2, -1, false).first < 0.2);
+    CHECK(height > 0.15);  // back at half its speed or more for the last third of the time, and on its way
+    CHECK(flight(2, -1, false).first < height);
   }
   SECTION("fixed") {
     ReferenceCase setup = block(ReferenceScheme::usf);

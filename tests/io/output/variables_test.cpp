@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/io/output/small_model.hpp"
+
 using namespace mpm;
 using core::Column;
 using io::Variable;
@@ -106,6 +108,15 @@ TEST_CASE("What a body does not carry is 0, and is known to be absent") {
     CHECK(absent == io::column_of(v).has_value());
     if (absent) CHECK(p(v) == 0);
   }
+}
+
+TEST_CASE("The log says which body lacks what") {
+  core::SoloExchange solo;
+  const core::Model model = tests::small_model(solo);
+  const auto notices = io::absence_notices(io::variables_of({"seqv", "kelv", "damg"}), model);
+  CHECK(notices == std::vector<std::string>{"body 'bar' does not have damg: written as 0",
+                                            "body 'wall <&> floor' does not have kelv, damg: written as 0",
+                                            "body 'dust' does not have damg: written as 0"});
 }
 
 TEST_CASE("The triaxiality of a state without deviator is 0, not a division by zero") {

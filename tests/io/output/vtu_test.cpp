@@ -141,6 +141,17 @@ TEST_CASE("One set of grids per body, but for those without output") {
   CHECK(piece.values<double>("Position").size() == 900);
 }
 
+TEST_CASE("Bodies whose names look alike in file names have files of their own") {
+  const Folder folder("vtu_names");
+  core::SoloExchange solo;
+  core::Model model = small_model(solo);
+  model.bodies[0].name = "a/b";
+  model.bodies[1].name = "a b";
+  io::VtuWriter({folder.path(), "small", true, {}, false, {}}, model, solo).write(model, solo);
+  CHECK(std::filesystem::exists(folder / "small_vtu/small_a_b_body0_120.pvtu"));
+  CHECK(std::filesystem::exists(folder / "small_vtu/small_a_b_body1_120.pvtu"));
+}
+
 TEST_CASE("Without any particles there is one empty piece") {
   const Folder folder("vtu_empty");
   core::SoloExchange solo;
