@@ -33,7 +33,7 @@ std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleO
 /// f(body, layout, block, lanes in use, first particle of the block in the batch's memory), by all threads.
 template <class F>
 void for_each_block(const core::Model& model, const RowBatch& batch, F f) {
-#pragma omp parallel for schedule(dynamic, 4)
+#pragma omp parallel for schedule(dynamic, 4) if (batch.parts.size() > 32)
   for (std::size_t i = 0; i < batch.parts.size(); ++i) {
     const RowBatch::Part& part = batch.parts[i];
     const core::Cohort& cohort =
