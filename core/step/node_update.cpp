@@ -10,23 +10,31 @@ using Record = Lanes<8>;
 using Half = Lanes<4>;
 }  // namespace
 
-SharedNodes::SharedNodes(const NodeBlockShape& shape) {
+SharedNodes::SharedNodes(const NodeBlockShape& shape) : nodes_(shape.nodes()) {
   const int low = -shape.halo, high = brick_cells + shape.halo;
   const auto within = [&](int i) { return low <= i && i <= high; };
+  std::array<std::vector<Share>, 9> by_count;
+  std::array<std::vector<int>, 9> nodes;
   for (int k = low; k <= high; ++k) {
     for (int j = low; j <= high; ++j) {
       for (int i = low; i <= high; ++i) {
-        first_.push_back(static_cast<int>(shares_.size()));
+        std::vector<Share> shares;
         for (int n = 0; n < neighbourhood; ++n) {
           // The same node, counted from the neighbour's lowest.
           const BrickCoord d = neighbour_offset(n);
           const int a = i - brick_cells * d.x, b = j - brick_cells * d.y, c = k - brick_cells * d.z;
-          if (within(a) && within(b) && within(c)) shares_.push_back({n, shape.index(a, b, c)});
+          if (within(a) && within(b) && within(c)) shares.push_back({n, shape.index(a, b, c)});
         }
+        by_count[shares.size()].insert(by_count[shares.size()].end(), shares.begin(), shares.end());
+        nodes[shares.size()].push_back(shape.index(i, j, k));
       }
     }
   }
-  first_.push_back(static_cast<int>(shares_.size()));
+  for (std::size_t n = 0; n < by_count.size(); ++n) {
+    shares_.insert(shares_.end(), by_count[n].begin(), by_count[n].end());
+    order_.insert(order_.end(), nodes[n].begin(), nodes[n].end());
+    count_[n] = static_cast<int>(nodes[n].size());
+  }
 }
 
 template <NodeArray of>
@@ -39,13 +47,13 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
   for (std::size_t n = 0; n < neighbourhood; ++n) {
     from[n] = brick.neighbour[n] == no_slot ? nothing.data() : grid.contributions(of, brick.neighbour[n]);
   }
-  for (int node = 0; node < shared.nodes(); ++node) {
+  shared.for_each_node([&](int node, auto shares) {
     Part sum(0.0);
-    for (const SharedNodes::Share& s : shared.of(node)) {
+    for (const SharedNodes::Share& s : shares) {
       sum += load<Part>(from[static_cast<std::size_t>(s.neighbour)] + width * s.node);
     }
     store(sums + node_doubles * node, sum);
-  }
+  });
 }
 template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, double*);

@@ -6,6 +6,8 @@
 // rank.
 #pragma once
 
+#include <algorithm>
+
 #include "core/grid/brick_grid.hpp"
 
 namespace mpm::core {
@@ -19,16 +21,28 @@ class SharedNodes {
     int neighbour;  ///< 0..26
     int node;       ///< its number in that brick
   };
-  int nodes() const { return static_cast<int>(first_.size()) - 1; }
-  std::span<const Share> of(int node) const {
-    return {shares_.data() + first_[static_cast<std::size_t>(node)],
-            static_cast<std::size_t>(first_[static_cast<std::size_t>(node) + 1] -
-                                     first_[static_cast<std::size_t>(node)])};
+  int nodes() const { return nodes_; }
+  /// Node after node, those shared by one brick first, then those by two, four and eight.
+  std::span<const Share> all() const { return shares_; }
+  /// f(node, shares), nodes in the same order; the number of shares is a constant in f.
+  template <class F>
+  void for_each_node(F f) const {
+    const Share* s = shares_.data();
+    const int* node = order_.data();
+    const auto group = [&]<std::size_t n>() {
+      for (int i = 0; i < count_[n]; ++i, s += n) f(*node++, std::span<const Share, n>(s, n));
+    };
+    group.template operator()<1>();
+    group.template operator()<2>();
+    group.template operator()<4>();
+    group.template operator()<8>();
   }
 
  private:
+  int nodes_ = 0;
   std::vector<Share> shares_;
-  std::vector<int> first_;
+  std::vector<int> order_;
+  std::array<int, 9> count_{};  ///< nodes by the number of their shares
 };
 
 /// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
@@ -36,6 +50,38 @@ class SharedNodes {
 /// so every copy of a node adds up the same numbers.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
+
+/// Asks for what sum_contributions will read for a brick, a few records at a time, while another brick is
+/// worked on: neighbours lie far apart in memory, and the hardware does not guess them.
+template <NodeArray of>
+class ContributionsAhead {
+ public:
+  /// `slot` may be past the last brick. `calls`: how often next() will be called.
+  ContributionsAhead(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::size_t calls)
+      : shares_(shared.all()) {
+    if (slot >= grid.owned()) {
+      next_ = shares_.size();
+      return;
+    }
+    step_ = shares_.size() / std::max<std::size_t>(calls, 1) + 1;
+    const Brick& brick = grid.brick(slot);
+    for (std::size_t n = 0; n < neighbourhood; ++n) {
+      from_[n] = grid.contributions(of, brick.neighbour[n] == no_slot ? slot : brick.neighbour[n]);
+    }
+  }
+  [[gnu::always_inline]] void next() {
+    const std::size_t last = std::min(next_ + step_, shares_.size());
+    for (; next_ < last; ++next_) {
+      const SharedNodes::Share& s = shares_[next_];
+      __builtin_prefetch(from_[static_cast<std::size_t>(s.neighbour)] + record_doubles(of) * s.node, 0, 2);
+    }
+  }
+
+ private:
+  std::span<const SharedNodes::Share> shares_;
+  std::array<const double*, neighbourhood> from_{};
+  std::size_t next_ = 0, step_ = 0;
+};
 
 /// What acts on nodes beside the particles' stress.
 struct NodeForces {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "core/particles/columns.hpp"
+#include "core/simd/transpose.hpp"
 #include "core/step/shape.hpp"
 
 namespace mpm::core {
@@ -29,73 +30,77 @@ constexpr bool maps_force(Mapped m) { return m == Mapped::momentum_mass_force ||
 namespace detail {
 using Nodes = Lanes<8>;
 
-/// Rows to columns of an 8 x 8 matrix.
-inline void transpose(Nodes r[8]) {
-  using V = Nodes::vector;
-  V a[8], b[8];
-  for (int i = 0; i < 4; ++i) {
-    a[2 * i] = __builtin_shufflevector(r[2 * i].v, r[2 * i + 1].v, 0, 8, 2, 10, 4, 12, 6, 14);
-    a[2 * i + 1] = __builtin_shufflevector(r[2 * i].v, r[2 * i + 1].v, 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  for (int h = 0; h < 2; ++h) {
-    for (int i = 0; i < 2; ++i) {
-      b[4 * h + i] = __builtin_shufflevector(a[4 * h + i], a[4 * h + 2 + i], 0, 1, 8, 9, 4, 5, 12, 13);
-      b[4 * h + 2 + i] = __builtin_shufflevector(a[4 * h + i], a[4 * h + 2 + i], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-  }
-  for (int i = 0; i < 4; ++i) {
-    r[i].v = __builtin_shufflevector(b[i], b[4 + i], 0, 1, 2, 3, 8, 9, 10, 11);
-    r[4 + i].v = __builtin_shufflevector(b[i], b[4 + i], 4, 5, 6, 7, 12, 13, 14, 15);
-  }
-}
+/// A node's weight along an axis is 1 - f or f: its slope.
+inline Nodes sign_x() { return Nodes::vector{-1, 1, -1, 1, -1, 1, -1, 1}; }
+inline Nodes sign_y() { return Nodes::vector{-1, -1, 1, 1, -1, -1, 1, 1}; }
+inline Nodes sign_z() { return Nodes::vector{-1, -1, -1, -1, 1, 1, 1, 1}; }
 }  // namespace detail
 
-/// Sums over the particles of one cell, node i + 2 j + 4 k in lane i + 2 j + 4 k.
+/// Sums over the particles of one cell, node i + 2 j + 4 k in lane i + 2 j + 4 k. The force on a node is the
+/// sum of V sigma times the gradient, whose component along an axis is a sign over the cell's edge times the
+/// weights along the other two: the sums leave the former out, and a flush puts it in for all particles at
+/// once.
 template <Mapped what>
 struct CellSums {
-  detail::Nodes px, py, pz, m, fx, fy, fz;
+  detail::Nodes px, py, pz, m;
+  detail::Nodes xx, yx, zx, xy, yy, zy, xz, yz, zz;  ///< V sigma_ij times the weights without axis j
   int node = -1;
 
-  void clear() { px = py = pz = m = fx = fy = fz = detail::Nodes(0.0); }
+  void clear() {
+    px = py = pz = m = detail::Nodes(0.0);
+    xx = yx = zx = xy = yy = zy = xz = yz = zz = detail::Nodes(0.0);
+  }
 
-  void flush(double* contributions, const CellCorners& corners) {
+  [[gnu::always_inline]] void flush(const BrickFrame& frame, const CellCorners& corners,
+                                    double* contributions) {
+    using N = detail::Nodes;
     if (node < 0) return;
-    detail::Nodes r[8] = {px, py, pz, m, fx, fy, fz, detail::Nodes(0.0)};
-    detail::transpose(r);
+    N r[8] = {px, py, pz, m, N(0.0), N(0.0), N(0.0), N(0.0)};
+    if constexpr (maps_force(what)) {
+      const N gx = detail::sign_x() * N(-frame.inverse_cell.x),
+              gy = detail::sign_y() * N(-frame.inverse_cell.y),
+              gz = detail::sign_z() * N(-frame.inverse_cell.z);
+      r[4] = gx * xx + gy * xy + gz * xz;
+      r[5] = gx * yx + gy * yy + gz * yz;
+      r[6] = gx * zx + gy * zy + gz * zz;
+    }
     constexpr int width = record_doubles(array_of(what));
     using Record = Lanes<width>;
     double* lowest = contributions + width * node;
-    for (int n = 0; n < 8; ++n) {
-      double* at = lowest + width * corners.node[n];
-      store(at, load<Record>(at) + load<Record>(reinterpret_cast<const double*>(&r[n])));
+    if constexpr (width == 8) {
+      transpose(r);
+      for (int n = 0; n < 8; ++n) {
+        double* at = lowest + width * corners.node(n);
+        store(at, load<Record>(at) + r[n]);
+      }
+    } else {
+      transpose_half(r);
+      for (int n = 0; n < 8; ++n) {
+        double* at = lowest + width * corners.node(n);
+        store(at, load<Record>(at) + half(r[n / 2], n % 2));
+      }
     }
   }
 };
 
 /// Add the first `used` particles of a block.
 template <Mapped what>
-inline void add_block(const BrickFrame& frame, const CellCorners& corners, const ColumnLayout& layout,
-                      const double* block, int used, CellSums<what>& running, double* contributions) {
+[[gnu::always_inline]] inline void add_block(const BrickFrame& frame, const CellCorners& corners,
+                                             const BlockPlace& place, const ColumnLayout& layout,
+                                             const double* block, int used, CellSums<what>& running,
+                                             double* contributions) {
   using N = detail::Nodes;
   CellSums<what> sums = running;  // a local of its own stays in registers
   const auto col = [&](Column c) { return block + layout.offset(c); };
-  alignas(64) double q[10][block_lanes];  // m, m v, -V sigma
-  alignas(64) double f[3][block_lanes];
-  int node[block_lanes];
+  alignas(64) double q[10][block_lanes];  // m, m v, V sigma
   for (int l = 0; l < block_lanes; l += real_width) {
-    const auto p = locate<Real>(frame, col(Column::position_x) + l, col(Column::position_y) + l,
-                                col(Column::position_z) + l);
-    store(f[0] + l, p.fx);
-    store(f[1] + l, p.fy);
-    store(f[2] + l, p.fz);
-    for (int i = 0; i < real_width; ++i) node[l + i] = p.node[i];
     if constexpr (maps_momentum(what)) {
       const Real m = load<Real>(col(Column::mass) + l);
       store(q[0] + l, m);
       for (int a = 0; a < 3; ++a) store(q[1 + a] + l, m * load<Real>(col(next(Column::velocity_x, a)) + l));
     }
     if constexpr (maps_force(what)) {
-      const Real v = -load<Real>(col(Column::volume) + l);
+      const Real v = load<Real>(col(Column::volume) + l);
       const Real p_total =
           load<Real>(col(Column::pressure) + l) + load<Real>(col(Column::viscous_pressure) + l);
       for (int a = 0; a < 3; ++a)
@@ -103,31 +108,37 @@ inline void add_block(const BrickFrame& frame, const CellCorners& corners, const
       for (int a = 3; a < 6; ++a) store(q[4 + a] + l, v * load<Real>(col(next(Column::s_xx, a)) + l));
     }
   }
-  const N one_x(N::vector{1, 0, 1, 0, 1, 0, 1, 0}), sign_x(N::vector{-1, 1, -1, 1, -1, 1, -1, 1});
-  const N one_y(N::vector{1, 1, 0, 0, 1, 1, 0, 0}), sign_y(N::vector{-1, -1, 1, 1, -1, -1, 1, 1});
-  const N one_z(N::vector{1, 1, 1, 1, 0, 0, 0, 0}), sign_z(N::vector{-1, -1, -1, -1, 1, 1, 1, 1});
+  const N one_x(N::vector{1, 0, 1, 0, 1, 0, 1, 0}), one_y(N::vector{1, 1, 0, 0, 1, 1, 0, 0}),
+      one_z(N::vector{1, 1, 1, 1, 0, 0, 0, 0});
+  const N sign_x = detail::sign_x(), sign_y = detail::sign_y(), sign_z = detail::sign_z();
   for (int i = 0; i < used; ++i) {
-    if (node[i] != sums.node) {
-      sums.flush(contributions, corners);
+    if (place.node[i] != sums.node) {
+      sums.flush(frame, corners, contributions);
       sums.clear();
-      sums.node = node[i];
+      sums.node = place.node[i];
     }
-    const N wx = one_x + sign_x * N(f[0][i]), wy = one_y + sign_y * N(f[1][i]),
-            wz = one_z + sign_z * N(f[2][i]);
-    const N wyz = wy * wz;
+    const N wx = one_x + sign_x * N(place.f[0][i]), wy = one_y + sign_y * N(place.f[1][i]),
+            wz = one_z + sign_z * N(place.f[2][i]);
+    const N wxy = wx * wy;
     if constexpr (maps_momentum(what)) {
-      const N w = wx * wyz;
+      const N w = wxy * wz;
       if constexpr (maps_mass(what)) sums.m += w * N(q[0][i]);
       sums.px += w * N(q[1][i]);
       sums.py += w * N(q[2][i]);
       sums.pz += w * N(q[3][i]);
     }
     if constexpr (maps_force(what)) {
-      const N gx = sign_x * wyz * N(frame.inverse_cell.x), gy = sign_y * (wx * wz) * N(frame.inverse_cell.y),
-              gz = sign_z * (wx * wy) * N(frame.inverse_cell.z);
-      sums.fx += gx * N(q[4][i]) + gy * N(q[7][i]) + gz * N(q[9][i]);
-      sums.fy += gx * N(q[7][i]) + gy * N(q[5][i]) + gz * N(q[8][i]);
-      sums.fz += gx * N(q[9][i]) + gy * N(q[8][i]) + gz * N(q[6][i]);
+      const N wyz = wy * wz, wxz = wx * wz;
+      const N sxx(q[4][i]), syy(q[5][i]), szz(q[6][i]), sxy(q[7][i]), syz(q[8][i]), sxz(q[9][i]);
+      sums.xx += wyz * sxx;
+      sums.yx += wyz * sxy;
+      sums.zx += wyz * sxz;
+      sums.xy += wxz * sxy;
+      sums.yy += wxz * syy;
+      sums.zy += wxz * syz;
+      sums.xz += wxy * sxz;
+      sums.yz += wxy * syz;
+      sums.zz += wxy * szz;
     }
   }
   running = sums;

@@ -12,11 +12,58 @@ namespace {
 
 Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
-/// Blocks come from memory in an order that the hardware guesses only while nobody has moved.
-void prefetch(const BlockPool& pool, const Cohort& cohort, std::size_t b, Column first, int columns) {
-  if (b >= cohort.blocks.size()) return;
-  const double* at = pool.block(cohort.blocks[b]) + pool.layout().offset(first);
-  for (int c = 0; c < columns; ++c) __builtin_prefetch(at + block_lanes * c);
+/// Asks for the blocks that a pass will come to: those of a cohort, then those of the next one, in the brick
+/// or after it. Into the second-level cache: the first has too few lines under way at a time to hide main
+/// memory.
+class BlocksAhead {
+ public:
+  BlocksAhead(const Model& model, Slot slot, std::size_t cohort, std::size_t distance = 4)
+      : model_(model), distance_(distance) {
+    const BrickGrid& grid = *model.grid;
+    const Brick& brick = grid.brick(slot);
+    now_ = &brick.cohorts[cohort];
+    if (cohort + 1 < brick.cohorts.size()) {
+      then_ = &brick.cohorts[cohort + 1];
+    } else if (slot + 1 < grid.owned() && !grid.brick(slot + 1).cohorts.empty()) {
+      then_ = &grid.brick(slot + 1).cohorts.front();
+    }
+  }
+  /// While block `b` is worked on. Inlined without fail: g++ takes a function that only prefetches for one
+  /// that does nothing, and drops the call.
+  [[gnu::always_inline]] void prefetch(std::size_t b, int first_column, int last_column) const {
+    const Cohort* cohort = now_;
+    b += distance_;
+    if (b >= cohort->blocks.size()) {
+      b -= cohort->blocks.size();
+      cohort = then_;
+      if (cohort == nullptr || b >= cohort->blocks.size()) return;
+    }
+    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort->body)].pool;
+    const double* block = pool.block(cohort->blocks[b]);
+    for (int c = first_column; c < last_column; ++c) __builtin_prefetch(block + block_lanes * c, 0, 2);
+  }
+
+ private:
+  const Model& model_;
+  const Cohort* now_;
+  const Cohort* then_ = nullptr;
+  std::size_t distance_;
+};
+
+void move_as_prescribed(const ColumnLayout& layout, double dt, double* block) {
+  double* x = block + layout.offset(Column::position_x);
+  const double* v = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
+}
+
+/// The first columns that passes read: up to the stress, and up to the mass.
+constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
+constexpr int columns_to_mass = static_cast<int>(Column::mass) + 1;
+
+std::size_t blocks_of(const Brick& brick) {
+  std::size_t n = 0;
+  for (const Cohort& c : brick.cohorts) n += c.blocks.size();
+  return n;
 }
 
 int used_lanes(const Cohort& cohort, std::size_t b) {
@@ -71,8 +118,8 @@ void Passes::for_bricks(int first, int last, F f) {
 
 // --- particles to grid ------------------------------------------------------------------------------------
 
-template <Mapped what>
-[[gnu::noinline]] void Passes::map_brick(Slot s) {
+template <Mapped what, class F>
+void Passes::map_brick(Slot s, F before) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
@@ -81,15 +128,22 @@ template <Mapped what>
   std::fill_n(contributions, record_doubles(array_of(what)) * grid.shape().nodes(), 0.0);
   CellSums<what> sums;
   sums.clear();
-  for (const Cohort& cohort : brick.cohorts) {
-    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    const BlocksAhead ahead(model_, s, c);
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      prefetch(pool, cohort, b + 2, Column::position_x, maps_force(what) ? 16 : 7);
-      add_block<what>(frame, corners, pool.layout(), pool.block(cohort.blocks[b]), used_lanes(cohort, b),
-                      sums, contributions);
+      if constexpr (what == Mapped::momentum_mass_force) ahead.prefetch(b, 0, columns_to_stress);
+      if constexpr (what == Mapped::momentum_mass || what == Mapped::momentum)
+        ahead.prefetch(b, 0, columns_to_mass);
+      double* block = body.pool->block(cohort.blocks[b]);
+      const int used = used_lanes(cohort, b);
+      const BlockPlace place(frame, body.pool->layout(), block);
+      before(body, place, corners, block, used);
+      add_block<what>(frame, corners, place, body.pool->layout(), block, used, sums, contributions);
     }
   }
-  sums.flush(contributions, corners);
+  sums.flush(frame, corners, contributions);
 }
 
 namespace {
@@ -104,22 +158,23 @@ constexpr Components components(Mapped what) {
 }
 }  // namespace
 
-/// work(slot, workplace), then map the brick, for all bricks; the boundary bricks' sums travel meanwhile.
+/// work(slot, workplace) for all bricks, which maps what they are to send; the boundary bricks' sums travel
+/// meanwhile.
 template <Mapped what, class F>
-void Passes::map_after(F work) {
+void Passes::map_bricks(F work) {
   BrickGrid& grid = *model_.grid;
-  const auto both = [&](Slot s, Workplace& at) {
-    work(s, at);
-    map_brick<what>(s);
-  };
-  for_bricks(0, grid.boundary(), both);
+  for_bricks(0, grid.boundary(), work);
   exchange_.begin_halo(grid, array_of(what), components(what).first, components(what).count);
-  for_bricks(grid.boundary(), grid.owned(), both);
+  for_bricks(grid.boundary(), grid.owned(), work);
+}
+
+namespace {
+constexpr auto as_they_are = [](const Body&, const BlockPlace&, const CellCorners&, double*, int) {};
 }
 
 template <Mapped what>
 void Passes::map_to_grid() {
-  map_after<what>([](Slot, Workplace&) {});
+  map_bricks<what>([this](Slot s, Workplace&) { map_brick<what>(s, as_they_are); });
 }
 template void Passes::map_to_grid<Mapped::momentum_mass_force>();
 template void Passes::map_to_grid<Mapped::momentum_mass>();
@@ -136,48 +191,54 @@ void Passes::move_nodes(Slot s, Workplace& at) {
 
 // --- particles --------------------------------------------------------------------------------------------
 
-void Passes::hold_velocities(const Body& body, const Cohort& cohort, Workplace& at) {
-  BlockPool& pool = *body.pool;
-  const ColumnLayout& layout = pool.layout();
-  double work = 0;
-  for (std::uint32_t i = 0; i < cohort.count; ++i) {
-    double* lane = pool.block(cohort.blocks[i / block_lanes]) + i % block_lanes;
+void Passes::hold_velocities(const Body& body, double* block, int used, Workplace& at) {
+  const ColumnLayout& layout = body.pool->layout();
+  for (int i = 0; i < used; ++i) {
+    double* lane = block + i;
     double* v[3];
     for (int a = 0; a < 3; ++a) v[a] = lane + layout.offset(next(Column::velocity_x, a));
     if (body.prescribed_velocity) {
       // What holds the velocity gives momentum m (v_p - v) at velocity v_p.
       const Vec3<double>& p = *body.prescribed_velocity;
       const double m = lane[layout.offset(Column::mass)];
-      work += m * ((p.x - *v[0]) * p.x + (p.y - *v[1]) * p.y + (p.z - *v[2]) * p.z);
+      at.work += m * ((p.x - *v[0]) * p.x + (p.y - *v[1]) * p.y + (p.z - *v[2]) * p.z);
       for (int a = 0; a < 3; ++a) *v[a] = p[a];
     } else {
       const double speed = std::sqrt(*v[0] * *v[0] + *v[1] * *v[1] + *v[2] * *v[2]);
       if (speed > velocity_limit_) {
-        work += 0.5 * lane[layout.offset(Column::mass)] * (velocity_limit_ * velocity_limit_ - speed * speed);
+        at.work +=
+            0.5 * lane[layout.offset(Column::mass)] * (velocity_limit_ * velocity_limit_ - speed * speed);
         for (int a = 0; a < 3; ++a) *v[a] *= velocity_limit_ / speed;
         ++at.found.limited;
       }
     }
   }
-  if (work != 0) at.found.work.add(work);
+}
+
+void Passes::kick(const Body& body, const BlockPlace& place, const CellCorners& corners, double* block,
+                  int used, Workplace& at) {
+  add_velocity_increment(place, corners, body.pool->layout(), at.nodes.data(), block);
+  if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
+    hold_velocities(body, block, used, at);
+  }
 }
 
 [[gnu::noinline]] void Passes::velocities_of_brick(Slot s, Workplace& at) {
   BrickGrid& grid = *model_.grid;
-  Brick& brick = grid.brick(s);
+  const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
   const CellCorners corners(grid.shape().side());
-  for (Cohort& cohort : brick.cohorts) {
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    const BlocksAhead ahead(model_, s, c);
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      prefetch(*body.pool, cohort, b + 2, Column::position_x, 7);
-      add_velocity_increment(frame, corners, body.pool->layout(), at.nodes.data(),
-                             body.pool->block(cohort.blocks[b]));
-    }
-    if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
-      hold_velocities(body, cohort, at);
+      ahead.prefetch(b, 0, columns_to_mass);
+      double* block = body.pool->block(cohort.blocks[b]);
+      kick(body, BlockPlace(frame, body.pool->layout(), block), corners, block, used_lanes(cohort, b), at);
     }
   }
+  at.book_work();
 }
 
 namespace {
@@ -208,6 +269,7 @@ Real speed(const ColumnLayout& layout, const double* block, int lane) {
 }
 }  // namespace
 
+template <bool moves>
 [[gnu::noinline]] void Passes::stress_of_brick(Slot s, Velocities velocities, Workplace& at) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
@@ -219,7 +281,11 @@ Real speed(const ColumnLayout& layout, const double* block, int lane) {
   batch.cell_size = grid.geometry().smallest_cell();
   const bool by_cells = model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
   double fastest = 0;
-  for (const Cohort& cohort : brick.cohorts) {
+  ContributionsAhead<NodeArray::first> first_ahead(grid, shared_, s + 1, moves ? blocks_of(brick) : 0);
+  ContributionsAhead<NodeArray::second> second_ahead(grid, shared_, s + 1, blocks_of(brick));
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    const BlocksAhead ahead(model_, s, c, 12);
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     BlockPool& pool = *body.pool;
     const ColumnLayout& layout = pool.layout();
@@ -228,15 +294,33 @@ Real speed(const ColumnLayout& layout, const double* block, int lane) {
       batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
       batch.particles =
           static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+      // All places first: a block's is a long chain of operations, and those of several blocks overlap.
+      for (int b = 0; b < batch.blocks; ++b) {
+        batch.block[b] = pool.block(cohort.blocks[first + static_cast<std::size_t>(b)]);
+        at.places[b].find(frame, layout, batch.block[b]);
+        for (int column = 3; column < layout.columns(); ++column)
+          __builtin_prefetch(batch.block[b] + block_lanes * column, 1, 3);
+      }
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
-        prefetch(pool, cohort, at_block + 2, Column::position_x, layout.columns());
-        batch.block[b] = pool.block(cohort.blocks[at_block]);
-        velocity_gradient(frame, corners, layout, at.nodes.data(), batch.block[b], batch.gradient,
-                          block_lanes * b);
+        ahead.prefetch(at_block, 0, layout.columns());
+        if constexpr (moves) first_ahead.next();
+        second_ahead.next();
+        double* block = batch.block[b];
+        const BlockPlace& place = at.places[b];
         if (by_cells) {
-          cell_strain(frame, corners, layout, at.nodes.data(), dt, batch.block[b],
-                      batch.cell_volumetric_strain, block_lanes * b);
+          cell_strain(frame, place, corners, at.nodes.data(), dt, batch.cell_volumetric_strain,
+                      block_lanes * b);
+        }
+        if constexpr (!moves) {
+          strain<false>(frame, place, corners, layout, at.nodes.data(), dt, block, batch.gradient,
+                        block_lanes * b);
+        } else {
+          std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
+          strain<true>(frame, place, corners, layout, at.nodes.data(), body.prescribed_velocity ? 0.0 : dt,
+                       block, batch.gradient, block_lanes * b);
+          if (body.prescribed_velocity) move_as_prescribed(layout, dt, block);
+          book_motion(layout, block, used_lanes(cohort, at_block), at);
         }
       }
       batch.events = {};
@@ -249,99 +333,73 @@ Real speed(const ColumnLayout& layout, const double* block, int lane) {
                                       ? critical + speed(layout, batch.block[b], l)
                                       : critical;
                          }));
+      if constexpr (moves) {
+        for (int b = 0; b < batch.blocks; ++b) {
+          note_leavers(s, c, first + static_cast<std::size_t>(b), frame, layout, batch.block[b],
+                       std::min(block_lanes, batch.particles - block_lanes * b));
+        }
+      }
     }
   }
+  at.book_work();
   if (velocities == Velocities::of_next_step)
     at.found.fastest = std::max(at.found.fastest, fastest);
   else
     critical_[static_cast<std::size_t>(s)] = fastest;
 }
 
-/// The largest |v| of the brick's particles.
-double Passes::fastest_of_brick(Slot s, Workplace& at) const {
-  Batch& batch = at.batch;
-  double fastest = 0;
-  for (const Cohort& cohort : model_.grid->brick(s).cohorts) {
-    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
-    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      batch.blocks = 1;
-      batch.particles = used_lanes(cohort, b);
-      batch.block[0] = pool.block(cohort.blocks[b]);
-      fastest = std::max(fastest,
-                         largest(batch, [&](int, int l) { return speed(pool.layout(), batch.block[0], l); }));
+/// The work of gravity and damping in the motion that a block has just made from at.before.
+void Passes::book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const {
+  const Vec3<double> g = forces_.gravity;
+  if (g.x == 0 && g.y == 0 && g.z == 0 && forces_.damping == 0) return;
+  const double* m = block + layout.offset(Column::mass);
+  const double* x = block + layout.offset(Column::position_x);
+  const double* v = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < used; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      const int at_a = block_lanes * a + i;
+      at.work += m[i] * (g[a] - forces_.damping * v[at_a]) * (x[at_a] - at.before[at_a]);
     }
   }
-  return fastest;
 }
 
-[[gnu::noinline]] void Passes::move_brick(Slot s, Workplace& at) {
-  BrickGrid& grid = *model_.grid;
-  Brick& brick = grid.brick(s);
-  const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
-  const CellCorners corners(grid.shape().side());
-  const Vec3<double> g = forces_.gravity;
-  const bool works = g.x != 0 || g.y != 0 || g.z != 0 || forces_.damping != 0;
+void Passes::note_leavers(Slot s, std::size_t cohort, std::size_t b, const BrickFrame& frame,
+                          const ColumnLayout& layout, const double* block, int used) {
   std::vector<Leaver>& leavers = leavers_[static_cast<std::size_t>(s)];
-  double work = 0;
-  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
-    const Cohort& cohort = brick.cohorts[c];
-    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
-    BlockPool& pool = *body.pool;
-    const ColumnLayout& layout = pool.layout();
-    const bool erodes = layout.has(Column::failed) || erosion_volume_ > 0;
-    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      double* block = pool.block(cohort.blocks[b]);
-      double* x = block + layout.offset(Column::position_x);
-      const double* v = block + layout.offset(Column::velocity_x);
-      const int used = used_lanes(cohort, b);
-      double before[3 * block_lanes];
-      if (works) std::copy_n(x, 3 * block_lanes, before);
-      if (body.prescribed_velocity) {
-        for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
-      } else {
-        move_with_grid(frame, corners, layout, at.nodes.data(), dt, block);
-      }
-      if (works) {
-        const double* m = block + layout.offset(Column::mass);
-        for (int i = 0; i < used; ++i) {
-          for (int a = 0; a < 3; ++a) {
-            const int at_a = block_lanes * a + i;
-            work += m[i] * (g[a] - forces_.damping * v[at_a]) * (x[at_a] - before[at_a]);
-          }
-        }
-      }
-      unsigned gone = 0;
-      if (erodes) {
-        const double* volume = block + layout.offset(Column::volume);
-        for (int i = 0; i < used; ++i) {
-          const bool eroded = volume[i] < erosion_volume_ ||
-                              (layout.has(Column::failed) && block[layout.offset(Column::failed) + i] >= 2);
-          if (!eroded) continue;
-          gone |= 1u << i;
-          leavers.push_back({static_cast<int>(c),
-                             static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(i),
-                             true});
-        }
-      }
-      unsigned outside = lanes_outside(frame, layout, block, used) & ~gone;
-      for (; outside != 0; outside &= outside - 1) {
-        leavers.push_back(
-            {static_cast<int>(c),
-             static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(__builtin_ctz(outside)),
-             false});
-      }
+  const auto note = [&](int lane, bool eroded) {
+    leavers.push_back({static_cast<int>(cohort),
+                       static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(lane),
+                       eroded});
+  };
+  unsigned gone = 0;
+  if (layout.has(Column::failed) || erosion_volume_ > 0) {
+    const double* volume = block + layout.offset(Column::volume);
+    for (int i = 0; i < used; ++i) {
+      const bool eroded = volume[i] < erosion_volume_ ||
+                          (layout.has(Column::failed) && block[layout.offset(Column::failed) + i] >= 2);
+      if (!eroded) continue;
+      gone |= 1u << i;
+      note(i, true);
     }
   }
-  if (work != 0) at.found.work.add(work);
+  unsigned outside = lanes_outside(frame, layout, block, used) & ~gone;
+  for (; outside != 0; outside &= outside - 1) note(__builtin_ctz(outside), false);
 }
 
 // --- what the schemes are made of
 // ---------------------------------------------------------------------------
 
 void Passes::update_velocities_and_map_back() {
-  map_after<Mapped::momentum>([&](Slot s, Workplace& at) {
+  map_bricks<Mapped::momentum>([&](Slot s, Workplace& at) {
     move_nodes(s, at);
-    velocities_of_brick(s, at);
+    ContributionsAhead<NodeArray::first> ahead(*model_.grid, shared_, s + 1,
+                                               blocks_of(model_.grid->brick(s)));
+    map_brick<Mapped::momentum>(s, [&](const Body& body, const BlockPlace& place, const CellCorners& corners,
+                                       double* block, int used) {
+      ahead.next();
+      kick(body, place, corners, block, used, at);
+    });
+    at.book_work();
   });
 }
 
@@ -355,25 +413,25 @@ void Passes::update_stress_and_move() {
     sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
     second_velocities(0, at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
                       shared_.nodes(), at.nodes.data());
-    stress_of_brick(s, Velocities::of_next_step, at);
-    move_brick(s, at);
+    stress_of_brick<true>(s, Velocities::of_next_step, at);
   });
 }
 
 void Passes::update_stress_and_map_forces() {
   const BrickGrid& grid = *model_.grid;
   critical_.resize(static_cast<std::size_t>(grid.owned()));
-  map_after<Mapped::force>([&](Slot s, Workplace& at) {
+  map_bricks<Mapped::force>([&](Slot s, Workplace& at) {
     sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
     second_velocities(grid.geometry().mass_cutoff, at.nodes.data(),
                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                       at.nodes.data());
-    stress_of_brick(s, Velocities::of_last_step, at);
+    stress_of_brick<false>(s, Velocities::of_last_step, at);
+    map_brick<Mapped::force>(s, as_they_are);
   });
 }
 
 void Passes::update_velocities_and_move() {
-  const BrickGrid& grid = *model_.grid;
+  BrickGrid& grid = *model_.grid;
   leavers_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Workplace& at) {
     sum_contributions<NodeArray::first>(grid, shared_, s,
@@ -382,12 +440,50 @@ void Passes::update_velocities_and_move() {
     update_nodes(forces_, dt, grid.geometry().mass_cutoff,
                  BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                  at.nodes.data());
-    velocities_of_brick(s, at);
     // The wave speeds are of the stress pass; each brick's largest stands for all of its particles.
     at.found.fastest =
-        std::max(at.found.fastest, critical_[static_cast<std::size_t>(s)] + fastest_of_brick(s, at));
-    move_brick(s, at);
+        std::max(at.found.fastest, critical_[static_cast<std::size_t>(s)] + kick_and_move(s, at));
   });
+}
+
+/// Returns the largest speed of the brick's particles.
+[[gnu::noinline]] double Passes::kick_and_move(Slot s, Workplace& at) {
+  BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
+  const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
+  const CellCorners corners(grid.shape().side());
+  ContributionsAhead<NodeArray::first> first_ahead(grid, shared_, s + 1, blocks_of(brick));
+  ContributionsAhead<NodeArray::second> second_ahead(grid, shared_, s + 1, blocks_of(brick));
+  double fastest = 0;
+  Batch& batch = at.batch;
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    const ColumnLayout& layout = body.pool->layout();
+    const BlocksAhead ahead(model_, s, c);
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      ahead.prefetch(b, 0, columns_to_mass);
+      first_ahead.next();
+      second_ahead.next();
+      double* block = body.pool->block(cohort.blocks[b]);
+      const int used = used_lanes(cohort, b);
+      const BlockPlace place(frame, layout, block);
+      kick(body, place, corners, block, used, at);
+      std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
+      if (body.prescribed_velocity) {
+        move_as_prescribed(layout, dt, block);
+      } else {
+        move_with_grid(place, corners, layout, at.nodes.data(), dt, block);
+      }
+      book_motion(layout, block, used, at);
+      batch.blocks = 1;
+      batch.particles = used;
+      fastest = std::max(fastest, largest(batch, [&](int, int l) { return speed(layout, block, l); }));
+      note_leavers(s, c, b, frame, layout, block, used);
+    }
+  }
+  at.book_work();
+  return fastest;
 }
 
 void Passes::update_all() {
@@ -399,8 +495,7 @@ void Passes::update_all() {
     regularised_velocities(dt * forces_.gravity,
                            BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                            at.nodes.data());
-    stress_of_brick(s, Velocities::of_next_step, at);
-    move_brick(s, at);
+    stress_of_brick<true>(s, Velocities::of_next_step, at);
   });
 }
 

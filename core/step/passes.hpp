@@ -60,24 +60,37 @@ class Passes {
   struct alignas(128) Workplace {  // of one thread
     Batch batch;
     StepFindings found;
-    std::vector<double> nodes, sums;  ///< of the brick at hand: records of node_doubles
+    double work = 0;  ///< external, of the brick at hand
+    alignas(64) double before[3 * block_lanes];
+    BlockPlace places[batch_blocks];
+    AlignedDoubles nodes, sums;  ///< of the brick at hand: records of node_doubles, each a cache line
+    void book_work() {
+      if (work != 0) found.work.add(work);
+      work = 0;
+    }
   };
   template <class F>
   void for_bricks(int first, int last, F f);
 
   /// Sum the first array and move the nodes: `at.nodes` as grid_to_particles.hpp describes.
   void move_nodes(Slot s, Workplace& at);
-  template <Mapped what>
-  void map_brick(Slot s);
+  /// before(body, place, corners, block, used) for every block, then its share of the nodes.
   template <Mapped what, class F>
-  void map_after(F work);
+  void map_brick(Slot s, F before);
+  template <Mapped what, class F>
+  void map_bricks(F work);
+  void kick(const Body& body, const BlockPlace& place, const CellCorners& corners, double* block, int used,
+            Workplace& at);
+  void hold_velocities(const Body& body, double* block, int used, Workplace& at);
+  void velocities_of_brick(Slot s, Workplace& at);
+  double kick_and_move(Slot s, Workplace& at);
   /// Whether the particles' velocities are already those with which the next step begins.
   enum class Velocities { of_last_step, of_next_step };
+  template <bool moves>
   void stress_of_brick(Slot s, Velocities velocities, Workplace& at);
-  double fastest_of_brick(Slot s, Workplace& at) const;
-  void velocities_of_brick(Slot s, Workplace& at);
-  void move_brick(Slot s, Workplace& at);
-  void hold_velocities(const Body& body, const Cohort& cohort, Workplace& at);
+  void book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const;
+  void note_leavers(Slot s, std::size_t cohort, std::size_t b, const BrickFrame& frame,
+                    const ColumnLayout& layout, const double* block, int used);
 
   Model& model_;
   Exchange& exchange_;

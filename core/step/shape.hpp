@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/grid/brick.hpp"
+#include "core/particles/columns.hpp"
 
 namespace mpm::core {
 
@@ -55,70 +56,57 @@ inline Located<T> locate(const BrickFrame& f, const double* x, const double* y, 
   return p;
 }
 
-/// The eight nodes of a cell, counted from its lowest: number i + 2 j + 4 k.
+/// Where the particles of a block lie: located once for everything that a pass does with them.
+struct BlockPlace {
+  alignas(64) double f[3][block_lanes];  ///< fractions of the cell's edges
+  int node[block_lanes];
+
+  BlockPlace() = default;
+  BlockPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+    find(frame, layout, block);
+  }
+  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+    const double* x = block + layout.offset(Column::position_x);
+    for (int l = 0; l < block_lanes; l += real_width) {
+      const auto p = locate<Real>(frame, x + l, x + block_lanes + l, x + 2 * block_lanes + l);
+      store(f[0] + l, p.fx);
+      store(f[1] + l, p.fy);
+      store(f[2] + l, p.fz);
+      for (int i = 0; i < real_width; ++i) node[l + i] = p.node[i];
+    }
+  }
+};
+
+/// The eight nodes of a cell, counted from its lowest: number i + 2 j + 4 k. In bricks without a halo, as
+/// these functions need it; so the compiler knows every distance.
 struct CellCorners {
-  int node[8];
-  int offset[8];  ///< in doubles, for node records of node_doubles
-  explicit CellCorners(int side) {
-    for (int n = 0; n < 8; ++n) {
-      node[n] = (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2));
-      offset[n] = node_doubles * node[n];
-    }
-  }
+  explicit CellCorners(int) {}
+  static constexpr int side = brick_cells + 1;
+  static constexpr int node(int n) { return (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2)); }
 };
 
-/// The eight corner values of one component, with the differences along x.
-struct CornerValues {
-  double a00, a10, a01, a11, d00, d10, d01, d11;  // indices: j, k
-  CornerValues(const double* lowest, const CellCorners& c)
-      : a00(lowest[c.offset[0]]),
-        a10(lowest[c.offset[2]]),
-        a01(lowest[c.offset[4]]),
-        a11(lowest[c.offset[6]]),
-        d00(lowest[c.offset[1]] - a00),
-        d10(lowest[c.offset[3]] - a10),
-        d01(lowest[c.offset[5]] - a01),
-        d11(lowest[c.offset[7]] - a11) {}
-};
+/// The trilinear fields of one cell, `n` neighbouring components of its node records at once, one per lane,
+/// as polynomials of the fractions x, y, z: c0 + c1 x + (c2 + c3 x) y + (c4 + c5 x + (c6 + c7 x) y) z.
+template <int n>
+struct CellFields {
+  using Components = Lanes<n>;
+  Components c[8];
+  int node;
 
-template <class T>
-inline T interpolate(const CornerValues& n, const Located<T>& p) {
-  const T a0 = T(n.a00) + p.fx * T(n.d00), a1 = T(n.a10) + p.fx * T(n.d10);
-  const T a2 = T(n.a01) + p.fx * T(n.d01), a3 = T(n.a11) + p.fx * T(n.d11);
-  const T b0 = a0 + p.fy * (a1 - a0), b1 = a2 + p.fy * (a3 - a2);
-  return b0 + p.fz * (b1 - b0);
-}
-
-/// Gradient with respect to the scaled coordinates (per cell, not per length).
-template <class T>
-inline Vec3<T> scaled_gradient(const CornerValues& n, const Located<T>& p) {
-  const T a0 = T(n.a00) + p.fx * T(n.d00), a1 = T(n.a10) + p.fx * T(n.d10);
-  const T a2 = T(n.a01) + p.fx * T(n.d01), a3 = T(n.a11) + p.fx * T(n.d11);
-  const T y0 = a1 - a0, y1 = a3 - a2;
-  const T b0 = a0 + p.fy * y0, b1 = a2 + p.fy * y1;
-  const T x0 = T(n.d00) + p.fy * T(n.d10 - n.d00), x1 = T(n.d01) + p.fy * T(n.d11 - n.d01);
-  return {x0 + p.fz * (x1 - x0), y0 + p.fz * (y1 - y0), b1 - b0};
-}
-
-/// f(node, mask) once for every distinct cell among the lanes: mask tells the lanes that lie in it.
-template <class T, class F>
-inline void for_each_cell(const Located<T>& p, F f) {
-  constexpr int width = LaneTraits<T>::width;
-  if constexpr (width == 1) {
-    f(p.node[0], true);
-  } else {
-    double node[width];
-    for (int i = 0; i < width; ++i) node[i] = p.node[i];
-    const T nodes = load<T>(node);
-    unsigned pending = (1u << width) - 1;
-    while (pending != 0) {
-      const int n = p.node[__builtin_ctz(pending)];
-      unsigned here = 0;
-      for (int i = 0; i < width; ++i) here |= static_cast<unsigned>(p.node[i] == n) << i;
-      f(n, nodes == T(double(n)));
-      pending &= ~here;
+  /// `nodes`: the first of the components at the brick's first node; `cell`: the cell's lowest node.
+  CellFields(int cell, const double* nodes, const CellCorners& corners) : node(cell) {
+    const double* lowest = nodes + node_doubles * cell;
+    for (int i = 0; i < 8; ++i) c[i] = load<Components>(lowest + node_doubles * corners.node(i));
+    for (int bit = 1; bit < 8; bit *= 2) {
+      for (int i = 0; i < 8; ++i) {
+        if (i & bit) c[i] -= c[i - bit];
+      }
     }
   }
-}
+  Components value(double x, double y, double z) const {
+    const Components X(x), Y(y), Z(z);
+    return c[0] + X * c[1] + Y * (c[2] + X * c[3]) + Z * (c[4] + X * c[5] + Y * (c[6] + X * c[7]));
+  }
+};
 
 }  // namespace mpm::core
