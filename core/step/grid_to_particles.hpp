@@ -15,10 +15,10 @@ namespace detail {
 /// The values of three neighbouring components at the block's particles, from `nodes` on.
 struct AtParticles {
   Lanes<8> value[4];
-  AtParticles(const BlockPlace& place, const CellCorners& corners, const double* nodes) {
+  AtParticles(const BlockPlace& place, const double* nodes) {
     Lanes<4> row[block_lanes];
     for (int i = 0; i < block_lanes;) {
-      const CellFields<4> cell(place.node[i], nodes, corners);
+      const CellFields<4> cell(place.node[i], nodes);
       do {
         row[i] = cell.value(place.f[0][i], place.f[1][i], place.f[2][i]);
       } while (++i < block_lanes && place.node[i] == cell.node);
@@ -29,9 +29,9 @@ struct AtParticles {
 }  // namespace detail
 
 /// v += sum S dv, from node components 4..6.
-inline void add_velocity_increment(const BlockPlace& place, const CellCorners& corners,
-                                   const ColumnLayout& layout, const double* nodes, double* block) {
-  const detail::AtParticles dv(place, corners, nodes + 4);
+inline void add_velocity_increment(const BlockPlace& place, const ColumnLayout& layout, const double* nodes,
+                                   double* block) {
+  const detail::AtParticles dv(place, nodes + 4);
   for (int a = 0; a < 3; ++a) {
     double* v = block + layout.offset(next(Column::velocity_x, a));
     store(v, load<Lanes<8>>(v) + dv.value[a]);
@@ -39,9 +39,9 @@ inline void add_velocity_increment(const BlockPlace& place, const CellCorners& c
 }
 
 /// x += dt sum S v, from node components 0..2.
-inline void move_with_grid(const BlockPlace& place, const CellCorners& corners, const ColumnLayout& layout,
-                           const double* nodes, double dt, double* block) {
-  const detail::AtParticles v(place, corners, nodes);
+inline void move_with_grid(const BlockPlace& place, const ColumnLayout& layout, const double* nodes,
+                           double dt, double* block) {
+  const detail::AtParticles v(place, nodes);
   for (int a = 0; a < 3; ++a) {
     double* x = block + layout.offset(next(Column::position_x, a));
     store(x, load<Lanes<8>>(x) + Lanes<8>(dt) * v.value[a]);
@@ -51,13 +51,12 @@ inline void move_with_grid(const BlockPlace& place, const CellCorners& corners, 
 /// Gradient of node components 4..6 at the block's particles into rows 0..8 (order of Mat3), columns `at` ..
 /// `at` + 7; where it moves, also x += dt sum S v from components 0..2.
 template <bool moves, class Rows>
-inline void strain(const BrickFrame& frame, const BlockPlace& place, const CellCorners& corners,
-                   const ColumnLayout& layout, const double* nodes, double dt, double* block, Rows& rows,
-                   int at) {
+inline void strain(const BrickFrame& frame, const BlockPlace& place, const ColumnLayout& layout,
+                   const double* nodes, double dt, double* block, Rows& rows, int at) {
   using R = Lanes<8>;
   R a[block_lanes], b[block_lanes];  // value 0..3 and d/dx of 4..7; d/dy and d/dz of 4..7
   for (int i = 0; i < block_lanes;) {
-    const CellFields<8> cell(place.node[i], nodes, corners);
+    const CellFields<8> cell(place.node[i], nodes);
     const auto& c = cell.c;
     do {
       const R x(place.f[0][i]), y(place.f[1][i]), z(place.f[2][i]);
@@ -86,10 +85,10 @@ inline void strain(const BrickFrame& frame, const BlockPlace& place, const CellC
 /// Volumetric strain of the cells that hold the block's particles: dt times the mean of div v over each cell,
 /// which for trilinear functions is its value at the centre; of node components 4..6.
 template <class Row>
-inline void cell_strain(const BrickFrame& frame, const BlockPlace& place, const CellCorners& corners,
-                        const double* nodes, double dt, Row& row, int at) {
+inline void cell_strain(const BrickFrame& frame, const BlockPlace& place, const double* nodes, double dt,
+                        Row& row, int at) {
   for (int i = 0; i < block_lanes;) {
-    const CellFields<4> cell(place.node[i], nodes + 4, corners);
+    const CellFields<4> cell(place.node[i], nodes + 4);
     const auto& c = cell.c;
     const Lanes<4> half(0.5), quarter(0.25);
     const Lanes<4> dx = c[1] + half * (c[3] + c[5]) + quarter * c[7],

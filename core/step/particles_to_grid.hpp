@@ -51,8 +51,7 @@ struct CellSums {
     xx = yx = zx = xy = yy = zy = xz = yz = zz = detail::Nodes(0.0);
   }
 
-  [[gnu::always_inline]] void flush(const BrickFrame& frame, const CellCorners& corners,
-                                    double* contributions) {
+  [[gnu::always_inline]] void flush(const BrickFrame& frame, double* contributions) {
     using N = detail::Nodes;
     if (node < 0) return;
     N r[8] = {px, py, pz, m, N(0.0), N(0.0), N(0.0), N(0.0)};
@@ -70,14 +69,14 @@ struct CellSums {
     if constexpr (width == 8) {
       transpose(r);
       for (int n = 0; n < 8; ++n) {
-        double* at = lowest + width * corners.node(n);
+        double* at = lowest + width * corner_node(n);
         store(at, load<Record>(at) + r[n]);
       }
     } else {
       transpose_half(r);
       for (int n = 0; n < 8; ++n) {
-        double* at = lowest + width * corners.node(n);
-        store(at, load<Record>(at) + half(r[n / 2], n % 2));
+        double* at = lowest + width * corner_node(n);
+        store(at, load<Record>(at) + half_of(r[n / 2], n % 2));
       }
     }
   }
@@ -85,10 +84,9 @@ struct CellSums {
 
 /// Add the first `used` particles of a block.
 template <Mapped what>
-[[gnu::always_inline]] inline void add_block(const BrickFrame& frame, const CellCorners& corners,
-                                             const BlockPlace& place, const ColumnLayout& layout,
-                                             const double* block, int used, CellSums<what>& running,
-                                             double* contributions) {
+[[gnu::always_inline]] inline void add_block(const BrickFrame& frame, const BlockPlace& place,
+                                             const ColumnLayout& layout, const double* block, int used,
+                                             CellSums<what>& running, double* contributions) {
   using N = detail::Nodes;
   CellSums<what> sums = running;  // a local of its own stays in registers
   const auto col = [&](Column c) { return block + layout.offset(c); };
@@ -113,7 +111,7 @@ template <Mapped what>
   const N sign_x = detail::sign_x(), sign_y = detail::sign_y(), sign_z = detail::sign_z();
   for (int i = 0; i < used; ++i) {
     if (place.node[i] != sums.node) {
-      sums.flush(frame, corners, contributions);
+      sums.flush(frame, contributions);
       sums.clear();
       sums.node = place.node[i];
     }

@@ -66,6 +66,23 @@ std::size_t blocks_of(const Brick& brick) {
   return n;
 }
 
+/// Asks for the room into which the next brick's contributions will go, a few lines at a time.
+class RoomAhead {
+ public:
+  RoomAhead(double* room, int doubles, std::size_t calls)
+      : next_(room), last_(room == nullptr ? nullptr : room + doubles) {
+    step_ = (doubles / block_lanes + static_cast<int>(calls)) / std::max<int>(static_cast<int>(calls), 1);
+  }
+  [[gnu::always_inline]] void next() {
+    for (int i = 0; i < step_ && next_ < last_; ++i, next_ += block_lanes) __builtin_prefetch(next_, 1, 2);
+  }
+
+ private:
+  double* next_;
+  double* last_;
+  int step_;
+};
+
 int used_lanes(const Cohort& cohort, std::size_t b) {
   return static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
 }
@@ -123,27 +140,35 @@ void Passes::map_brick(Slot s, F before) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
-  const CellCorners corners(grid.shape().side());
   double* contributions = grid.contributions(array_of(what), s);
   std::fill_n(contributions, record_doubles(array_of(what)) * grid.shape().nodes(), 0.0);
+  RoomAhead room(s + 1 < grid.owned() ? grid.contributions(array_of(what), s + 1) : nullptr,
+                 record_doubles(array_of(what)) * grid.shape().nodes(), blocks_of(brick));
   CellSums<what> sums;
   sums.clear();
   for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
     const Cohort& cohort = brick.cohorts[c];
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     const BlocksAhead ahead(model_, s, c);
+    const ColumnLayout& layout = body.pool->layout();
+    // The next block is located before this one is worked on: what was stored is then there when it is read.
+    BlockPlace places[2];
+    if (!cohort.blocks.empty()) places[0].find(frame, layout, body.pool->block(cohort.blocks[0]));
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       if constexpr (what == Mapped::momentum_mass_force) ahead.prefetch(b, 0, columns_to_stress);
       if constexpr (what == Mapped::momentum_mass || what == Mapped::momentum)
         ahead.prefetch(b, 0, columns_to_mass);
+      room.next();
       double* block = body.pool->block(cohort.blocks[b]);
       const int used = used_lanes(cohort, b);
-      const BlockPlace place(frame, body.pool->layout(), block);
-      before(body, place, corners, block, used);
-      add_block<what>(frame, corners, place, body.pool->layout(), block, used, sums, contributions);
+      if (b + 1 < cohort.blocks.size())
+        places[(b + 1) % 2].find(frame, layout, body.pool->block(cohort.blocks[b + 1]));
+      const BlockPlace& place = places[b % 2];
+      before(body, place, block, used);
+      add_block<what>(frame, place, layout, block, used, sums, contributions);
     }
   }
-  sums.flush(frame, corners, contributions);
+  sums.flush(frame, contributions);
 }
 
 namespace {
@@ -169,7 +194,7 @@ void Passes::map_bricks(F work) {
 }
 
 namespace {
-constexpr auto as_they_are = [](const Body&, const BlockPlace&, const CellCorners&, double*, int) {};
+constexpr auto as_they_are = [](const Body&, const BlockPlace&, double*, int) {};
 }
 
 template <Mapped what>
@@ -215,9 +240,8 @@ void Passes::hold_velocities(const Body& body, double* block, int used, Workplac
   }
 }
 
-void Passes::kick(const Body& body, const BlockPlace& place, const CellCorners& corners, double* block,
-                  int used, Workplace& at) {
-  add_velocity_increment(place, corners, body.pool->layout(), at.nodes.data(), block);
+void Passes::kick(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
+  add_velocity_increment(place, body.pool->layout(), at.nodes.data(), block);
   if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
     hold_velocities(body, block, used, at);
   }
@@ -227,7 +251,6 @@ void Passes::kick(const Body& body, const BlockPlace& place, const CellCorners& 
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
-  const CellCorners corners(grid.shape().side());
   for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
     const Cohort& cohort = brick.cohorts[c];
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
@@ -235,7 +258,7 @@ void Passes::kick(const Body& body, const BlockPlace& place, const CellCorners& 
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       ahead.prefetch(b, 0, columns_to_mass);
       double* block = body.pool->block(cohort.blocks[b]);
-      kick(body, BlockPlace(frame, body.pool->layout(), block), corners, block, used_lanes(cohort, b), at);
+      kick(body, BlockPlace(frame, body.pool->layout(), block), block, used_lanes(cohort, b), at);
     }
   }
   at.book_work();
@@ -274,7 +297,6 @@ template <bool moves>
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
-  const CellCorners corners(grid.shape().side());
   Batch& batch = at.batch;
   batch.time = model_.clock.time + dt;
   batch.dt = dt;
@@ -298,8 +320,6 @@ template <bool moves>
       for (int b = 0; b < batch.blocks; ++b) {
         batch.block[b] = pool.block(cohort.blocks[first + static_cast<std::size_t>(b)]);
         at.places[b].find(frame, layout, batch.block[b]);
-        for (int column = 3; column < layout.columns(); ++column)
-          __builtin_prefetch(batch.block[b] + block_lanes * column, 1, 3);
       }
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
@@ -309,16 +329,14 @@ template <bool moves>
         double* block = batch.block[b];
         const BlockPlace& place = at.places[b];
         if (by_cells) {
-          cell_strain(frame, place, corners, at.nodes.data(), dt, batch.cell_volumetric_strain,
-                      block_lanes * b);
+          cell_strain(frame, place, at.nodes.data(), dt, batch.cell_volumetric_strain, block_lanes * b);
         }
         if constexpr (!moves) {
-          strain<false>(frame, place, corners, layout, at.nodes.data(), dt, block, batch.gradient,
-                        block_lanes * b);
+          strain<false>(frame, place, layout, at.nodes.data(), dt, block, batch.gradient, block_lanes * b);
         } else {
           std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
-          strain<true>(frame, place, corners, layout, at.nodes.data(), body.prescribed_velocity ? 0.0 : dt,
-                       block, batch.gradient, block_lanes * b);
+          strain<true>(frame, place, layout, at.nodes.data(), body.prescribed_velocity ? 0.0 : dt, block,
+                       batch.gradient, block_lanes * b);
           if (body.prescribed_velocity) move_as_prescribed(layout, dt, block);
           book_motion(layout, block, used_lanes(cohort, at_block), at);
         }
@@ -394,10 +412,9 @@ void Passes::update_velocities_and_map_back() {
     move_nodes(s, at);
     ContributionsAhead<NodeArray::first> ahead(*model_.grid, shared_, s + 1,
                                                blocks_of(model_.grid->brick(s)));
-    map_brick<Mapped::momentum>(s, [&](const Body& body, const BlockPlace& place, const CellCorners& corners,
-                                       double* block, int used) {
+    map_brick<Mapped::momentum>(s, [&](const Body& body, const BlockPlace& place, double* block, int used) {
       ahead.next();
-      kick(body, place, corners, block, used, at);
+      kick(body, place, block, used, at);
     });
     at.book_work();
   });
@@ -451,7 +468,6 @@ void Passes::update_velocities_and_move() {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
-  const CellCorners corners(grid.shape().side());
   ContributionsAhead<NodeArray::first> first_ahead(grid, shared_, s + 1, blocks_of(brick));
   ContributionsAhead<NodeArray::second> second_ahead(grid, shared_, s + 1, blocks_of(brick));
   double fastest = 0;
@@ -468,12 +484,12 @@ void Passes::update_velocities_and_move() {
       double* block = body.pool->block(cohort.blocks[b]);
       const int used = used_lanes(cohort, b);
       const BlockPlace place(frame, layout, block);
-      kick(body, place, corners, block, used, at);
+      kick(body, place, block, used, at);
       std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
       if (body.prescribed_velocity) {
         move_as_prescribed(layout, dt, block);
       } else {
-        move_with_grid(place, corners, layout, at.nodes.data(), dt, block);
+        move_with_grid(place, layout, at.nodes.data(), dt, block);
       }
       book_motion(layout, block, used, at);
       batch.blocks = 1;

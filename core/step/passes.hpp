@@ -74,13 +74,12 @@ class Passes {
 
   /// Sum the first array and move the nodes: `at.nodes` as grid_to_particles.hpp describes.
   void move_nodes(Slot s, Workplace& at);
-  /// before(body, place, corners, block, used) for every block, then its share of the nodes.
+  /// before(body, place, block, used) for every block, then its share of the nodes.
   template <Mapped what, class F>
   void map_brick(Slot s, F before);
   template <Mapped what, class F>
   void map_bricks(F work);
-  void kick(const Body& body, const BlockPlace& place, const CellCorners& corners, double* block, int used,
-            Workplace& at);
+  void kick(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
   void hold_velocities(const Body& body, double* block, int used, Workplace& at);
   void velocities_of_brick(Slot s, Workplace& at);
   double kick_and_move(Slot s, Workplace& at);

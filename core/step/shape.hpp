@@ -77,13 +77,12 @@ struct BlockPlace {
   }
 };
 
-/// The eight nodes of a cell, counted from its lowest: number i + 2 j + 4 k. In bricks without a halo, as
-/// these functions need it; so the compiler knows every distance.
-struct CellCorners {
-  explicit CellCorners(int) {}
-  static constexpr int side = brick_cells + 1;
-  static constexpr int node(int n) { return (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2)); }
-};
+/// Node number `n` = i + 2 j + 4 k of a cell, counted from its lowest node. Of bricks without a halo, as
+/// these functions have them: so the compiler knows every distance.
+constexpr int corner_node(int n) {
+  constexpr int side = brick_cells + 1;
+  return (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2));
+}
 
 /// The trilinear fields of one cell, `n` neighbouring components of its node records at once, one per lane,
 /// as polynomials of the fractions x, y, z: c0 + c1 x + (c2 + c3 x) y + (c4 + c5 x + (c6 + c7 x) y) z.
@@ -94,9 +93,9 @@ struct CellFields {
   int node;
 
   /// `nodes`: the first of the components at the brick's first node; `cell`: the cell's lowest node.
-  CellFields(int cell, const double* nodes, const CellCorners& corners) : node(cell) {
+  CellFields(int cell, const double* nodes) : node(cell) {
     const double* lowest = nodes + node_doubles * cell;
-    for (int i = 0; i < 8; ++i) c[i] = load<Components>(lowest + node_doubles * corners.node(i));
+    for (int i = 0; i < 8; ++i) c[i] = load<Components>(lowest + node_doubles * corner_node(i));
     for (int bit = 1; bit < 8; bit *= 2) {
       for (int i = 0; i < 8; ++i) {
         if (i & bit) c[i] -= c[i - bit];

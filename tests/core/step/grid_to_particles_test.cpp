@@ -54,52 +54,65 @@ double interpolated(const TransferCase& c, const std::vector<double>& nodes, con
 
 TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {1, 0, 1}, {2, 2, 2}}) {
-    for (const int halo : {0, 1}) {
-      TransferCase c(brick, halo, 150, 11);
-      const std::vector<double> nodes = random_records(c.shape, 3);
-      const CellCorners corners(c.shape.side());
-      const double dt = 0.03;
-      double worst = 0;
-      over(
-          c,
-          [&](double* block) {
-            add_velocity_increment(c.frame(), corners, c.pool.layout(), nodes.data(), block);
-          },
-          [&](const std::vector<double>& p, const double* block, int lane) {
-            for (int a = 0; a < 3; ++a) {
-              const double v = p[static_cast<std::size_t>(3 + a)] + interpolated(c, nodes, p, 4 + a);
-              worst = std::max(worst, std::abs(block[block_lanes * (3 + a) + lane] - v));
-            }
-          });
-      CHECK(worst < tolerance);
-      worst = 0;
-      over(
-          c,
-          [&](double* block) {
-            move_with_grid(c.frame(), corners, c.pool.layout(), nodes.data(), dt, block);
-          },
-          [&](const std::vector<double>& p, const double* block, int lane) {
-            for (int a = 0; a < 3; ++a) {
-              const double x = p[static_cast<std::size_t>(a)] + dt * interpolated(c, nodes, p, a);
-              worst = std::max(worst, std::abs(block[block_lanes * a + lane] - x));
-            }
-          });
-      CHECK(worst < 20 * tolerance);  // coordinates reach 20
-    }
+    TransferCase c(brick, 150, 11);
+    const std::vector<double> nodes = random_records(c.shape, 3);
+    const double dt = 0.03;
+    double worst = 0;
+    over(
+        c,
+        [&](double* block) {
+          add_velocity_increment(c.block_place(block), c.pool.layout(), nodes.data(), block);
+        },
+        [&](const std::vector<double>& p, const double* block, int lane) {
+          for (int a = 0; a < 3; ++a) {
+            const double v = p[static_cast<std::size_t>(3 + a)] + interpolated(c, nodes, p, 4 + a);
+            worst = std::max(worst, std::abs(block[block_lanes * (3 + a) + lane] - v));
+          }
+        });
+    CHECK(worst < tolerance);
+    worst = 0;
+    over(
+        c,
+        [&](double* block) {
+          move_with_grid(c.block_place(block), c.pool.layout(), nodes.data(), dt, block);
+        },
+        [&](const std::vector<double>& p, const double* block, int lane) {
+          for (int a = 0; a < 3; ++a) {
+            const double x = p[static_cast<std::size_t>(a)] + dt * interpolated(c, nodes, p, a);
+            worst = std::max(worst, std::abs(block[block_lanes * a + lane] - x));
+          }
+        });
+    CHECK(worst < 20 * tolerance);  // coordinates reach 20
+    worst = 0;
+    TransferCase again(brick, 150, 11);
+    Gradients unused;
+    over(
+        again,
+        [&](double* block) {
+          strain<true>(again.frame(), again.block_place(block), again.pool.layout(), nodes.data(), dt, block,
+                       unused.row, 0);
+        },
+        [&](const std::vector<double>& p, const double* block, int lane) {
+          for (int a = 0; a < 3; ++a) {
+            const double x = p[static_cast<std::size_t>(a)] + dt * interpolated(c, nodes, p, a);
+            worst = std::max(worst, std::abs(block[block_lanes * a + lane] - x));
+          }
+        });
+    CHECK(worst < 20 * tolerance);
   }
 }
 
 TEST_CASE("Velocity gradients are a plain loop's") {
   for (const BrickCoord brick : {BrickCoord{1, 0, 1}, {2, 2, 2}}) {
-    TransferCase c(brick, 0, 150, 12);
+    TransferCase c(brick, 150, 12);
     const std::vector<double> nodes = random_records(c.shape, 4);
-    const CellCorners corners(c.shape.side());
     Gradients second;
     double worst = 0;
     over(
         c,
-        [&](const double* block) {
-          velocity_gradient(c.frame(), corners, c.pool.layout(), nodes.data(), block, second.row, 0);
+        [&](double* block) {
+          strain<false>(c.frame(), c.block_place(block), c.pool.layout(), nodes.data(), 0, block, second.row,
+                        0);
         },
         [&](const std::vector<double>& p, const double*, int lane) {
           double l[9] = {};
@@ -118,7 +131,7 @@ TEST_CASE("Velocity gradients are a plain loop's") {
 TEST_CASE(
     "Constant and linear velocity fields come out exactly, in the cell, on its faces, edges and corners") {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {2, 2, 2}}) {
-    TransferCase c(brick, 0, 150, 13);
+    TransferCase c(brick, 150, 13);
     const double constant[3] = {3, -2, 0.5}, linear[3][3] = {{1, -2, 3}, {0.5, 4, -1}, {-3, 2, 0.25}};
     const int first[3] = {brick_cells * brick.x, brick_cells * brick.y, brick_cells * brick.z};
     std::vector<double> nodes(static_cast<std::size_t>(node_doubles * c.shape.nodes()));
@@ -134,16 +147,16 @@ TEST_CASE(
         }
       }
     }
-    const CellCorners corners(c.shape.side());
     Gradients g;
     Row strain;
     double worst_v = 0, worst_g = 0, worst_strain = 0;
     over(
         c,
         [&](double* block) {
-          velocity_gradient(c.frame(), corners, c.pool.layout(), nodes.data(), block, g.row, 0);
-          cell_strain(c.frame(), corners, c.pool.layout(), nodes.data(), 0.01, block, strain, 0);
-          add_velocity_increment(c.frame(), corners, c.pool.layout(), nodes.data(), block);
+          mpm::core::strain<false>(c.frame(), c.block_place(block), c.pool.layout(), nodes.data(), 0, block,
+                                   g.row, 0);
+          cell_strain(c.frame(), c.block_place(block), nodes.data(), 0.01, strain, 0);
+          add_velocity_increment(c.block_place(block), c.pool.layout(), nodes.data(), block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -164,16 +177,13 @@ TEST_CASE(
 }
 
 TEST_CASE("The cell's strain is that of its middle, the same for all its particles") {
-  TransferCase c({1, 0, 1}, 0, 150, 14);
+  TransferCase c({1, 0, 1}, 150, 14);
   const std::vector<double> nodes = random_records(c.shape, 9);
-  const CellCorners corners(c.shape.side());
   Row strain;
   double worst = 0;
   over(
       c,
-      [&](const double* block) {
-        cell_strain(c.frame(), corners, c.pool.layout(), nodes.data(), 1, block, strain, 0);
-      },
+      [&](const double* block) { cell_strain(c.frame(), c.block_place(block), nodes.data(), 1, strain, 0); },
       [&](const std::vector<double>& p, const double*, int lane) {
         const TransferCase::Place at = c.place(p);
         double sum = 0;  // of the differences across the cell, each averaged over four edges
@@ -191,7 +201,7 @@ TEST_CASE("The cell's strain is that of its middle, the same for all its particl
 }
 
 TEST_CASE("Lanes outside the brick are found, lanes out of use are not") {
-  TransferCase c({1, 1, 1}, 0, 8, 15);
+  TransferCase c({1, 1, 1}, 8, 15);
   double* block = c.pool.block(c.cohort.blocks[0]);
   const auto put = [&](int lane, int axis, double cells) {
     block[block_lanes * axis + lane] = c.geometry.origin[axis] + c.geometry.cell[axis] * cells;

@@ -18,15 +18,14 @@ template <Mapped what>
 std::vector<double> mapped(const TransferCase& c) {
   constexpr int width = record_doubles(array_of(what));
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
-  const CellCorners corners(c.shape.side());
   CellSums<what> sums;
   sums.clear();
   for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
     const int used = static_cast<int>(std::min<std::size_t>(block_lanes, c.cohort.count - block_lanes * b));
-    add_block<what>(c.frame(), corners, c.pool.layout(), c.pool.block(c.cohort.blocks[b]), used, sums,
-                    nodes.data());
+    const double* block = c.pool.block(c.cohort.blocks[b]);
+    add_block<what>(c.frame(), c.block_place(block), c.pool.layout(), block, used, sums, nodes.data());
   }
-  sums.flush(nodes.data(), corners);
+  sums.flush(c.frame(), nodes.data());
   return nodes;
 }
 
@@ -70,7 +69,7 @@ TEST_CASE("All that is mapped to the nodes is what a plain loop maps") {
     for (const int halo : {0, 1}) {
       for (const int count : {0, 1, 7, 8, 9, 200}) {
         INFO("brick " << brick.x << brick.y << brick.z << ", halo " << halo << ", particles " << count);
-        const TransferCase c(brick, halo, count, 7u * static_cast<unsigned>(count) + 1);
+        const TransferCase c(brick, count, 7u * static_cast<unsigned>(count) + 1);
         compare<Mapped::momentum_mass_force>(c);
         compare<Mapped::momentum_mass>(c);
         compare<Mapped::momentum>(c);
@@ -81,7 +80,7 @@ TEST_CASE("All that is mapped to the nodes is what a plain loop maps") {
 }
 
 TEST_CASE("The nodes get all the mass and momentum there is, and forces that balance each other") {
-  const TransferCase c({1, 1, 1}, 0, 333, 5);
+  const TransferCase c({1, 1, 1}, 333, 5);
   const std::vector<double> nodes = mapped<Mapped::momentum_mass_force>(c);
   double sum[8] = {}, size[8] = {}, all[4] = {};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -99,7 +98,7 @@ TEST_CASE("The nodes get all the mass and momentum there is, and forces that bal
 }
 
 TEST_CASE("Lanes out of use add nothing, whatever is in them") {
-  TransferCase c({1, 0, 1}, 0, 11, 6);
+  TransferCase c({1, 0, 1}, 11, 6);
   const std::vector<double> before = mapped<Mapped::momentum_mass_force>(c);
   double* block = c.pool.block(c.cohort.blocks[1]);
   for (int column = 0; column < c.pool.layout().columns(); ++column) {

@@ -30,7 +30,7 @@ struct TransferCase {
   core::Cohort cohort;
   std::vector<std::vector<double>> particles;  ///< their columns, in the order of ColumnSet::mechanics()
 
-  TransferCase(core::BrickCoord b, int halo, int count, unsigned seed) : shape{halo}, brick(b) {
+  TransferCase(core::BrickCoord b, int count, unsigned seed) : brick(b) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (int n = 0; n < count; ++n) {
@@ -54,6 +54,7 @@ struct TransferCase {
   }
 
   core::BrickFrame frame() const { return {geometry, shape, brick}; }
+  core::BlockPlace block_place(const double* block) const { return {frame(), pool.layout(), block}; }
 
   /// Scaled position in the brick, cell and fraction; a point that round-off puts below its brick is in its
   /// first cell.
