@@ -26,7 +26,10 @@ int main(int argc, char** argv) {
     return apps::run(options, world);
   } catch (const core::InputErrors& e) {
     return failed(e, apps::input_error);
-  } catch (const io::FileError& e) { return failed(e, apps::file_error); } catch (const std::exception& e) {
+  } catch (const io::FileError& e) { return failed(e, apps::file_error); } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "rank %d: out of memory: use a larger dp, or more machines\n", world.rank());
+    parallel::abort(1);
+  } catch (const std::exception& e) {
     // A bug, or memory that is gone, on one rank perhaps: the others must not wait for it.
     std::fprintf(stderr, "rank %d: %s\n", world.rank(), e.what());
     parallel::abort(1);

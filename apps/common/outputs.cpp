@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -55,6 +56,14 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
     if (from) history = {model.clock.step, from->tracked};
     history_.emplace(stem_ + "_curv.dat", model, history, exchange);
   }
+  std::set<std::string> absent;
+  const auto say_absent = [&](const std::vector<std::string>& names) {
+    for (const std::string& notice : io::absence_notices(io::variables_of(names), model))
+      absent.insert(notice);
+  };
+  for (const auto& history : out.histories) say_absent(history.variables);
+  if (out.post_processing) say_absent(out.post_processing->variables);
+  for (const std::string& notice : absent) log_.note("note       {}", notice);
   if (!out.post_processing) return;
   const core::PostProcessingInput& post = *out.post_processing;
   const auto variables = io::variables_of(post.variables);

@@ -13,6 +13,8 @@
 #include "core/step/migration.hpp"
 #include "core/step/passes.hpp"
 #include "core/step/stepper.hpp"
+#include "core/step/totals.hpp"
+#include "core/threads.hpp"
 
 namespace mpm::core {
 
@@ -181,15 +183,14 @@ void deal_out(Model& model, const std::vector<std::unique_ptr<SeedSource>>& sour
 /// Cohorts in the order of cells and, within a cell, of identities, however they arrived.
 void settle(Model& model) {
   BrickGrid& grid = *model.grid;
-#pragma omp parallel for schedule(dynamic, 4)
-  for (int s = 0; s < grid.owned(); ++s) {
+  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
     Brick& brick = grid.brick(static_cast<Slot>(s));
     for (Cohort& cohort : brick.cohorts) {
       BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
       sort_by_identity(pool, cohort);
       sort_by_cell(grid, brick.coord, pool, cohort);
     }
-  }
+  });
 }
 
 /// f(batch) for every batch of this rank's particles, with positions, masses and volumes in place.
@@ -327,26 +328,21 @@ void discretise(Model& model, Exchange& exchange) {
 
 void start_clock(Model& model, Exchange& exchange) {
   double fastest = 0;
-  ExactSum energy;
   for_each_batch(model, [&](Body& body, Batch& batch) {
     body.model->initialise(batch, model.options);
-    const ColumnLayout& layout = *batch.layout;
+    const int velocity_at = batch.layout->offset(Column::velocity_x);
     for (int i = 0; i < batch.particles; ++i) {
-      const double* lane = batch.block[i / block_lanes] + i % block_lanes;
-      const double* v = lane + layout.offset(Column::velocity_x);
+      const double* v = batch.block[i / block_lanes] + velocity_at + i % block_lanes;
       const double vv =
           v[0] * v[0] + v[block_lanes] * v[block_lanes] + v[2 * block_lanes] * v[2 * block_lanes];
-      const double m = lane[layout.offset(Column::mass)];
       fastest = std::max(fastest, batch.critical_speed[i] + std::sqrt(vv));
-      energy.add(0.5 * m * vv);
-      energy.add(lane[layout.offset(Column::internal_energy)] * m / body.model->reference_density());
     }
   });
   double critical[1] = {critical_step(*model.grid, fastest)};
   exchange.minimum(critical);
-  exchange.sum(std::span<ExactSum>(&energy, 1));
-  model.initial_energy = energy.value();
   model.clock.critical_dt = model.clock.first_critical_dt = critical[0];
+  const Totals totals = compute_totals(model, exchange);
+  model.initial_energy = totals.kinetic + totals.internal;
 }
 
 }  // namespace mpm::core

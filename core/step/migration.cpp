@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "core/threads.hpp"
+
 namespace mpm::core {
 
 namespace {
@@ -167,11 +169,14 @@ void Migration::collect(std::vector<std::vector<Leaver>>& leavers) {
   wanted_.clear();
   left_now_ = 0;
   first_left_ = complaint_ = {};
-#pragma omp parallel for schedule(dynamic, 16) num_threads(static_cast <int>(harvests_.size()))
-  for (std::size_t s = 0; s < leavers.size(); ++s) {
-    if (leavers[s].empty()) continue;
-    collect_from(static_cast<Slot>(s), leavers[s], harvests_[static_cast<std::size_t>(omp_get_thread_num())]);
-  }
+  for_each_by_threads(
+      std::size_t{0}, leavers.size(), 16,
+      [&](std::size_t s) {
+        if (leavers[s].empty()) return;
+        collect_from(static_cast<Slot>(s), leavers[s],
+                     harvests_[static_cast<std::size_t>(omp_get_thread_num())]);
+      },
+      static_cast<int>(harvests_.size()));
   for (Harvest& h : harvests_) merge(h);
 }
 
@@ -209,14 +214,13 @@ void insert_travellers(Model& model, const Travellers& travellers) {
     if (i == 0 || arrivals[i].slot != arrivals[i - 1].slot) groups.push_back(i);
   }
   groups.push_back(arrivals.size());
-#pragma omp parallel for schedule(dynamic, 16)
-  for (std::size_t g = 0; g < groups.size() - 1; ++g) {
+  for_each_by_threads(std::size_t{0}, groups.size() - 1, 16, [&](std::size_t g) {
     for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
       const Arrival& a = arrivals[i];
       append(*model.bodies[static_cast<std::size_t>(a.body)].pool,
              cohort_of(model.grid->brick(a.slot), a.body), &travellers.columns[travellers.offsets[a.index]]);
     }
-  }
+  });
 }
 
 void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort) {
@@ -262,13 +266,12 @@ void sort_by_identity(BlockPool& pool, Cohort& cohort) {
 
 void Migration::tidy() {
   BrickGrid& grid = *model_.grid;
-#pragma omp parallel for schedule(dynamic, 4)
-  for (int s = 0; s < grid.owned(); ++s) {
+  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
     Brick& brick = grid.brick(static_cast<Slot>(s));
     for (Cohort& cohort : brick.cohorts) {
       sort_by_cell(grid, brick.coord, *model_.bodies[static_cast<std::size_t>(cohort.body)].pool, cohort);
     }
-  }
+  });
   std::vector<BrickCoord> empty;
   for (const Brick& b : grid.bricks()) {
     if (b.cohorts.empty()) empty.push_back(b.coord);

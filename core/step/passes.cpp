@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include "core/simd/denormals.hpp"
+#include "core/threads.hpp"
 
 namespace mpm::core {
 
@@ -128,9 +129,10 @@ Passes::Passes(Model& model, Exchange& exchange)
 
 template <class F>
 void Passes::for_bricks(int first, int last, F f) {
-#pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast <int>(workplaces_.size()))
-  for (int s = first; s < last; ++s)
-    f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]);
+  for_each_by_threads(
+      first, last, 4,
+      [&](int s) { f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]); },
+      static_cast<int>(workplaces_.size()));
 }
 
 // --- particles to grid ------------------------------------------------------------------------------------

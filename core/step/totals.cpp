@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/threads.hpp"
+
 namespace mpm::core {
 
 namespace {
@@ -100,17 +102,14 @@ void add_block(const ColumnLayout& layout, const double* block, int used, double
 }
 
 /// f(brick, own partial result) over this rank's bricks by all threads; partial results are merged into
-/// `out`.
+/// `out`, which begins without any.
 template <class P, class F>
 void over_bricks(const Model& model, P& out, F f) {
-  const int bricks = model.grid->owned();
-  const P none = out;
-#pragma omp parallel
-  {
-    P mine = none;
-#pragma omp for schedule(dynamic, 16) nowait
-    for (int s = 0; s < bricks; ++s) f(model.grid->brick(s), mine);
-#pragma omp critical(mpm_totals)
+  std::vector<P> partial(static_cast<std::size_t>(omp_get_max_threads()), out);
+  for_each_by_threads(0, model.grid->owned(), 16, [&](int s) {
+    f(model.grid->brick(s), partial[static_cast<std::size_t>(omp_get_thread_num())]);
+  });
+  for (const P& mine : partial) {
     for (std::size_t i = 0; i < out.size(); ++i) out[i].merge(mine[i]);
   }
 }

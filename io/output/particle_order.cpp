@@ -4,6 +4,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "core/threads.hpp"
 #include "io/output/hash.hpp"
 
 namespace mpm::io {
@@ -40,19 +41,15 @@ void collect(const core::Model& model, std::vector<CohortRecord>& records, std::
 
 void add_hashes(const core::Model& model, const std::vector<CohortPlace>& places,
                 std::vector<CohortRecord>& records) {
-#pragma omp parallel
-  {
-    std::vector<double> rows;
-#pragma omp for schedule(dynamic, 8)
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const core::Cohort& cohort =
-          model.grid->brick(places[i].slot).cohorts[static_cast<std::size_t>(places[i].cohort)];
-      const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
-      rows.clear();
-      append_rows(pool, cohort, rows);
-      records[i].hash = hash_of(records[i], rows.data(), pool.layout().columns());
-    }
-  }
+  core::for_each_by_threads(std::size_t{0}, places.size(), 8, [&](std::size_t i) {
+    thread_local std::vector<double> rows;
+    const core::Cohort& cohort =
+        model.grid->brick(places[i].slot).cohorts[static_cast<std::size_t>(places[i].cohort)];
+    const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    rows.clear();
+    append_rows(pool, cohort, rows);
+    records[i].hash = hash_of(records[i], rows.data(), pool.layout().columns());
+  });
 }
 
 std::vector<CohortRecord> all_records(const std::vector<CohortRecord>& mine, core::Exchange& exchange) {

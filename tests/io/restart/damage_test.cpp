@@ -45,7 +45,7 @@ std::vector<std::string> files_in(const Folder& folder) {
 }
 
 void wait_for(const std::string& path) {
-  for (int i = 0; i < 3000 && !std::filesystem::exists(path); ++i) ::usleep(10000);
+  for (int i = 0; i < 20000 && !std::filesystem::exists(path); ++i) ::usleep(10000);
 }
 
 }  // namespace
@@ -191,7 +191,7 @@ TEST_CASE("A run that is killed while it writes leaves the earlier file") {
   const Folder folder("restart_killed");
   core::SoloExchange solo;
   io::write_restart(folder.path(), "small", at_step(solo, 1), {}, solo);
-  const core::Model model = at_step(solo, 2, 20000);
+  const core::Model model = at_step(solo, 2, 5000);
   std::optional<std::string> found;
   for (int i = 0; i < 20; ++i) {
     const pid_t child = fork();
