@@ -133,7 +133,7 @@ class Run {
       return done;
     }
     outputs_.emplace(options_.output_dir, model_, exchange_, continuation_, *log_);
-    watch_.emplace(*case_.scene);
+    watch_.emplace(*case_.scene, model_.clock.time);
     restart_ = Interval(case_.scene->output.restart_interval.value_or(0), model_.clock.time);
     const double loop_start = clock_.seconds();
     ExitCode code = done;

@@ -30,8 +30,27 @@ core::Witness first_with_negative_energy(const core::Model& model) {
 
 }  // namespace
 
+Watch::Watch(const core::Scene& scene, double time) : warn_(scene.solution.warn), scene_(scene) {
+  const auto note = [&](const auto& points, const std::string& body, const char* load) {
+    if (!points.empty() && points.back().time >= time)
+      load_ends_.emplace(points.back().time, fmt::format("{} of body \"{}\"", load, body));
+  };
+  for (const core::ComponentInput& component : scene.components) {
+    for (const core::BodyInput& body : component.bodies) {
+      if (body.prescribed_acceleration)
+        note(body.prescribed_acceleration->points, body.name, "PrescribedAcceleration");
+      for (const core::SurfaceLoad& load : body.surface_loads) note(load.points, body.name, "Traction");
+    }
+  }
+}
+
 void Watch::after_step(const core::Model& model, const core::Stepper::Incidents& mine,
                        core::Exchange& exchange, io::Log& log) {
+  for (; !load_ends_.empty() && load_ends_.begin()->first < model.clock.time;
+       load_ends_.erase(load_ends_.begin())) {
+    log.warn("time {:.6g}: the last Coefficient of {} has passed, its load is zero from now on",
+             model.clock.time, load_ends_.begin()->second);
+  }
   if (!warn_.negative_internal_energy && !warn_.negative_volume && !warn_.outside_grid) return;
   std::int64_t counts[3] = {warn_.negative_internal_energy ? mine.events.negative_energy : 0,
                             warn_.negative_volume ? mine.events.negative_volume : 0,

@@ -1,6 +1,8 @@
-// The scene's guards: Warn, EnergyFraction, near_boundary_stop. Only those that it asks for cost anything.
+// The scene's guards: Warn, EnergyFraction, near_boundary_stop, loads that end. Only those that it asks for
+// cost anything.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -13,7 +15,8 @@ namespace mpm::apps {
 
 class Watch {
  public:
-  explicit Watch(const core::Scene& scene) : warn_(scene.solution.warn), scene_(scene) {}
+  /// `time`: of the run's start.
+  Watch(const core::Scene& scene, double time);
 
   /// Warnings of the step just done. Throws core::NumericalFailure at level 2, on every rank. Collective.
   void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Exchange& exchange,
@@ -28,6 +31,7 @@ class Watch {
   core::WarnInput warn_;
   const core::Scene& scene_;
   bool warned_[3] = {};
+  std::multimap<double, std::string> load_ends_;  ///< when a table of a load ends, and whose it is
 };
 
 }  // namespace mpm::apps

@@ -27,6 +27,8 @@ class ConstitutiveModel {
   virtual ColumnSet columns(const UpdateOptions& options) const = 0;
   /// The bulk stiffness wave speed at rest, for messages and the first step; 0 for a rigid body.
   virtual double initial_sound_speed() const = 0;
+  /// Shear wave speed at rest; 0 for a fluid.
+  virtual double initial_shear_speed() const { return 0; }
   virtual double reference_density() const = 0;
 
   /// First state of new particles whose position, velocity, mass, volume and identity are set and whose other
@@ -39,6 +41,8 @@ class ConstitutiveModel {
 
   /// Derived quantities for output and for the thermal summary; 0 where the law has none.
   virtual double specific_heat() const { return 0; }
+  /// Heat conductivity; 0: adiabatic.
+  virtual double conductivity() const { return 0; }
 };
 
 }  // namespace mpm::core

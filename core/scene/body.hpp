@@ -43,6 +43,22 @@ struct HarmonicExcitation {
   std::array<double, 3> end_time{};
 };
 
+/// A pressure all around a body, or a traction on the surfaces that look along one axis; the part of the
+/// surface inside the box alone, if there is one. Factors over time: linear between the points, zero outside.
+struct SurfaceLoad {
+  struct Point {
+    double time = 0;
+    double factor = 1;
+  };
+  double pressure = 0;               ///< stress, pushing inwards
+  std::array<double, 3> traction{};  ///< stress
+  int normal = -1;                   ///< axis of `traction`; -1: none
+  std::array<double, 3> lower{-1e300, -1e300, -1e300};
+  std::array<double, 3> upper{1e300, 1e300, 1e300};
+  std::optional<double> ramp;  ///< over which the load falls to zero across the box's faces; a cell without
+  std::vector<Point> points;   ///< times strictly increasing; none: constant
+};
+
 /// Fixes the finite element nodes between two planes.
 struct FixedLayer {
   int direction = 0;  ///< 0, 1, 2: the axis that is fixed; 3: all
@@ -65,7 +81,8 @@ struct BodyInput {
   std::optional<std::array<double, 3>> prescribed_velocity;
   std::optional<PrescribedAcceleration> prescribed_acceleration;
   std::optional<HarmonicExcitation> harmonic_excitation;
-  bool constrain_rigid_position = false;
+  std::vector<SurfaceLoad> surface_loads;
+  bool constrain_rigid_position = false;   ///< keeps its prescribed motion, loads included
   std::optional<double> adaptive_split;    ///< splits when longer than this fraction of a cell
   std::optional<double> fragment_spacing;  ///< particle spacing for the count of fragments
   std::vector<FixedLayer> fixed_layers;

@@ -280,6 +280,9 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     ColumnSet columns = ColumnSet::mechanics();
     columns.add(body.model->columns(model.options));
     columns.add(output_columns);
+    if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
+        model.grid->geometry().boundary.end())
+      columns.add(Column::sound_speed);  // of the dashpots there
     body.pool = std::make_unique<BlockPool>(ColumnLayout(columns));
     model.bodies.push_back(std::move(body));
   });

@@ -65,9 +65,9 @@ BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape&
     const Boundary lower = geometry.boundary[static_cast<std::size_t>(2 * axis)];
     const Boundary upper = geometry.boundary[static_cast<std::size_t>(2 * axis + 1)];
     const std::int64_t last = geometry.cells[static_cast<std::size_t>(axis)] - first[axis];
-    if (lower != Boundary::free && first[axis] <= shape.halo)
-      face_[count_++] = {axis, -first[axis], -1, lower};
-    if (upper != Boundary::free && last <= brick_cells + shape.halo) {
+    const auto constrains = [](Boundary b) { return b != Boundary::free && b != Boundary::nonreflecting; };
+    if (constrains(lower) && first[axis] <= shape.halo) face_[count_++] = {axis, -first[axis], -1, lower};
+    if (constrains(upper) && last <= brick_cells + shape.halo) {
       face_[count_++] = {axis, static_cast<int>(last), 1, upper};
     }
   }

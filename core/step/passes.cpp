@@ -105,7 +105,7 @@ constexpr double usl_mass_floor = 0.2;
 }  // namespace
 
 Passes::Passes(Model& model, Exchange& exchange)
-    : model_(model), exchange_(exchange), shared_(model.grid->shape()) {
+    : model_(model), exchange_(exchange), shared_(model.grid->shape()), loads_(model) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = to_vec(solution.gravity);
   forces_.damping = solution.damping;
@@ -153,6 +153,7 @@ void Passes::map_brick(Slot s, F before) {
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     const BlocksAhead ahead(model_, s, c);
     const ColumnLayout& layout = body.pool->layout();
+    const bool loaded = maps_force(what) && loads_.act(grid, s, cohort.body);
     // The next block is located before this one is worked on: what was stored is then there when it is read.
     BlockPlace places[2];
     if (!cohort.blocks.empty()) places[0].find(frame, layout, body.pool->block(cohort.blocks[0]));
@@ -168,6 +169,9 @@ void Passes::map_brick(Slot s, F before) {
       const BlockPlace& place = places[b % 2];
       before(body, place, block, used);
       add_block<what>(frame, place, layout, block, used, sums, contributions);
+      if constexpr (maps_force(what)) {
+        if (loaded) loads_.add_forces(model_, s, cohort.body, place, block, used, contributions);
+      }
     }
   }
   sums.flush(frame, contributions);
@@ -242,7 +246,10 @@ void Passes::hold_velocities(const Body& body, double* block, int used, Workplac
   }
 }
 
-void Passes::kick(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
+/// v += dv; the work of loads belongs to the velocities from before it.
+void Passes::kick(Slot s, const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
+  if (const int number = number_of(body); loads_.act(*model_.grid, s, number))
+    at.work += loads_.work(model_, s, number, place, block, used, at.nodes.data());
   add_velocity_increment(place, body.pool->layout(), at.nodes.data(), block);
   if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
     hold_velocities(body, block, used, at);
@@ -260,7 +267,7 @@ void Passes::kick(const Body& body, const BlockPlace& place, double* block, int 
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       ahead.prefetch(b, 0, columns_to_mass);
       double* block = body.pool->block(cohort.blocks[b]);
-      kick(body, BlockPlace(frame, body.pool->layout(), block), block, used_lanes(cohort, b), at);
+      kick(s, body, BlockPlace(frame, body.pool->layout(), block), block, used_lanes(cohort, b), at);
     }
   }
   at.book_work();
@@ -416,7 +423,7 @@ void Passes::update_velocities_and_map_back() {
                                                blocks_of(model_.grid->brick(s)));
     map_brick<Mapped::momentum>(s, [&](const Body& body, const BlockPlace& place, double* block, int used) {
       ahead.next();
-      kick(body, place, block, used, at);
+      kick(s, body, place, block, used, at);
     });
     at.book_work();
   });
@@ -486,7 +493,7 @@ void Passes::update_velocities_and_move() {
       double* block = body.pool->block(cohort.blocks[b]);
       const int used = used_lanes(cohort, b);
       const BlockPlace place(frame, layout, block);
-      kick(body, place, block, used, at);
+      kick(s, body, place, block, used, at);
       std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
       if (body.prescribed_velocity) {
         move_as_prescribed(layout, dt, block);

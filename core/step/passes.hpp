@@ -8,6 +8,7 @@
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
 #include "core/step/grid_to_particles.hpp"
+#include "core/step/loads.hpp"
 #include "core/step/node_update.hpp"
 #include "core/step/particles_to_grid.hpp"
 
@@ -32,7 +33,13 @@ class Passes {
  public:
   Passes(Model& model, Exchange& exchange);
 
-  double dt = 0;  ///< of the step under way
+  /// Every step begins with this: its length, and the loads that act in it.
+  void begin_step(double length) {
+    dt = length;
+    if (loads_.any()) loads_.begin_step(model_, model_.clock.time, dt);
+  }
+
+  const Loads& loads() const { return loads_; }
 
   /// Particles to grid; those of other ranks' interest first, whose sums are on their way when this returns.
   template <Mapped what>
@@ -79,10 +86,11 @@ class Passes {
   void map_brick(Slot s, F before);
   template <Mapped what, class F>
   void map_bricks(F work);
-  void kick(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
+  void kick(Slot s, const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
   void hold_velocities(const Body& body, double* block, int used, Workplace& at);
   void velocities_of_brick(Slot s, Workplace& at);
   double kick_and_move(Slot s, Workplace& at);
+  int number_of(const Body& body) const { return static_cast<int>(&body - model_.bodies.data()); }
   /// Whether the particles' velocities are already those with which the next step begins.
   enum class Velocities { of_last_step, of_next_step };
   template <bool moves>
@@ -95,6 +103,8 @@ class Passes {
   Exchange& exchange_;
   SharedNodes shared_;
   NodeForces forces_;
+  Loads loads_;
+  double dt = 0;           ///< of the step under way
   double velocity_limit_;  ///< infinite without LimitVelocity
   double erosion_volume_;
   std::vector<Workplace> workplaces_;

@@ -70,12 +70,14 @@ void Stepper::step() {
 void Stepper::choose_time_step() {
   const TimeStepInput& how = model_.scene->solution.time_step;
   Clock& clock = model_.clock;
+  const double factor =
+      passes_.loads().nonreflecting() ? std::min(how.factor, Loads::nonreflecting_factor) : how.factor;
   double dt = how.specified > 0 ? how.specified
-                                : how.factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
+                                : factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
   // The last step ends on time.
   dt = std::min(dt, model_.scene->solution.end_time - clock.time);
-  passes_.dt = dt;
   clock.dt = dt;
+  passes_.begin_step(dt);
 }
 
 void Stepper::agree() {

@@ -29,6 +29,10 @@ struct Mat3 {
             a.zx * b.xx + a.zy * b.yx + a.zz * b.zx, a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
             a.zx * b.xz + a.zy * b.yz + a.zz * b.zz};
   }
+  friend Vec3<T> operator*(const Mat3& a, const Vec3<T>& v) {
+    return {a.xx * v.x + a.xy * v.y + a.xz * v.z, a.yx * v.x + a.yy * v.y + a.yz * v.z,
+            a.zx * v.x + a.zy * v.y + a.zz * v.z};
+  }
 };
 
 template <class T>

@@ -119,9 +119,42 @@ core::PrescribedAcceleration build_acceleration(const Node& node, const BuildCon
   core::PrescribedAcceleration load;
   load.linear_amplitude = node.reals("ax", "ay", "az");
   load.angular_amplitude = node.reals("arx", "ary", "arz");
+  if (load.angular_amplitude != Vector{})
+    node.complain(
+        context.diagnostics, "arx",
+        "angular accelerations turn rigid bodies, which is not implemented yet: set arx, ary, arz to 0");
   for (const Node& point : node.children("Coefficient")) {
     load.points.push_back(
         {point.real("time"), point.reals("cx", "cy", "cz"), point.reals("crx", "cry", "crz")});
+    const std::size_t n = load.points.size();
+    if (n > 1 && load.points[n - 1].time <= load.points[n - 2].time)
+      point.complain(context.diagnostics, "time",
+                     fmt::format("the times must increase; the one before is {}", load.points[n - 2].time));
+  }
+  return load;
+}
+
+core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& context) {
+  core::SurfaceLoad load;
+  load.pressure = node.real("pressure");
+  load.traction = node.reals("tx", "ty", "tz");
+  const bool pulls = load.traction != Vector{};
+  if (const auto normal = node.given_integer("normal")) load.normal = static_cast<int>(*normal);
+  if (pulls != (load.normal >= 0))
+    node.complain(context.diagnostics, "normal", "goes with tx, ty, tz: give both or neither");
+  if (!pulls && load.pressure == 0)
+    node.complain(context.diagnostics, "needs a pressure, or tx, ty, tz and normal");
+  static constexpr std::array<std::array<const char*, 2>, 3> sides{
+      {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    load.lower[a] = node.given_real(sides[a][0]).value_or(load.lower[a]);
+    load.upper[a] = node.given_real(sides[a][1]).value_or(load.upper[a]);
+    if (!(load.lower[a] < load.upper[a]))
+      node.complain(context.diagnostics, sides[a][1], fmt::format("must be greater than {}", sides[a][0]));
+  }
+  load.ramp = node.given_real("ramp");
+  for (const Node& point : node.children("Coefficient")) {
+    load.points.push_back({point.real("time"), point.real("c")});
     const std::size_t n = load.points.size();
     if (n > 1 && load.points[n - 1].time <= load.points[n - 2].time)
       point.complain(context.diagnostics, "time",
@@ -148,6 +181,8 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
     if (body.prescribed_acceleration)
       h->complain(context.diagnostics, "a body has either PrescribedAcceleration or HarmExcit");
   }
+  for (const Node& load : node.children("Traction"))
+    body.surface_loads.push_back(build_surface_load(load, context));
   if (const auto c = node.child("ConstrainRigidPosition"))
     body.constrain_rigid_position = c->boolean("value");
   if (const auto s = node.child("AdaptiveSplit")) body.adaptive_split = s->given_real("value");

@@ -153,6 +153,26 @@ void echo_loads(XmlWriter& w, const core::BodyInput& body) {
     echo_vector(w, "Theta", "x", "y", "z", body.harmonic_excitation->phase);
     echo_vector(w, "EndTime", "x", "y", "z", body.harmonic_excitation->end_time);
   }
+  for (const core::SurfaceLoad& load : body.surface_loads) {
+    const auto scope = w.element("Traction");
+    w.number("pressure", load.pressure);
+    if (load.normal >= 0) {
+      w.numbers("tx", "ty", "tz", load.traction);
+      w.integer("normal", load.normal);
+    }
+    static constexpr const char* lower[3] = {"xmin", "ymin", "zmin"};
+    static constexpr const char* upper[3] = {"xmax", "ymax", "zmax"};
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (load.lower[a] > -1e300) w.number(lower[a], load.lower[a]);
+      if (load.upper[a] < 1e300) w.number(upper[a], load.upper[a]);
+    }
+    if (load.ramp) w.number("ramp", *load.ramp);
+    for (const auto& point : load.points) {
+      const auto coefficient = w.element("Coefficient");
+      w.number("time", point.time);
+      w.number("c", point.factor);
+    }
+  }
   if (body.constrain_rigid_position) echo_value(w, "ConstrainRigidPosition", 1);
   if (body.adaptive_split) echo_value(w, "AdaptiveSplit", *body.adaptive_split);
   if (body.fragment_spacing) echo_value(w, "CountFragDp", *body.fragment_spacing);

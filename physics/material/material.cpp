@@ -34,13 +34,15 @@ EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0) {
   return line;
 }
 
-/// rho0 c0^2 of the undeformed material.
-double modulus_at_rest(const Material::Laws& laws) {
+double shear_modulus_at_rest(const Material::Laws& laws) {
   StrengthPoint<double> at_rest{};
   at_rest.density = laws.reference_density;
   at_rest.temperature = laws.common.room_temperature;
-  const double shear =
-      std::visit([&](const auto& law) { return rest(law, at_rest).shear_modulus; }, laws.strength);
+  return std::visit([&](const auto& law) { return rest(law, at_rest).shear_modulus; }, laws.strength);
+}
+
+/// rho0 c0^2 of the undeformed material.
+double modulus_at_rest(const Material::Laws& laws, double shear) {
   if (laws.common_eos.c0 > 0)
     return 4.0 / 3.0 * shear + laws.reference_density * laws.common_eos.c0 * laws.common_eos.c0;
   return std::visit(
@@ -67,7 +69,9 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
       laws_.strength);
   fails_ = !laws_.failures.empty();
   viscous_ = viscous_ || (fails_ && laws_.common.fail_viscosity > 0);
-  initial_modulus_ = modulus_at_rest(laws_);
+  const double shear = shear_modulus_at_rest(laws_);
+  initial_modulus_ = modulus_at_rest(laws_, shear);
+  initial_shear_speed_ = std::sqrt(std::max(shear, 0.0) / laws_.reference_density);
   initial_sound_speed_ = std::sqrt(std::max(initial_modulus_, 0.0) / laws_.reference_density);
 }
 

@@ -39,6 +39,7 @@ class Material final : public core::ConstitutiveModel {
   const std::string& name() const override { return laws_.name; }
   core::ColumnSet columns(const core::UpdateOptions& options) const override;
   double initial_sound_speed() const override { return initial_sound_speed_; }
+  double initial_shear_speed() const override { return initial_shear_speed_; }
   double reference_density() const override { return laws_.reference_density; }
   double specific_heat() const override { return laws_.common.specific_heat; }
   void initialise(core::Batch& batch, const core::UpdateOptions& options) const override;
@@ -58,7 +59,7 @@ class Material final : public core::ConstitutiveModel {
 
   Laws laws_;
   double initial_modulus_ = 0;
-  double initial_sound_speed_ = 0;
+  double initial_sound_speed_ = 0, initial_shear_speed_ = 0;
   bool fails_ = false;    ///< carries the column `failed`
   bool heats_ = false;    ///< carries the column `temperature`
   bool viscous_ = false;  ///< has shear viscosity

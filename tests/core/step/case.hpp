@@ -36,6 +36,9 @@ class OracleLaw final : public core::ConstitutiveModel {
 
   const std::string& name() const override { return name_; }
   double initial_sound_speed() const override { return 0; }
+  double initial_shear_speed() const override {
+    return std::sqrt(material_.young / (2 * (1 + material_.poisson)) / material_.density);
+  }
   double reference_density() const override { return material_.density; }
   core::ColumnSet columns(const core::UpdateOptions&) const override {
     return {core::Column::effective_plastic_strain, core::Column::history_0, core::Column::history_1};
@@ -152,6 +155,9 @@ struct SmallRun {
     model.grid = std::make_unique<core::BrickGrid>(g);
     core::ColumnSet columns = core::ColumnSet::mechanics();
     columns.add(model.materials[0]->columns({}));
+    for (const core::Boundary b : g.boundary) {
+      if (b == core::Boundary::nonreflecting) columns.add(core::Column::sound_speed);
+    }
     for (int b = 0; b < (split < c.particles.size() ? 2 : 1); ++b) {
       core::Body& body = model.bodies.emplace_back();
       body.name = "body";
@@ -172,6 +178,8 @@ struct SmallRun {
       p.c = wave_speed(c.material, p);
       OracleLaw::write(layout, p, block.data());
       block[static_cast<std::size_t>(layout.offset(core::Column::identity))] = static_cast<double>(n);
+      if (layout.has(core::Column::sound_speed))
+        block[static_cast<std::size_t>(layout.offset(core::Column::sound_speed))] = p.c;
       for (std::size_t k = 0; k < flat.size(); ++k) flat[k] = block[core::block_lanes * k];
       const core::BrickCoord to = g.brick_at({p.x[0], p.x[1], p.x[2]});
       travellers.add(to, n < split ? 0 : 1, flat.data(), layout.columns());
