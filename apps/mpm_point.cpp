@@ -97,7 +97,7 @@ void print_row(std::FILE* file, const physics::PointDriver& point, double strain
 
 int run(const Settings& settings) {
   const core::Scene scene = io::read_scene(settings.input, physics::catalogue());
-  const auto material = physics::make_material(find_material(scene, settings.material));
+  const auto material = physics::make_material(find_material(scene, settings.material), scene.detonations);
   physics::PointDriver point(*material,
                              {.density = settings.density,
                               .cell_size = settings.cell_size,
