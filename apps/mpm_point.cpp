@@ -45,8 +45,12 @@ const std::map<std::string, physics::PathKind> kinds{
 };
 
 /// Columns of the table beyond stress and energy, where the material carries them.
-constexpr std::array optional_columns{Column::effective_plastic_strain, Column::yield_stress,
-                                      Column::temperature, Column::damage, Column::failed};
+constexpr std::array optional_columns{Column::effective_plastic_strain,
+                                      Column::yield_stress,
+                                      Column::temperature,
+                                      Column::damage,
+                                      Column::failed,
+                                      Column::burn_fraction};
 
 const core::MaterialInput& find_material(const core::Scene& scene, const std::string& name) {
   std::string names;
