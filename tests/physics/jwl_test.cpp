@@ -158,13 +158,4 @@ TEST_CASE("far expanded products are a gas with the exponent 1 + w", "[physics][
   CHECK(gas.events().undefined_root == 0);
 }
 
-TEST_CASE("JWL refuses parameters outside of their ranges", "[physics][jwl]") {
-  const auto parameters = physics::Jwl::parameters();
-  for (const auto& [member, info] : parameters) {
-    const bool positive = info.name == "R1" || info.name == "R2" || info.name == "w";
-    CHECK(info.required);
-    CHECK((info.min == 0 && info.min_open) == positive);
-  }
-}
-
 }  // namespace mpm::tests

@@ -41,11 +41,18 @@ class Detonation(_mpm.Case):
         self.assertGreater(_mpm.summary(self.folder / "again")["steps"], 0)
         self.assertEqual(again.state, one)
 
-    def test_never_lit(self):
+    def test_refusals(self):
         text = _blast.Detonation(100).text()
-        dark = text[:text.index("<Detonation>")] + text[text.index("</Detonation>") + len("</Detonation>"):]
-        outcome = self.run_in("dark", [self.write(dark)], code=_mpm.INPUT_ERROR)
-        self.assertIn("add a Detonation", outcome.err)
+        source = text[text.index("<Detonation>"):text.index("</Detonation>") + len("</Detonation>")]
+        positive, missing = "expected a number greater than 0", "add a Detonation"
+        for old, new, words in (('w="0.3"', 'w="0"', positive), ('R1="4.15"', 'R1="-1"', positive), ('R2="0.95"', 'R2="0"', positive),
+                                ('D="6930.0"', 'D="0"', positive), ('PCJ="21000.0"', 'PCJ="-1"', positive),
+                                ('beta="2"', 'beta="3"', "expected a whole number in [0, 2]"),
+                                ('PCJ="21000.0"', 'PCJ="1e6"', "PCJ must be smaller"), (source, "", missing)):
+            with self.subTest(new=new or "no Detonation"):
+                self.assertIn(old, text)
+                outcome = self.run_in("refused", [self.write(text.replace(old, new))], code=_mpm.INPUT_ERROR)
+                self.assertIn(words, outcome.err)
 
 
 class Sandwich(_mpm.Case):
