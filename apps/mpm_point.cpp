@@ -45,8 +45,12 @@ const std::map<std::string, physics::PathKind> kinds{
 };
 
 /// Columns of the table beyond stress and energy, where the material carries them.
-constexpr std::array optional_columns{Column::effective_plastic_strain, Column::yield_stress,
-                                      Column::temperature, Column::damage, Column::failed};
+constexpr std::array optional_columns{Column::effective_plastic_strain,
+                                      Column::yield_stress,
+                                      Column::temperature,
+                                      Column::damage,
+                                      Column::failed,
+                                      Column::burn_fraction};
 
 const core::MaterialInput& find_material(const core::Scene& scene, const std::string& name) {
   std::string names;
@@ -97,7 +101,7 @@ void print_row(std::FILE* file, const physics::PointDriver& point, double strain
 
 int run(const Settings& settings) {
   const core::Scene scene = io::read_scene(settings.input, physics::catalogue());
-  const auto material = physics::make_material(find_material(scene, settings.material));
+  const auto material = physics::make_material(find_material(scene, settings.material), scene.detonations);
   physics::PointDriver point(*material,
                              {.density = settings.density,
                               .cell_size = settings.cell_size,

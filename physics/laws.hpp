@@ -29,11 +29,13 @@ constexpr void for_each_law(F f) {
 /// The parameters checked against each other and the derived constants filled in. `element` is for messages.
 template <class Law>
 void finish(Law& law, const core::LawInput& input, std::string_view element, double reference_density) {
-  if constexpr (requires { law.fault(); }) {
-    if (const std::string fault = law.fault(); !fault.empty()) {
-      throw core::InputErrors(input.source, std::string(element), fault);
-    }
+  std::string fault;
+  if constexpr (requires { law.fault(reference_density); }) {
+    fault = law.fault(reference_density);
+  } else if constexpr (requires { law.fault(); }) {
+    fault = law.fault();
   }
+  if (!fault.empty()) throw core::InputErrors(input.source, std::string(element), fault);
   if constexpr (requires { law.prepare(reference_density); }) {
     law.prepare(reference_density);
   } else if constexpr (requires { law.prepare(); }) {

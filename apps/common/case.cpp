@@ -92,7 +92,8 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world) {
 
 std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene) {
   std::vector<std::unique_ptr<core::ConstitutiveModel>> materials;
-  for (const core::MaterialInput& m : scene.materials) materials.push_back(physics::make_material(m));
+  for (const core::MaterialInput& m : scene.materials)
+    materials.push_back(physics::make_material(m, scene.detonations));
   return materials;
 }
 

@@ -5,11 +5,13 @@
 
 #include "physics/eos/elastic_bulk.hpp"
 #include "physics/eos/gruneisen.hpp"
+#include "physics/eos/jwl.hpp"
 #include "physics/eos/polynomial.hpp"
+#include "physics/eos/polynomial2.hpp"
 
 namespace mpm::physics {
 
 /// The first is what a material without EquationOfState has.
-using EquationOfState = std::variant<ElasticBulk, Gruneisen, Polynomial>;
+using EquationOfState = std::variant<ElasticBulk, Gruneisen, Polynomial, Polynomial2, Jwl>;
 
 }  // namespace mpm::physics

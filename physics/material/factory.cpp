@@ -14,6 +14,7 @@ ElasticBulk elastic_bulk(const StrengthModel& strength, const CommonParameters& 
   const double bulk = std::visit(
       [&](const auto& law) -> double {
         if constexpr (requires { law.bulk; }) return law.bulk;
+        if constexpr (Burns<std::decay_t<decltype(law)>>) return 0;  // what burns is an equation of products
         return common.young / (3 * (1 - 2 * common.poisson));
       },
       strength);
@@ -40,6 +41,18 @@ EquationOfState make_eos(const core::MaterialInput& input, const StrengthModel& 
   return make_law<EquationOfState>(*input.eos, "EquationOfState", input.reference_density);
 }
 
+/// Hands the places of lighting to an explosive.
+void light(StrengthModel& strength, const core::MaterialInput& input,
+           const std::vector<core::DetonationItem>& detonations) {
+  auto* const explosive = std::get_if<HighExpBurn>(&strength);
+  if (explosive == nullptr) return;
+  explosive->sources = detonations;
+  if (explosive->inert()) {
+    throw core::InputErrors(input.strength.source, "StrengthModel",
+                            "HighExpBurn with beta 2 burns only where it is lit: add a Detonation");
+  }
+}
+
 void refuse_what_is_missing(const core::MaterialInput& input, const CommonParameters& common) {
   const auto refuse = [&](const char* what) {
     throw core::InputErrors(input.strength.source, "StrengthModel",
@@ -52,13 +65,15 @@ void refuse_what_is_missing(const core::MaterialInput& input, const CommonParame
 
 }  // namespace
 
-std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput& input) {
+std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput& input,
+                                                       const std::vector<core::DetonationItem>& detonations) {
   Material::Laws laws;
   laws.name = input.name;
   laws.reference_density = input.reference_density;
   read_parameters(laws.common, input.strength);
   refuse_what_is_missing(input, laws.common);
   laws.strength = make_law<StrengthModel>(input.strength, "StrengthModel", input.reference_density);
+  light(laws.strength, input, detonations);
   laws.eos = make_eos(input, laws.strength, laws.common);
   if (input.eos) read_parameters(laws.common_eos, *input.eos);
   for (const core::FailureInput& failure : input.failures) {

@@ -30,7 +30,8 @@ EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0) {
   if constexpr (requires { eos.initialise(point); }) eos.initialise(point);
   core::MaskOf<T> outside{};
   const EosLine<T> line = limited_line(eos, point, outside);
-  point.pressure = line.a + line.b * point.energy;
+  const EosLine<T> acting = acting_line(eos, point, line);
+  point.pressure = acting.a + acting.b * point.energy;
   return line;
 }
 
@@ -112,8 +113,11 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options)
   const PressureRules rules = pressure_rules(options);
   update_kinematics<T>(batch, options, laws_.reference_density);
   std::visit([&](const auto& law) { update_strength<T>(batch, law, strength_rules()); }, laws_.strength);
-  std::visit([&](const auto& eos) { update_pressure<T>(batch, eos, rules, fails_ ? verdict : nullptr); },
-             laws_.eos);
+  std::visit(
+      [&](const auto& law, const auto& eos) {
+        update_pressure<T>(batch, beside(eos, law), rules, fails_ ? verdict : nullptr);
+      },
+      laws_.strength, laws_.eos);
   if (!fails_) return;
   for (const FailureEntry& entry : laws_.failures) {
     std::visit([&](const auto& model) { judge<T>(batch, model, entry.erodes, verdict); }, entry.model);
@@ -126,7 +130,8 @@ void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& opti
   const core::ColumnLayout& layout = *batch.layout;
   PressureRules rules = pressure_rules(options);
   std::visit(
-      [&](const auto& law, const auto& eos) {
+      [&](const auto& law, const auto& plain_eos) {
+        const auto& eos = beside(plain_eos, law);
         const History<std::decay_t<decltype(law)>, StrengthPoint<T>> law_history(law, layout);
         const History<std::decay_t<decltype(eos)>, EosPoint<T>> eos_history(eos, layout);
         for_each_vector<T>(batch, [&](double* block, int row) {
@@ -141,6 +146,12 @@ void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& opti
           law_history.load(block, point);
           point.density = now.density;
           point.temperature = laws_.common.room_temperature;
+          point.time = batch.time;
+          point.cell_size = batch.cell_size;
+          if constexpr (requires(core::Vec3<T> x) { law.initialise(point, x); }) {
+            law.initialise(point, core::Vec3<T>{get(Column::position_x), get(Column::position_y),
+                                                get(Column::position_z)});
+          }
           point = rest(law, point);
           law_history.store(block, point);
           put(Column::temperature, point.temperature);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/material/constitutive_model.hpp"
+#include "core/scene/body.hpp"
 #include "core/scene/material.hpp"
 #include "physics/eos/list.hpp"
 #include "physics/failure/list.hpp"
@@ -65,7 +66,9 @@ class Material final : public core::ConstitutiveModel {
   bool viscous_ = false;  ///< has shear viscosity
 };
 
-/// Throws core::InputErrors where parameters contradict each other.
-std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput& input);
+/// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict
+/// each other.
+std::unique_ptr<core::ConstitutiveModel> make_material(
+    const core::MaterialInput& input, const std::vector<core::DetonationItem>& detonations = {});
 
 }  // namespace mpm::physics

@@ -7,6 +7,7 @@
 // tests/physics/energy_test.cpp.
 #pragma once
 
+#include "physics/eos/burning.hpp"
 #include "physics/eos/point.hpp"
 #include "physics/history.hpp"
 #include "physics/material/failed_state.hpp"
@@ -129,9 +130,11 @@ template <class T, class Eos>
     core::MaskOf<T> outside{};
     const EosLine<T> line = limited_line(eos, point, outside);
 
+    const EosLine<T> acting = acting_line(eos, point, line);
+
     const T per_v0 = rho0 * now.inverse_mass;
     const T h = 0.5 * (volume - old_volume) * per_v0;
-    const T response = 1.0 / (1.0 + line.b * h);
+    const T response = 1.0 / (1.0 + acting.b * h);
 
     // Artificial viscosity: none in expansion, and none for what has failed.
     core::MaskOf<T> failed{};
@@ -144,7 +147,7 @@ template <class T, class Eos>
 
     const T work = 0.5 * (volume + old_volume) * per_v0 * core::load<T>(batch.deviatoric_work + row);
     const T energy_star = old_energy - h * (old_p + core::load<T>(block + q_at) + q) + work;
-    T p = (line.a + line.b * energy_star) * response;
+    T p = (acting.a + acting.b * energy_star) * response;
     if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, p), p);
     const T energy = energy_star - h * p;
 

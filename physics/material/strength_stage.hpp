@@ -60,6 +60,8 @@ StrengthPoint<T> strength_point(const core::Batch& batch, const double* block, i
 
   StrengthPoint<T> point;
   point.dt = batch.dt;
+  point.time = batch.time;
+  point.cell_size = batch.cell_size;
   point.volumetric_strain = core::load<T>(batch.volumetric_strain + row);
   point.strain = turn_slightly(T(0.5) * spin, deviator(strain_increment(l, batch.dt)));
   point.s = rotate_deviator(core::mid_point_rotation(spin), load_deviator<T>(block, layout));

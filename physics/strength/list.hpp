@@ -5,6 +5,7 @@
 
 #include "physics/strength/cauchy_elastic.hpp"
 #include "physics/strength/ela_plastic.hpp"
+#include "physics/strength/high_exp_burn.hpp"
 #include "physics/strength/iso_elastic.hpp"
 #include "physics/strength/iso_harden.hpp"
 #include "physics/strength/johnson_cook.hpp"
@@ -13,7 +14,7 @@
 
 namespace mpm::physics {
 
-using StrengthModel =
-    std::variant<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook, JohnsonCook, Null>;
+using StrengthModel = std::variant<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook,
+                                   JohnsonCook, Null, HighExpBurn>;
 
 }  // namespace mpm::physics

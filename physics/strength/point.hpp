@@ -13,6 +13,8 @@ template <class T>
 struct StrengthPoint {
   // --- given -------------------------------------------------------------------------------------------
   double dt;             ///< > 0
+  double time = 0;       ///< at the end of the step
+  double cell_size = 0;  ///< 0: none, a point without a grid
   core::Sym3<T> strain;  ///< deviator of the strain increment
   T volumetric_strain;   ///< its trace
   T pressure;            ///< at the beginning of the step, positive in compression
@@ -33,17 +35,21 @@ struct StrengthPoint {
   T temperature = 0.0;
   T porosity = 0.0;
   T plastic_volumetric_strain = 0.0;
+  T burn_fraction = 0.0;
+  T lighting_time = 0.0;
   T history_0 = 0.0, history_1 = 0.0, history_2 = 0.0, history_3 = 0.0;
 
   static constexpr auto columns() {
     using P = StrengthPoint;
     using core::Column;
-    return std::array<ColumnMember<P, T>, 9>{{
+    return std::array<ColumnMember<P, T>, 11>{{
         {Column::effective_plastic_strain, &P::effective_plastic_strain},
         {Column::damage, &P::damage},
         {Column::temperature, &P::temperature},
         {Column::porosity, &P::porosity},
         {Column::plastic_volumetric_strain, &P::plastic_volumetric_strain},
+        {Column::burn_fraction, &P::burn_fraction},
+        {Column::lighting_time, &P::lighting_time},
         {Column::history_0, &P::history_0},
         {Column::history_1, &P::history_1},
         {Column::history_2, &P::history_2},

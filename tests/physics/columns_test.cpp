@@ -100,7 +100,9 @@ TEST_CASE("columns that are declared are used", "[physics][columns]") {
       INFO(core::name_of(c));
       PointDriver start(*material, {}), end(*material, {});
       walk(end, s.strain);
-      const bool written = bits(start.value(c)) != bits(end.value(c));
+      // What is burnt at the start stays so: initialise has written it.
+      const bool burnt = c == Column::burn_fraction && start.value(c) == 1;
+      const bool written = burnt || bits(start.value(c)) != bits(end.value(c));
       const double other = c == Column::temperature ? 600 : 0.75;
       std::vector<double> changed = state_after(*material, watched, s.strain, c, other);
       CHECK((written || changed != plain));

@@ -44,6 +44,9 @@ const std::vector<Strength> strengths{
     {"JohnsonCook damaged", "JohnsonCook", with(with(with(elastic, johnson_cook), heat), damage), 0.02},
     {"Null", "Null", {}, 0.02},
     {"Null Newtonian", "Null", {{"mu", 20.0}}, 0.02},
+    {"HighExpBurn", "HighExpBurn", {{"D", 6930.0}}, 0.02},
+    {"HighExpBurn both", "HighExpBurn", {{"D", 6930.0}, {"beta", 0.0}, {"PCJ", 115e9}, {"mu", 20.0}}, 0.02},
+    {"HighExpBurn by compression", "HighExpBurn", {{"D", 6930.0}, {"beta", 1.0}, {"PCJ", 115e9}}, 0.05},
     {"Null power law", "Null", {{"ck", 300.0}, {"nn", 0.6}}, 0.02},
 };
 
@@ -66,7 +69,28 @@ const std::map<std::string, LawInput> equations{
        {"c6", 0.0},
        {"E0", 250e6}},
       {}}},
+    {"Polynomial2",
+     {"Polynomial2",
+      {{"A1", 137e9},
+       {"A2", 175e9},
+       {"A3", 564e9},
+       {"B0", 1.96},
+       {"B1", 0.9},
+       {"T1", 137e9},
+       {"T2", -30e9},
+       {"E0", 250e6}},
+      {}}},
+    // TNT, manual, table 6.5.
+    {"JWL",
+     {"JWL", {{"A", 371.2e9}, {"B", 3.23e9}, {"R1", 4.15}, {"R2", 0.95}, {"w", 0.30}, {"E0", 7.0e9}}, {}}},
 };
+
+/// Lit long ago: all is burnt when a test begins.
+const std::vector<core::DetonationItem> lit = [] {
+  core::DetonationItem at_the_origin;
+  at_the_origin.time = -1;
+  return std::vector{at_the_origin};
+}();
 
 MaterialInput input_of(const Strength& strength, const LawInput* eos) {
   MaterialInput input;
@@ -81,10 +105,11 @@ MaterialInput input_of(const Strength& strength, const LawInput* eos) {
 std::vector<Sample> all_samples() {
   std::vector<Sample> all;
   for (const Strength& strength : strengths) {
-    const bool fluid = strength.type == "Null", own_pressure = strength.type == "CauchyElastic";
+    const bool explosive = strength.type == "HighExpBurn", fluid = strength.type == "Null" || explosive;
+    const bool own_pressure = strength.type == "CauchyElastic";
     if (!fluid) all.push_back({strength.label, input_of(strength, nullptr), strength.strain});
     for (const auto& [label, eos] : equations) {
-      if (own_pressure) continue;
+      if (own_pressure || (explosive && label != "JWL")) continue;
       if (strength.label != "IsoHarden" && label != "Gruneisen" && !fluid) continue;
       all.push_back({strength.label + " + " + label, input_of(strength, &eos), strength.strain});
     }
@@ -181,7 +206,7 @@ core::MaterialInput convert(const core::MaterialInput& input, const Units& units
 }
 
 std::unique_ptr<physics::Material> make(const core::MaterialInput& input) {
-  auto model = physics::make_material(input);
+  auto model = physics::make_material(input, lit);
   return std::unique_ptr<physics::Material>(dynamic_cast<physics::Material*>(model.release()));
 }
 

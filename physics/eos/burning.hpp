@@ -1,0 +1,66 @@
+// The equation of state of an explosive that is not all burnt: the burn fraction F of its strength model
+// times what the equation says of the products (manual 3-9), p = F (a + b E). F is history here: the strength
+// stage has set it for this step. The wave speed is that of the products, however little has burnt, and so is
+// the sound speed in the artificial viscosity: the time step is ready for a front that arrives within the
+// step. Where compression burns, it stiffens: the line carries dF/dmu (a + b E) besides. Shown by
+// tests/physics/burn_test.cpp.
+#pragma once
+
+#include "physics/eos/point.hpp"
+
+namespace mpm::physics {
+
+/// A strength model that burns: it states dF/dmu of the fraction that compression alone burns.
+template <class Law>
+concept Burns = requires(const Law& law) {
+  law.burn_slope(1.0);
+};
+
+template <class Eos, Burns Law>
+struct Burning : Eos {
+  static constexpr auto state = [] {
+    std::array<core::Column, Eos::state.size() + 1> columns{};
+    for (std::size_t i = 0; i < Eos::state.size(); ++i) columns[i] = Eos::state[i];
+    columns.back() = core::Column::burn_fraction;
+    return columns;
+  }();
+
+  const Law& law;
+
+  Burning(const Eos& eos, const Law& burning_law) : Eos(eos), law(burning_law) {}
+
+  /// Of the products, for the wave speed.
+  template <class T>
+  EosLine<T> line(const EosPoint<T>& point) const {
+    EosLine<T> products = Eos::line(point);
+    const T slope = core::select(point.burn_fraction < 1.0, law.burn_slope(point.relative_volume), 0.0);
+    products.da += slope * products.a;
+    products.db += slope * products.b;
+    return products;
+  }
+  /// What presses.
+  template <class T>
+  EosLine<T> acting(const EosPoint<T>& point, const EosLine<T>& products) const {
+    const T f = point.burn_fraction;
+    return {f * products.a, f * products.b, products.da, products.db};
+  }
+};
+
+/// The equation as the pressure stage is to see it beside this strength model.
+template <class Eos, class Law>
+const Eos& beside(const Eos& eos, const Law&) {
+  return eos;
+}
+template <class Eos, Burns Law>
+Burning<Eos, Law> beside(const Eos& eos, const Law& law) {
+  return {eos, law};
+}
+
+/// The part of the products' line that presses: all of it, but for an explosive.
+template <class T, class Eos>
+EosLine<T> acting_line(const Eos& eos, const EosPoint<T>& point, const EosLine<T>& line) {
+  if constexpr (requires { eos.acting(point, line); }) return eos.acting(point, line);
+  return line;
+}
+
+}  // namespace mpm::physics
