@@ -37,7 +37,8 @@ struct BarInput {
   std::string scheme = "MUSL";
   double box = 1;  ///< times as many cells along each axis, the bar where it was among the bricks
   std::string strength = iso_harden, eos = gruneisen, failure{};
-  std::string body{}, solution{}, output{}, more{};
+  std::string body{}, solution{}, output{}, more{};      ///< more elements
+  std::string grid_attributes{}, solution_attributes{};  ///< as they stand in the element
   std::string velocity = R"(<InitialVelocity vx="0" vy="0" vz="-190"/>)";
   std::string time_step = R"(<TimeStep factor="0.4"/>)";
   int foot = 2;    ///< boundary type of the face that the bar stands on
@@ -64,15 +65,15 @@ struct BarInput {
                        bar_diameter / 2, high - low, velocity, body);
     }
     t += "</Component>";
-    t += R"(<Grid><Cell type="regular">)";
+    t += fmt::format(R"(<Grid {}><Cell type="regular">)", grid_attributes);
     for (const char* axis : {"X", "Y"}) {
       t += fmt::format(R"(<{0}Min value="{1}" boundary="0"/><{0}Max value="{2}" boundary="0"/>)", axis,
                        -half * box, half * box);
     }
     t += fmt::format(R"(<ZMin value="0" boundary="{}"/><ZMax value="{}" boundary="0"/>)", foot, height * box);
     t += fmt::format(R"(<DCell dx="{0}" dy="{0}" dz="{0}"/></Cell></Grid>)", cell);
-    t += fmt::format(R"(<Solution algorithm="{}"><EndTime value="0.08"/>{}{}</Solution>)", scheme, time_step,
-                     solution);
+    t += fmt::format(R"(<Solution algorithm="{}" {}><EndTime value="0.08"/>{}{}</Solution>)", scheme,
+                     solution_attributes, time_step, solution);
     t += fmt::format(R"(<Output><Console print_time="0.08"/>{}</Output>{}</PeneBlast>)", output, more);
     return t;
   }
