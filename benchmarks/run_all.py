@@ -40,7 +40,7 @@ def measure_scaling(options):
 
 
 def measure_feature_cost(options):
-    size = {"quick": ["--particles", 20e3, "--pairs", 4], "tiny": ["--particles", 1e3, "--pairs", 1, "--warm-up", 1],
+    size = {"quick": ["--particles", 20e3, "--pairs", 4], "tiny": ["--particles", 1e3, "--pairs", 2, "--warm-up", 1],
             "full": ["--pairs", 12]}[options.size]
     said = results.run([results.BIN / "feature_cost", *size, "--csv", options.out / "feature_cost.csv"], echo=True)
     (options.out / "feature_cost.txt").write_text(said)

@@ -3,9 +3,10 @@
 strong  the same bar on 1, 2, 4 ... cores         weak  as many particles per core on each of them
 
 core_ns is the time of a core per particle-step, time per step x cores / particles. Efficiency, strong or weak, is that of
-the study's first case over that of the case: 1 where twice the cores do twice the work. Shares are of the time of a
-step, means over the ranks; waiting in end_halo and agree holds what imbalance costs. Cases of the same bar whose states
-differ in one bit end the study.
+the study's first case over that of the case: 1 where twice the cores do twice the work. Efficiency of computing counts
+the busiest rank alone, by the processor's time where it has one thread, and leaves out what waits for others. Shares are
+of the time of a step, means over the ranks; waiting in end_halo and agree holds what imbalance costs. Cases of the same
+bar whose states differ in one bit end the study.
 
 With more ranks and threads than cores the wall's time means nothing. The step is then the processor's time of the busiest
 rank, as if there were cores enough and messages cost nothing; the table says so (clock: processor).
@@ -76,14 +77,15 @@ def study(options):
                              f"{states[case['particles']]}, that of the same bar before")
         cores, crowd = ranks * threads, case["oversubscribed"]
         core_ns = 1e9 * case["step_s"] * cores / case["particles"]
-        base = first.setdefault((name, over, partition), core_ns)
+        computing_ns = 1e9 * case["compute_s"]["max"] * cores / case["particles"]
+        base, computing = first.setdefault((name, over, partition), (core_ns, computing_ns))
         rows.append({"study": name, "over": over, "partition": partition if over == "ranks" else "", "ranks": ranks,
                      "threads": threads, "particles": int(case["particles"]), "bricks": int(case["bricks"]),
                      "oversubscribed": int(crowd), "clock": case["clock"],
                      "step_ms": 1e3 * case["step_s"], "step_median_ms": 1e3 * case["step_median_s"],
                      "core_ns": core_ns, "million_particle_steps_per_s": 1e-6 * case["particles"] / case["step_s"],
-                     "efficiency": base / core_ns, "imbalance": case["imbalance"],
-                     "particle_imbalance": case["particle_imbalance"],
+                     "efficiency": base / core_ns, "computing_efficiency": computing / computing_ns,
+                     "imbalance": case["imbalance"], "particle_imbalance": case["particle_imbalance"],
                      **{f"{part}_share": nan if crowd else case["parts_s"][part]["mean"] / case["step_s"] for part in PARTS},
                      "state": case["state"]})
     return rows, [f"{name:10} {value}" for name, value in case["facts"].items()]
@@ -94,7 +96,7 @@ def columns():
     get = lambda key, factor=1: lambda row: factor * row[key]
     return {"cores": (lambda r: f"{int(r['ranks'])} x {int(r['threads'])}", ""), "partition": (get("partition"), ""),
             "particles": (get("particles"), ".0f"), "clock": (get("clock"), ""), "ms per step": (get("step_ms"), ".3g"),
-            "M particle-steps/s": (get("million_particle_steps_per_s"), ".1f"), "efficiency %": (get("efficiency", 100), ".1f"),
+            "M particle-steps/s": (get("million_particle_steps_per_s"), ".1f"), "efficiency %": (get("efficiency", 100), ".1f"), "of computing %": (get("computing_efficiency", 100), ".1f"),
             "max/mean computing": (get("imbalance"), ".3f"),
             **{f"{part.replace('_', ' ')} %": (get(f"{part}_share", 100), ".2f") for part in PARTS}}
 

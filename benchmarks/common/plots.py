@@ -46,6 +46,8 @@ def scaling(rows, path):
                 continue
             cores = [r["ranks"] * r["threads"] for r in mine]
             axes.plot(cores, [100 * r["efficiency"] for r in mine], "-", color=colour, label=label)
+            if partition:
+                axes.plot(cores, [100 * r["computing_efficiency"] for r in mine], ":", color=colour, lw=1)
             for r, n in zip(mine, cores):  # hollow: not measured on the wall
                 face = "white" if r["oversubscribed"] else colour
                 axes.plot(n, 100 * r["efficiency"], "o", color=colour, markerfacecolor=face)
@@ -56,8 +58,10 @@ def scaling(rows, path):
         axes.set(xlabel="cores", title=f"{study} scaling")
     panels[0][0].set(ylabel="parallel efficiency, %", ylim=(0, 115))
     panels[0][0].legend(loc="lower left")
+    words = "dotted: computing alone"
     if any(r["oversubscribed"] for r in rows):
-        figure.supxlabel("hollow: more threads than cores; processor time, without waiting", fontsize=8, color=GREY)
+        words += "; hollow: more threads than cores, processor time without waiting"
+    figure.supxlabel(words, fontsize=8, color=GREY)
     save(figure, path)
 
 
@@ -77,6 +81,6 @@ def costs(rows, path, title):
                           xytext=(3, 0), textcoords="offset points", va="center", color=GREY)
     axes.axvline(0, color=GREY, lw=0.8)
     axes.grid(axis="y", visible=False)
-    axes.set(xlabel="added ns of a core per particle-step (bytes per particle beside the bar)", title=title,
+    axes.set(xlabel="added ns per particle-step; added bytes beside the bar", title=title,
              ylim=(0.2, len(rows) + 0.8), xlim=(None, 1.12 * right))
     save(figure, path)
