@@ -11,6 +11,7 @@
 //
 // The laws are those of the catalogue, with the parameters of tests/physics/samples.cpp. A law also has its
 // time alone: Material::update on batches that stay in the cache.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -55,9 +56,6 @@ struct Row {
   bool same_bits = false;
   double law_ns = std::nan("");
 };
-
-// Laws
-// ------------------------------------------------------------------------------------------------------------
 
 /// The bar of another material, thrown at a twentieth of its sound speed, at most 190 m/s. `like` sets the
 /// speed.
@@ -171,9 +169,6 @@ double time_of_law(const core::MaterialInput& si) {
   return ns.best();
 }
 
-// Pairs
-// -----------------------------------------------------------------------------------------------------------
-
 /// A scene that is stepped in turn with another.
 class Contestant {
  public:
@@ -229,9 +224,6 @@ Row measure(const Case& c, const Options& o) {
   if (c.law) row.law_ns = time_of_law(*c.law);
   return row;
 }
-
-// Tables
-// ----------------------------------------------------------------------------------------------------------
 
 void print(const Row& r) {
   fmt::print("{:<18} {:<42} {:<16} {:>7.2f} {:>+7.2f} +-{:>5.2f} {:>6} {:>5.0f} {:>+5.0f} {:>+7.1f}{}\n",
@@ -321,7 +313,11 @@ int run(int argc, char** argv) {
         fmt::print("WRONG: it asks for nothing, and is not for nothing\n");
         ++wrong;
       }
-    } catch (const std::exception& e) { left_out.emplace_back(c.family + " " + c.name, e.what()); }
+    } catch (const std::exception& e) {
+      std::string why = e.what();
+      std::replace(why.begin(), why.end(), '\n', ' ');  // one line of the table's head
+      left_out.emplace_back(c.family + " " + c.name, why);
+    }
   }
   for (const auto& [name, why] : left_out) fmt::print("left out: {}: {}\n", name, why);
   if (!o.csv.empty()) write_csv(o.csv, o, rows, left_out);

@@ -61,7 +61,7 @@ def of(key, factor=1):
 
 
 def throughput_blocks(out):
-    head, rows = results.read(out / "throughput.csv")
+    _, rows = results.read(out / "throughput.csv")
     ceilings = (f"Ceilings of one core in the same run: {1e-9 * rows[0]['triad_bytes_per_s']:.1f} GB/s triad, "
                 f"{1e-9 * rows[0]['in_place_bytes_per_s']:.1f} GB/s read and written in place, "
                 f"{1e-9 * rows[0]['fma_flops']:.0f} GFLOP/s.")
@@ -74,12 +74,16 @@ def throughput_blocks(out):
         "x naive": (of("ratio_to_reference"), ".1f"), "peak over state": (of("peak_over_state"), ".2f")})
     _, phases = results.read(out / "phases.csv")
     largest = max(r["particles"] for r in phases)
-    phase_table = results.markdown([r for r in phases if r["particles"] == largest], {
+    phase_table = results.markdown([r for r in phases if r["particles"] == largest and r["ns"] >= 0.05], {
         "scheme": (of("scheme"), ""), "phase": (of("phase"), ""), "ns": (of("ns"), ".2f"),
-        "moved B": (of("moved_bytes"), ".0f"), "GB/s": (lambda r: r["moved_bytes"] / r["ns"] if r["ns"] else None, ".1f"),
-        "GFLOP/s": (lambda r: r["operations"] / r["ns"] if r["ns"] else None, ".1f")})
+        "moved B": (lambda r: r["moved_bytes"] or None, ".0f"),
+        "GB/s": (lambda r: r["moved_bytes"] / r["ns"] or None, ".1f"),
+        "GFLOP/s": (lambda r: r["operations"] / r["ns"] or None, ".1f")})
     plots.throughput(rows, out / "throughput.png")
-    return {"machine": "\n".join(f"- {line}" for line in head), "throughput": f"{ceilings}\n\n{table}",
+    said = (out / "throughput.txt").read_text()
+    _, _, empty = said.partition("\nempty space: ")
+    empty = "\n\nEmpty space: " + "; ".join(" ".join(line.split()) for line in empty.splitlines()) if empty else ""
+    return {"throughput": f"{ceilings}\n\n{table}{empty}",
             "phases": f"{largest:.0f} particles:\n\n{phase_table}"}
 
 
@@ -95,10 +99,10 @@ def scaling_blocks(out):
 
 def feature_blocks(out):
     head, rows = results.read(out / "feature_cost.csv")
-    case = next(line for line in head if line.startswith("case")).split(maxsplit=1)[1].capitalize() + "."
+    case = next(line for line in head if line.startswith("case")).split(maxsplit=1)[1] + "."
     missing = [line.split(None, 2)[2].split(":")[0] for line in head if line.startswith("left out")]
     if missing:
-        case += f" Left out, because the program does not do it yet: {', '.join(missing)}."
+        case += f" Left out, feature_cost.csv says why: {', '.join(missing)}."
 
     columns = {"family": (of("family"), ""), "feature": (of("feature"), ""), "against": (of("against"), ""),
                "ns": (of("ns"), ".2f"), "added ns": (of("added_ns"), "+.2f"), "± ns": (of("error_ns"), ".2f"),
@@ -138,8 +142,12 @@ PICTURES = {"throughput": "throughput.png", "scaling": "scaling.png", "features"
 def tables(out):
     blocks = {}
     for file, make in BLOCKS.items():
-        if (out / file).exists():
-            blocks.update(make(out))
+        if not (out / file).exists():
+            continue
+        if file.endswith(".csv"):
+            facts = [line for line in results.read(out / file)[0] if not line.startswith(("case", "left out"))]
+            blocks.setdefault("machine", "\n".join(f"- {line}" for line in facts))
+        blocks.update(make(out))
     text = "# Benchmarks\n"
     for name, block in blocks.items():
         picture = f"\n![]({PICTURES[name]})\n" if name in PICTURES else ""
