@@ -5,7 +5,7 @@ pictures (.png). --docs also puts the tables into docs/benchmarks.md, between th
 every CSV file that the folder holds, so parts may be measured one at a time, and `--parts` alone only draws.
 
   run_all.py --quick        some minutes, small sizes: to see that all works
-  run_all.py --docs         about half an hour, on a machine that does nothing else"""
+  run_all.py --docs         about twenty minutes, on a machine that does nothing else"""
 
 import argparse
 import os
