@@ -1,8 +1,9 @@
 """All benchmarks by one command: throughput, scaling, feature costs, and error against run time.
 
-Leaves in the output folder: a CSV file per table, the programs' own words (.txt), all tables in benchmarks.md, and
-pictures (.png). --docs also puts the tables into docs/benchmarks.md, between their marks. Tables and pictures are made of
-every CSV file that the folder holds, so parts may be measured one at a time, and `--parts` alone only draws.
+Leaves in the output folder: a CSV file per table, the programs' own words (.txt), all tables in benchmarks.md,
+and pictures (.png). --docs also puts the tables into docs/benchmarks.md, between their marks. Tables and pictures
+are made of every CSV file that the folder holds, so parts may be measured one at a time, and `--parts` alone only
+draws.
 
   run_all.py --quick        some minutes, small sizes: to see that all works
   run_all.py --docs         about twenty minutes, on a machine that does nothing else"""
@@ -19,15 +20,15 @@ PARTS = "throughput", "scaling", "feature_cost", "accuracy"
 LAWS = "strength law", "equation of state", "failure law"
 
 
-# Measurements -----------------------------------------------------------------------------------------------------
+# Measurements ------------------------------------------------------------------------------------------
 
 
 def measure_throughput(options):
     size = {"quick": ["--sizes", "20e3,200e3", "--seconds", 1, "--empty-space", 50e3],
             "tiny": ["--sizes", "2e3", "--seconds", 0, "--repeats", 1, "--empty-space", 0, "--reference-limit", 0],
             "full": []}[options.size]
-    said = results.run([results.BIN / "throughput", *size, "--csv", options.out / "throughput.csv", "--phases-csv",
-                        options.out / "phases.csv"], echo=True)
+    said = results.run([results.BIN / "throughput", *size, "--csv", options.out / "throughput.csv",
+                        "--phases-csv", options.out / "phases.csv"], echo=True)
     (options.out / "throughput.txt").write_text(said)
 
 
@@ -40,8 +41,8 @@ def measure_scaling(options):
 
 
 def measure_feature_cost(options):
-    size = {"quick": ["--particles", 20e3, "--pairs", 4], "tiny": ["--particles", 1e3, "--pairs", 2, "--warm-up", 1],
-            "full": ["--pairs", 12]}[options.size]
+    size = {"quick": ["--particles", 20e3, "--pairs", 4],
+            "tiny": ["--particles", 1e3, "--pairs", 2, "--warm-up", 1], "full": ["--pairs", 12]}[options.size]
     said = results.run([results.BIN / "feature_cost", *size, "--csv", options.out / "feature_cost.csv"], echo=True)
     (options.out / "feature_cost.txt").write_text(said)
 
@@ -49,11 +50,12 @@ def measure_feature_cost(options):
 def measure_accuracy(options):
     models = {"tiny": ["default"], "quick": ["default"], "full": ["default", "M1", "M2"]}[options.size]
     schemes = ["MUSL"] if options.size == "tiny" else ["MUSL", "USF", "USL"]
-    results.run([sys.executable, results.ROOT / "tests/validation/taylor_bar.py", "--out", options.out / "taylor_bar",
-                 "--factors", "--models", *models, "--schemes", *schemes], MPM_BIN=str(results.BIN))
+    results.run([sys.executable, results.ROOT / "tests/validation/taylor_bar.py",
+                 "--out", options.out / "taylor_bar", "--factors", "--models", *models,
+                 "--schemes", *schemes], MPM_BIN=str(results.BIN))
 
 
-# Tables: {name: Markdown} of what the folder holds ----------------------------------------------------------------
+# Tables: {name: Markdown} of what the folder holds -----------------------------------------------
 
 
 def of(key, factor=1):
@@ -68,7 +70,8 @@ def throughput_blocks(out):
     table = results.markdown(rows, {
         "scheme": (of("scheme"), ""), "particles": (of("particles"), ".0f"), "best ns": (of("best_ns"), ".2f"),
         "median ns": (of("median_ns"), ".2f"), "M/s per core": (of("million_particle_steps_per_s_core"), ".1f"),
-        "state B": (of("state_bytes"), ".0f"), "moved B": (of("moved_bytes"), ".0f"), "FLOP": (of("operations"), ".0f"),
+        "state B": (of("state_bytes"), ".0f"), "moved B": (of("moved_bytes"), ".0f"),
+        "FLOP": (of("operations"), ".0f"),
         "of memory %": (of("share_dram", 100), ".0f"), "of FLOP %": (of("share_flop", 100), ".0f"),
         "x floor": (of("ratio_to_floor"), ".2f"), "naive ns": (of("reference_best_ns"), ".1f"),
         "x naive": (of("ratio_to_reference"), ".1f"), "peak over state": (of("peak_over_state"), ".2f")})
@@ -82,8 +85,8 @@ def throughput_blocks(out):
     plots.throughput(rows, out / "throughput.png")
     said = (out / "throughput.txt").read_text()
     _, _, empty = said.partition("\nempty space: ")
-    empty = "\n\nEmpty space: " + "; ".join(" ".join(line.split()) for line in empty.splitlines()) if empty else ""
-    return {"throughput": f"{ceilings}\n\n{table}{empty}",
+    empty = "; ".join(" ".join(line.split()) for line in empty.splitlines())
+    return {"throughput": f"{ceilings}\n\n{table}" + (f"\n\nEmpty space: {empty}." if empty else ""),
             "phases": f"{largest:.0f} particles:\n\n{phase_table}"}
 
 
@@ -133,10 +136,10 @@ def accuracy_blocks(out):
     return {"accuracy": (out / "taylor_bar/models.md").read_text()}
 
 
-BLOCKS = {"throughput.csv": throughput_blocks, "scaling.csv": scaling_blocks, "feature_cost.csv": feature_blocks,
-          "taylor_bar/models.md": accuracy_blocks}
-PICTURES = {"throughput": "throughput.png", "scaling": "scaling.png", "features": "features.png", "laws": "laws.png",
-            "accuracy": "taylor_bar/error_against_time.png"}
+BLOCKS = {"throughput.csv": throughput_blocks, "scaling.csv": scaling_blocks,
+          "feature_cost.csv": feature_blocks, "taylor_bar/models.md": accuracy_blocks}
+PICTURES = {"throughput": "throughput.png", "scaling": "scaling.png", "features": "features.png",
+            "laws": "laws.png", "accuracy": "taylor_bar/error_against_time.png"}
 
 
 def tables(out):
@@ -159,17 +162,21 @@ def tables(out):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=results.ROOT / "build/benchmarks")
-    parser.add_argument("--parts", nargs="*", choices=PARTS, default=PARTS, help="what is measured; none: tables only")
+    parser.add_argument("--parts", nargs="*", choices=PARTS, default=PARTS,
+                        help="what is measured; none: tables only")
     size = parser.add_mutually_exclusive_group()
-    size.add_argument("--quick", dest="size", action="store_const", const="quick", default="full", help="small sizes")
-    size.add_argument("--tiny", dest="size", action="store_const", const="tiny", help="seconds; the numbers mean nothing")
+    size.add_argument("--quick", dest="size", action="store_const", const="quick", default="full",
+                      help="small sizes")
+    size.add_argument("--tiny", dest="size", action="store_const", const="tiny",
+                      help="seconds; the numbers mean nothing")
     parser.add_argument("--docs", action="store_true", help="refresh the tables of docs/benchmarks.md")
     scaling.arguments(parser)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     load = os.getloadavg()[0]
     if options.parts and load > 0.25:
-        print(f"The machine has a load of {load:.2f}: others are at work, and the numbers will show it.", file=sys.stderr)
+        print(f"The machine has a load of {load:.2f}: others are at work, and the numbers will show it.",
+              file=sys.stderr)
     for part in options.parts:
         globals()[f"measure_{part}"](options)
     blocks = tables(options.out)

@@ -2,16 +2,17 @@
 
 strong  the same bar on 1, 2, 4 ... cores         weak  as many particles per core on each of them
 
-core_ns is the time of a core per particle-step, time per step x cores / particles. Efficiency, strong or weak, is that of
-the study's first case over that of the case: 1 where twice the cores do twice the work. Efficiency of computing counts
-the busiest rank alone, by the processor's time where it has one thread, and leaves out what waits for others. Shares are
-of the time of a step, means over the ranks; waiting in end_halo and agree holds what imbalance costs. Cases of the same
-bar whose states differ in one bit end the study.
+core_ns is the time of a core per particle-step, time per step x cores / particles. Efficiency, strong or weak,
+is that of the study's first case over that of the case: 1 where twice the cores do twice the work. Efficiency of
+computing counts the busiest rank's own processor time, without what waits for others (ranks only). Shares are of
+the time of a step, means over the ranks; waiting in end_halo and agree holds what imbalance costs. Cases of the
+same bar whose states differ in one bit end the study.
 
-With more ranks and threads than cores the wall's time means nothing. The step is then the processor's time of the busiest
-rank, as if there were cores enough and messages cost nothing; the table says so (clock: processor).
+With more ranks and threads than cores the wall's time means nothing. The step is then the processor's time of the
+busiest rank, as if there were cores enough and messages cost nothing; the table says so (clock: processor).
 
-On a cluster:  scaling.py --ranks 48 96 192 --launcher "srun -n {n} -c {t} --cpu-bind=cores" --strong 100e6 --weak 1e6"""
+On a cluster:
+  scaling.py --ranks 48 96 192 --launcher "srun -n {n} -c {t} --cpu-bind=cores" --strong 100e6 --weak 1e6"""
 
 import argparse
 import pathlib
@@ -33,9 +34,9 @@ def arguments(parser, cores=results.CORES):
     parser.add_argument("--launcher", default="mpirun --oversubscribe --bind-to none -n {n}",
                         help="command that starts {n} ranks of {t} threads")
     parser.add_argument("--strong", type=float, default=1.3e6, help="particles of the strong studies; 0: none")
-    parser.add_argument("--weak", type=float, default=200e3, help="particles per core of the weak studies; 0: none")
+    parser.add_argument("--weak", type=float, default=200e3, help="particles per core of the weak ones; 0: none")
     parser.add_argument("--partitions", nargs="+", default=["metis", "uniform"], choices=["metis", "uniform"])
-    parser.add_argument("--scaling-repeats", type=int, default=10, help="of 20 steps per case; the best one counts")
+    parser.add_argument("--scaling-repeats", type=int, default=10, help="of 20 steps; the best one counts")
 
 
 def cases(options):
@@ -60,8 +61,8 @@ def measure(options, partition, ranks, threads, particles):
     crowded = ranks * threads > results.CORES
     waiting = {"OMP_WAIT_POLICY": "passive", "OMPI_MCA_mpi_yield_when_idle": "1"} if crowded else {}
     return results.last_json(results.run(
-        [*launcher, results.BIN / "scaling", "--particles", particles, "--partition", partition, "--threads", threads,
-         "--repeats", options.scaling_repeats], OMP_NUM_THREADS=str(threads), **waiting))
+        [*launcher, results.BIN / "scaling", "--particles", particles, "--partition", partition,
+         "--threads", threads, "--repeats", options.scaling_repeats], OMP_NUM_THREADS=str(threads), **waiting))
 
 
 def study(options):
@@ -73,20 +74,24 @@ def study(options):
             measured[key] = measure(options, partition, ranks, threads, particles)
         case = measured[key]
         if states.setdefault(case["particles"], case["state"]) != case["state"]:
-            raise SystemExit(f"{ranks} rank(s) x {threads} thread(s), {partition}: the state {case['state']} is not "
-                             f"{states[case['particles']]}, that of the same bar before")
+            raise SystemExit(f"{ranks} rank(s) x {threads} thread(s), {partition}: the state {case['state']} "
+                             f"is not {states[case['particles']]}, that of the same bar before")
         cores, crowd = ranks * threads, case["oversubscribed"]
         core_ns = 1e9 * case["step_s"] * cores / case["particles"]
         computing_ns = 1e9 * case["compute_s"]["max"] * cores / case["particles"]
         base, computing = first.setdefault((name, over, partition), (core_ns, computing_ns))
-        rows.append({"study": name, "over": over, "partition": partition if over == "ranks" else "", "ranks": ranks,
+        of_ranks = over == "ranks"
+        rows.append({"study": name, "over": over, "partition": partition if of_ranks else "", "ranks": ranks,
                      "threads": threads, "particles": int(case["particles"]), "bricks": int(case["bricks"]),
                      "oversubscribed": int(crowd), "clock": case["clock"],
                      "step_ms": 1e3 * case["step_s"], "step_median_ms": 1e3 * case["step_median_s"],
-                     "core_ns": core_ns, "million_particle_steps_per_s": 1e-6 * case["particles"] / case["step_s"],
-                     "efficiency": base / core_ns, "computing_efficiency": computing / computing_ns,
+                     "core_ns": core_ns,
+                     "million_particle_steps_per_s": 1e-6 * case["particles"] / case["step_s"],
+                     "efficiency": base / core_ns,
+                     "computing_efficiency": computing / computing_ns if of_ranks else nan,
                      "imbalance": case["imbalance"], "particle_imbalance": case["particle_imbalance"],
-                     **{f"{part}_share": nan if crowd else case["parts_s"][part]["mean"] / case["step_s"] for part in PARTS},
+                     **{f"{part}_share": nan if crowd else case["parts_s"][part]["mean"] / case["step_s"]
+                        for part in PARTS},
                      "state": case["state"]})
     return rows, [f"{name:10} {value}" for name, value in case["facts"].items()]
 
@@ -94,9 +99,12 @@ def study(options):
 def columns():
     """For results.markdown."""
     get = lambda key, factor=1: lambda row: factor * row[key]
-    return {"cores": (lambda r: f"{int(r['ranks'])} x {int(r['threads'])}", ""), "partition": (get("partition"), ""),
-            "particles": (get("particles"), ".0f"), "clock": (get("clock"), ""), "ms per step": (get("step_ms"), ".3g"),
-            "M particle-steps/s": (get("million_particle_steps_per_s"), ".1f"), "efficiency %": (get("efficiency", 100), ".1f"), "of computing %": (get("computing_efficiency", 100), ".1f"),
+    return {"cores": (lambda r: f"{int(r['ranks'])} x {int(r['threads'])}", ""),
+            "partition": (get("partition"), ""), "particles": (get("particles"), ".0f"),
+            "clock": (get("clock"), ""), "ms per step": (get("step_ms"), ".3g"),
+            "M particle-steps/s": (get("million_particle_steps_per_s"), ".1f"),
+            "efficiency %": (get("efficiency", 100), ".1f"),
+            "of computing %": (get("computing_efficiency", 100), ".1f"),
             "max/mean computing": (get("imbalance"), ".3f"),
             **{f"{part.replace('_', ' ')} %": (get(f"{part}_share", 100), ".2f") for part in PARTS}}
 

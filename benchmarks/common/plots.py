@@ -28,7 +28,8 @@ def throughput(rows, path):
         axes.plot(size, [r["share_flop"] * r["best_ns"] for r in mine], "--", color=colour, lw=0.8)
     axes.plot([], [], ":", color=GREY, label="floor: bytes moved at the memory's speed")
     axes.plot([], [], "--", color=GREY, lw=0.8, label="floor: operations at the core's peak")
-    axes.set(xscale="log", xlabel="particles", ylabel="core time per particle-step, ns", title="A step of the Taylor bar")
+    axes.set(xscale="log", xlabel="particles", ylabel="core time per particle-step, ns",
+             title="A step of the Taylor bar")
     axes.set_ylim(bottom=0)
     axes.legend()
     save(figure, path)
@@ -37,8 +38,10 @@ def throughput(rows, path):
 def scaling(rows, path):
     """Efficiency over cores; strong on the left, weak on the right."""
     studies = [s for s in ("strong", "weak") if any(r["study"] == s for r in rows)]
-    figure, panels = plt.subplots(1, len(studies), figsize=(3.6 * len(studies) + 0.4, 3.8), sharey=True, squeeze=False)
-    styles = {"metis": ("#1f5fa8", "ranks, METIS"), "uniform": ("#c8502d", "ranks, boxes"), "": ("#3a8f4d", "threads")}
+    figure, panels = plt.subplots(1, len(studies), figsize=(3.6 * len(studies) + 0.4, 3.8), sharey=True,
+                                  squeeze=False)
+    styles = {"metis": ("#1f5fa8", "ranks, METIS"), "uniform": ("#c8502d", "ranks, boxes"),
+              "": ("#3a8f4d", "threads")}
     for axes, study in zip(panels[0], studies):
         for partition, (colour, label) in styles.items():
             mine = [r for r in rows if r["study"] == study and r["partition"] == partition]
@@ -71,14 +74,15 @@ def costs(rows, path, title):
     families = list(dict.fromkeys(r["family"] for r in rows))
     palette = plt.get_cmap("tab10")
     places = range(len(rows), 0, -1)
-    axes.barh(places, [r["added_ns"] for r in rows], xerr=[r["error_ns"] for r in rows], height=0.7, ecolor=GREY,
-              color=[palette(families.index(r["family"]) % 10) for r in rows], error_kw={"lw": 0.9})
+    axes.barh(places, [r["added_ns"] for r in rows], xerr=[r["error_ns"] for r in rows], height=0.7,
+              color=[palette(families.index(r["family"]) % 10) for r in rows], ecolor=GREY, error_kw={"lw": 0.9})
     axes.set_yticks(places, [f"{r['feature']}  (against {r['against']})" for r in rows], fontsize=7)
     right = max(r["added_ns"] + r["error_ns"] for r in rows)
     for place, r in zip(places, rows):
         if r["added_state_bytes"]:
-            axes.annotate(f"{r['added_state_bytes']:+.0f} B", (max(0, r["added_ns"] + r["error_ns"]), place), fontsize=7,
-                          xytext=(3, 0), textcoords="offset points", va="center", color=GREY)
+            end = max(0, r["added_ns"] + r["error_ns"])
+            axes.annotate(f"{r['added_state_bytes']:+.0f} B", (end, place), xytext=(3, 0),
+                          textcoords="offset points", va="center", fontsize=7, color=GREY)
     axes.axvline(0, color=GREY, lw=0.8)
     axes.grid(axis="y", visible=False)
     axes.set(xlabel="added ns per particle-step; added bytes beside the bar", title=title,

@@ -15,8 +15,8 @@ CORES = os.cpu_count()
 
 
 def environment(**more):
-    """Root in a container, which is what root mostly means, must be allowed to, and has no right to copy between
-    processes."""
+    """Root in a container, which is what root mostly means, must be allowed to, and has no right to copy
+    between processes."""
     root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
             "OMPI_MCA_btl_vader_single_copy_mechanism": "none"} if os.geteuid() == 0 else {}
     return {**os.environ, **root, **more}
@@ -80,7 +80,7 @@ def markdown(rows, columns):
 
 
 def refresh(path, blocks):
-    """Puts each text between its marks, `<!-- begin NAME -->` and `<!-- end NAME -->`; a name without marks is an error."""
+    """Puts each text between its marks, `<!-- begin NAME -->` and `<!-- end NAME -->`, which must be there."""
     text = path.read_text()
     for name, block in blocks.items():
         marks = re.compile(rf"(<!-- begin {name} -->\n).*?(<!-- end {name} -->)", re.DOTALL)
