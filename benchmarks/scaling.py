@@ -87,7 +87,7 @@ def study(options):
                      "step_ms": 1e3 * case["step_s"], "step_median_ms": 1e3 * case["step_median_s"],
                      "core_ns": core_ns,
                      "million_particle_steps_per_s": 1e-6 * case["particles"] / case["step_s"],
-                     "efficiency": base / core_ns,
+                     "efficiency": (computing if crowd else base) / core_ns,  # by the same clock
                      "computing_efficiency": computing / computing_ns if of_ranks else nan,
                      "imbalance": case["imbalance"], "particle_imbalance": case["particle_imbalance"],
                      **{f"{part}_share": nan if crowd else case["parts_s"][part]["mean"] / case["step_s"]
