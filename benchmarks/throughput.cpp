@@ -16,6 +16,7 @@
 #include "benchmarks/common/clock.hpp"
 #include "benchmarks/common/cost.hpp"
 #include "benchmarks/common/machine.hpp"
+#include "benchmarks/common/table_file.hpp"
 #include "core/simd/denormals.hpp"
 #include "tests/support/reference_stepper.hpp"
 
@@ -206,23 +207,9 @@ void print_tables(const std::vector<Row>& rows, const Ceilings& c, int threads) 
   }
 }
 
-/// Lines that start with # say where the numbers come from.
-void write_head(std::FILE* file, const Facts& facts) { fmt::print(file, "{}", facts_as_text(facts, "# ")); }
-
-struct File {
-  explicit File(const std::string& path) : handle(std::fopen(path.c_str(), "w")) {
-    if (handle == nullptr) throw std::runtime_error("cannot write " + path);
-  }
-  ~File() { std::fclose(handle); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  std::FILE* handle;
-};
-
 void write_csv(const std::string& path, const Facts& facts, const std::vector<Row>& rows, const Ceilings& c,
                int threads) {
-  const File file(path);
-  write_head(file.handle, facts);
+  const TableFile file(path, facts);
   fmt::print(
       file.handle,
       "scheme,particles,threads,repeats,steps_per_repeat,best_ns,median_ns,best_wall_ns,median_wall_ns,"
@@ -251,8 +238,7 @@ void write_csv(const std::string& path, const Facts& facts, const std::vector<Ro
 
 void write_phases_csv(const std::string& path, const Facts& facts, const std::vector<Row>& rows,
                       int threads) {
-  const File file(path);
-  write_head(file.handle, facts);
+  const TableFile file(path, facts);
   fmt::print(file.handle, "scheme,particles,threads,phase,ns,moved_bytes,operations\n");
   for (const Row& row : rows) {
     for (const Json& p : row.r["phases"]) {

@@ -1,5 +1,5 @@
 // The copper Taylor bar (thesis 3.5.1, table 3.1) of about so many particles, eight per cell, as an input
-// text, and a run of it in memory on one rank. Units: mm, g, ms; stress MPa.
+// text, and a run of it in memory. Units: mm, g, ms; stress MPa.
 #pragma once
 
 #include <cmath>
@@ -37,8 +37,12 @@ struct BarInput {
   std::string scheme = "MUSL";
   double box = 1;  ///< times as many cells along each axis, the bar where it was among the bricks
   std::string strength = iso_harden, eos = gruneisen, failure{};
-  std::string body{}, solution{}, output{};
+  std::string body{}, solution{}, output{}, more{};      ///< more elements
+  std::string grid_attributes{}, solution_attributes{};  ///< as they stand in the element
   std::string velocity = R"(<InitialVelocity vx="0" vy="0" vz="-190"/>)";
+  std::string time_step = R"(<TimeStep factor="0.4"/>)";
+  int foot = 2;    ///< boundary type of the face that the bar stands on
+  int bodies = 1;  ///< slices along the axis, each a body
 
   std::string text() const {
     const double dp = bar_spacing(particles), cell = 2 * dp;
@@ -49,41 +53,44 @@ struct BarInput {
         R"(<?xml version="1.0" encoding="utf-8"?><PeneBlast version="1.0"><Header><Name value="bar"/></Header>)";
     t += fmt::format(R"(<Material name="copper"><ReferenceDensity value="8.93e-3"/>{}{}{}</Material>)",
                      strength, eos, failure);
-    t += R"(<Component name="bar"><Body name="bar" material="copper" type="Cylinder">)";
-    t += fmt::format(
-        R"(<Geometry x0="0" y0="0" z0="0" dp_bottom="{0}" dp_top="{0}" Bottom_Outer_Radius="{1}" )"
-        R"(Top_Outer_Radius="{1}" height="{2}"/>{3}{4}</Body></Component>)",
-        dp, bar_diameter / 2, bar_length, velocity, body);
-    t += R"(<Grid><Cell type="regular">)";
+    t += R"(<Component name="bar">)";
+    // Slices end between layers of particles.
+    const double layers = std::round(bar_length / dp);
+    for (int i = 0; i < bodies; ++i) {
+      const double low = i == 0 ? 0 : dp * std::round(layers * i / bodies);
+      const double high = i + 1 == bodies ? bar_length : dp * std::round(layers * (i + 1) / bodies);
+      t += fmt::format(R"(<Body name="bar{}" material="copper" type="Cylinder">)", i);
+      t += fmt::format(R"(<Geometry x0="0" y0="0" z0="{0}" dp_bottom="{1}" dp_top="{1}" )", low, dp);
+      t += fmt::format(R"(Bottom_Outer_Radius="{0}" Top_Outer_Radius="{0}" height="{1}"/>{2}{3}</Body>)",
+                       bar_diameter / 2, high - low, velocity, body);
+    }
+    t += "</Component>";
+    t += fmt::format(R"(<Grid {}><Cell type="regular">)", grid_attributes);
     for (const char* axis : {"X", "Y"}) {
       t += fmt::format(R"(<{0}Min value="{1}" boundary="0"/><{0}Max value="{2}" boundary="0"/>)", axis,
                        -half * box, half * box);
     }
-    t += fmt::format(R"(<ZMin value="0" boundary="2"/><ZMax value="{}" boundary="0"/>)", height * box);
+    t += fmt::format(R"(<ZMin value="0" boundary="{}"/><ZMax value="{}" boundary="0"/>)", foot, height * box);
     t += fmt::format(R"(<DCell dx="{0}" dy="{0}" dz="{0}"/></Cell></Grid>)", cell);
-    t += fmt::format(
-        R"(<Solution algorithm="{}"><EndTime value="0.08"/><TimeStep factor="0.4"/>{}</Solution>)", scheme,
-        solution);
-    t += fmt::format(R"(<Output><Console print_time="0.08"/>{}</Output></PeneBlast>)", output);
+    t += fmt::format(R"(<Solution algorithm="{}" {}><EndTime value="0.08"/>{}{}</Solution>)", scheme,
+                     solution_attributes, time_step, solution);
+    t += fmt::format(R"(<Output><Console print_time="0.08"/>{}</Output>{}</PeneBlast>)", output, more);
     return t;
   }
+  core::Scene scene() const { return io::parse_scene(text(), "bar.xmp", physics::catalogue()); }
 };
 
-/// A case on one rank, ready to step.
+/// A case in memory, ready to step; on one rank unless the exchange says otherwise.
 struct BarRun {
   std::shared_ptr<const core::Scene> scene;
   core::Model model;
-  core::SoloExchange exchange;
+  core::SoloExchange alone;
   std::optional<core::Stepper> stepper;
 
-  explicit BarRun(const BarInput& input) {
-    scene =
-        std::make_shared<const core::Scene>(io::parse_scene(input.text(), "bar.xmp", physics::catalogue()));
-    model = core::prepare_model(scene, apps::make_materials(*scene), io::columns_for(scene->output));
-    core::discretise(model, exchange);
-    core::start_clock(model, exchange);
-    stepper.emplace(model, exchange);
-  }
+  explicit BarRun(const BarInput& input) : BarRun(input.scene()) {}
+  explicit BarRun(core::Scene of) : BarRun(std::move(of), nullptr) {}
+  /// Collective.
+  BarRun(core::Scene of, core::Exchange& exchange) : BarRun(std::move(of), &exchange) {}
   BarRun(const BarRun&) = delete;
   BarRun& operator=(const BarRun&) = delete;
 
@@ -102,6 +109,16 @@ struct BarRun {
     const double doubles =
         core::record_doubles(core::NodeArray::first) + core::record_doubles(core::NodeArray::second);
     return doubles * sizeof(double) * model.grid->shape().nodes();
+  }
+
+ private:
+  BarRun(core::Scene of, core::Exchange* others)
+      : scene(std::make_shared<const core::Scene>(std::move(of))),
+        model(core::prepare_model(scene, apps::make_materials(*scene), io::columns_for(scene->output))) {
+    core::Exchange& exchange = others != nullptr ? *others : alone;
+    core::discretise(model, exchange);
+    core::start_clock(model, exchange);
+    stepper.emplace(model, exchange);
   }
 };
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -38,6 +39,7 @@ class Series {
  public:
   void add(double x) { values_.push_back(x); }
   std::size_t size() const { return values_.size(); }
+  double last() const { return values_.back(); }
   double best() const {
     return values_.empty() ? std::numeric_limits<double>::quiet_NaN()
                            : *std::min_element(values_.begin(), values_.end());
@@ -48,6 +50,13 @@ class Series {
     std::sort(sorted.begin(), sorted.end());
     const std::size_t n = sorted.size();
     return n % 2 == 1 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
+  }
+  /// Standard error of the median, from the median distance to it, as if the values were normally
+  /// distributed.
+  double error_of_median() const {
+    Series distances;
+    for (const double x : values_) distances.add(std::abs(x - median()));
+    return 1.2533 * 1.4826 * distances.median() / std::sqrt(static_cast<double>(values_.size()));
   }
   std::size_t index_of_best() const {
     return static_cast<std::size_t>(std::min_element(values_.begin(), values_.end()) - values_.begin());

@@ -1,5 +1,6 @@
-// Materials for the tests that hold for every law: at least one set of parameters per law of the lists, in
-// SI, and the same in mm-g-ms, converted by the dimensions that the laws' own tables state.
+// Materials for the tests that hold for every law and for the benchmark of every law: at least one set of
+// parameters per law of the lists, in SI, and the same in mm-g-ms, converted by the dimensions that the laws'
+// own tables state.
 #pragma once
 
 #include <map>
@@ -21,8 +22,9 @@ struct Sample {
 };
 
 /// Every strength law with the elastic bulk and with an equation of state, and every equation of state with a
-/// strength law. Fails the test (REQUIRE) for a law of the catalogue that has no sample.
+/// strength law. A test demands one for every law of the catalogue.
 const std::vector<Sample>& samples();
+/// Throws std::logic_error where there is none; so do the others below for a name that nobody knows.
 const Sample& sample(const std::string& label);
 
 /// Factors from one system of units to another: value in the new unit = factor * value in the old.

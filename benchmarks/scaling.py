@@ -1,0 +1,128 @@
+"""Strong and weak scaling of the copper Taylor bar over MPI ranks and over OpenMP threads, as one CSV file.
+
+strong  the same bar on 1, 2, 4 ... cores         weak  as many particles per core on each of them
+
+core_ns is the time of a core per particle-step, time per step x cores / particles. Efficiency, strong or weak,
+is that of the study's first case over that of the case: 1 where twice the cores do twice the work. Efficiency of
+computing counts the busiest rank's own processor time, without what waits for others (ranks only). Shares are of
+the time of a step, means over the ranks; waiting in end_halo and agree holds what imbalance costs. Cases of the
+same bar whose states differ in one bit end the study.
+
+With more ranks and threads than cores the wall's time means nothing. The step is then the processor's time of the
+busiest rank, as if there were cores enough and messages cost nothing; the table says so (clock: processor).
+
+On a cluster:
+  scaling.py --ranks 48 96 192 --launcher "srun -n {n} -c {t} --cpu-bind=cores" --strong 100e6 --weak 1e6"""
+
+import argparse
+import pathlib
+from math import nan
+
+from common import results
+
+PARTS = "begin_halo", "end_halo", "agree", "bricks", "migrate"
+
+
+def doubling(most):
+    """1, 2, 4 ... and `most` itself."""
+    return sorted({2**i for i in range(most.bit_length())} | {most})
+
+
+def arguments(parser, cores=results.CORES):
+    parser.add_argument("--ranks", type=int, nargs="*", default=doubling(cores), help="each with one thread")
+    parser.add_argument("--threads", type=int, nargs="*", default=doubling(cores), help="each with one rank")
+    parser.add_argument("--launcher", default="mpirun --oversubscribe --bind-to none -n {n}",
+                        help="command that starts {n} ranks of {t} threads")
+    parser.add_argument("--strong", type=float, default=1.3e6, help="particles of the strong studies; 0: none")
+    parser.add_argument("--weak", type=float, default=200e3, help="particles per core of the weak ones; 0: none")
+    parser.add_argument("--partitions", nargs="+", default=["metis", "uniform"], choices=["metis", "uniform"])
+    parser.add_argument("--scaling-repeats", type=int, default=10, help="of 20 steps; the best one counts")
+
+
+def cases(options):
+    """(study, over, partition, ranks, threads, particles) of every run, the base of each study first."""
+    for study, size in (("strong", options.strong), ("weak", options.weak)):
+        if size <= 0:
+            continue
+
+        def particles(cores):
+            return size * (cores if study == "weak" else 1)
+
+        for partition in options.partitions:
+            for n in options.ranks:
+                yield study, "ranks", partition, n, 1, particles(n)
+        for t in options.threads:
+            yield study, "threads", options.partitions[0], 1, t, particles(t)
+
+
+def measure(options, partition, ranks, threads, particles):
+    launcher = options.launcher.format(n=ranks, t=threads).split()
+    # Where another needs the core, who waits must not hold it.
+    crowded = ranks * threads > results.CORES
+    waiting = {"OMP_WAIT_POLICY": "passive", "OMPI_MCA_mpi_yield_when_idle": "1"} if crowded else {}
+    return results.last_json(results.run(
+        [*launcher, results.BIN / "scaling", "--particles", particles, "--partition", partition,
+         "--threads", threads, "--repeats", options.scaling_repeats], OMP_NUM_THREADS=str(threads), **waiting))
+
+
+def study(options):
+    """Rows of the table, and the facts of the machine."""
+    rows, measured, first, states = [], {}, {}, {}
+    for name, over, partition, ranks, threads, particles in cases(options):
+        key = (partition if ranks > 1 else "", ranks, threads, particles)  # one rank has no partition
+        if key not in measured:
+            measured[key] = measure(options, partition, ranks, threads, particles)
+        case = measured[key]
+        if states.setdefault(case["particles"], case["state"]) != case["state"]:
+            raise SystemExit(f"{ranks} rank(s) x {threads} thread(s), {partition}: the state {case['state']} "
+                             f"is not {states[case['particles']]}, that of the same bar before")
+        cores, crowd = ranks * threads, case["oversubscribed"]
+        core_ns = 1e9 * case["step_s"] * cores / case["particles"]
+        computing_ns = 1e9 * case["compute_s"]["max"] * cores / case["particles"]
+        base, computing = first.setdefault((name, over, partition), (core_ns, computing_ns))
+        of_ranks = over == "ranks"
+        rows.append({"study": name, "over": over, "partition": partition if of_ranks else "", "ranks": ranks,
+                     "threads": threads, "particles": int(case["particles"]), "bricks": int(case["bricks"]),
+                     "oversubscribed": int(crowd), "clock": case["clock"],
+                     "step_ms": 1e3 * case["step_s"], "step_median_ms": 1e3 * case["step_median_s"],
+                     "core_ns": core_ns,
+                     "million_particle_steps_per_s": 1e-6 * case["particles"] / case["step_s"],
+                     "efficiency": (computing if crowd else base) / core_ns,  # by the same clock
+                     "computing_efficiency": computing / computing_ns if of_ranks else nan,
+                     "imbalance": case["imbalance"], "particle_imbalance": case["particle_imbalance"],
+                     **{f"{part}_share": nan if crowd else case["parts_s"][part]["mean"] / case["step_s"]
+                        for part in PARTS},
+                     "state": case["state"]})
+    return rows, [f"{name:10} {value}" for name, value in case["facts"].items()]
+
+
+def columns():
+    """For results.markdown."""
+    get = lambda key, factor=1: lambda row: factor * row[key]
+    return {"cores": (lambda r: f"{int(r['ranks'])} x {int(r['threads'])}", ""),
+            "partition": (get("partition"), ""), "particles": (get("particles"), ".0f"),
+            "clock": (get("clock"), ""), "ms per step": (get("step_ms"), ".3g"),
+            "M particle-steps/s": (get("million_particle_steps_per_s"), ".1f"),
+            "efficiency %": (get("efficiency", 100), ".1f"),
+            "of computing %": (get("computing_efficiency", 100), ".1f"),
+            "max/mean computing": (get("imbalance"), ".3f"),
+            **{f"{part.replace('_', ' ')} %": (get(f"{part}_share", 100), ".2f") for part in PARTS}}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments(parser)
+    parser.add_argument("--csv", type=pathlib.Path, default=results.ROOT / "build/benchmarks/scaling.csv")
+    options = parser.parse_args()
+    rows, facts = study(options)
+    results.write(options.csv, rows, facts)
+    for name in dict.fromkeys((r["study"], r["over"]) for r in rows):
+        print(f"\n{name[0]} scaling over {name[1]} (cores: ranks x threads)\n")
+        print(results.markdown([r for r in rows if (r["study"], r["over"]) == name], columns()))
+    if any(r["oversubscribed"] for r in rows):
+        print("\nclock: processor. More ranks and threads than cores; see scaling.py --help.")
+    print(f"\n{options.csv}")
+
+
+if __name__ == "__main__":
+    main()
