@@ -111,7 +111,8 @@ class Loads(_mpm.Case):
             left[face] = status["kinetic"][-1] / max(status["kinetic"])
             if face == "3":  # what is gone has been booked as work done on the outside
                 missing = np.array(status["total"]) - status["external_work"]
-                self.assertLess(np.abs(missing).max(), 0.02 * max(status["total"]))
+                # First order in the step: dashpots act on the velocity at its beginning.
+                self.assertLess(np.abs(missing).max(), 0.04 * max(status["total"]))
         self.assertLess(left["3"], 0.005)
         self.assertGreater(left["2"], 0.9)
 
