@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "core/discretise/seeds.hpp"
+#include "core/step/conduction.hpp"
 #include "core/step/migration.hpp"
 #include "core/step/passes.hpp"
 #include "core/step/stepper.hpp"
@@ -341,7 +342,8 @@ void start_clock(Model& model, Exchange& exchange) {
       fastest = std::max(fastest, batch.critical_speed[i] + std::sqrt(vv));
     }
   });
-  double critical[1] = {critical_step(*model.grid, fastest)};
+  double critical[1] = {
+      std::min(critical_step(*model.grid, fastest), Conduction(model, exchange).critical_step())};
   exchange.minimum(critical);
   model.clock.critical_dt = model.clock.first_critical_dt = critical[0];
   const Totals totals = compute_totals(model, exchange);

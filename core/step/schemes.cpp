@@ -13,6 +13,14 @@ std::vector<Phase> phases_of(Stepper& s, Scheme scheme) {
     step.push_back({name, std::move(run)});
   };
 
+  if (Conduction& heat = s.conduction_; heat.any()) {
+    then("heat to grid", [&heat] { heat.map_heat(); });
+    then("exchange heat", [&heat] { heat.finish_exchange(); });
+    then("heat flux to grid", [&heat] { heat.map_flux(); });
+    then("exchange flux", [&heat] { heat.finish_exchange(); });
+    then("heat to particles", [&s, &heat] { heat.warm(s.model_.clock.dt); });
+  }
+
   switch (scheme) {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_to_grid<momentum_mass_force>(); });

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/step/conduction.hpp"
 #include "core/step/migration.hpp"
 #include "core/step/passes.hpp"
 
@@ -59,6 +60,7 @@ class Stepper {
   Model& model_;
   Exchange& exchange_;
   Passes passes_;
+  Conduction conduction_;
   Migration migration_;
   std::vector<Phase> phases_;
   Incidents incidents_;

@@ -1,0 +1,51 @@
+// Heat conduction on the grid, before the mechanics of a step: rho c dT/dt = div(k grad T).
+//
+// Heat and its capacity go from the particles to the nodes, as momentum and mass do; the flux through each
+// particle, from the nodes' temperatures, changes the nodes' heat; the particles take the nodes' increments:
+//   T_i = sum m c T S_i / C_i,  C_i = sum m c S_i,  Q_i = -sum V k grad T . grad S_i,  dT_i = dt Q_i / C_i
+// The sum of Q_i is zero, so heat is kept to round-off; it is internal energy, which moves with it. The grid's
+// faces are adiabatic, and so are bodies without conductivity. The first node array and the second, idle
+// between steps, carry Q and (C, C T). Stable up to 1/(2 a (1/dx^2 + 1/dy^2 + 1/dz^2)) for a = k/(rho c), the
+// bound of the regular grid with lumped capacities; that joins the critical step.
+// Shown by tests/system/physics_heat.py.
+#pragma once
+
+#include <vector>
+
+#include "core/model.hpp"
+#include "core/step/exchange.hpp"
+#include "core/step/node_update.hpp"
+#include "core/step/shape.hpp"
+
+namespace mpm::core {
+
+class Conduction {
+ public:
+  Conduction(Model& model, Exchange& exchange);
+
+  /// Whether any body conducts. Without, there are no phases for it.
+  bool any() const { return any_; }
+
+  void map_heat();
+  void map_flux();
+  void warm(double dt);
+  void finish_exchange() { exchange_.end_halo(*model_.grid); }
+
+  /// Largest stable step of this rank's particles as they are; infinity where nothing conducts.
+  double critical_step() const;
+
+ private:
+  /// f(layout, body number, block, place, lanes in use) for the blocks of the bodies that conduct.
+  template <class F>
+  void for_each_block(Slot s, F f) const;
+  /// Capacity and temperature of the brick's nodes, in components 0 and 1.
+  void temperatures(Slot s, double* nodes) const;
+
+  Model& model_;
+  Exchange& exchange_;
+  SharedNodes shared_;
+  std::vector<AlignedDoubles> heat_, flux_;  ///< of the brick at hand, by thread
+  bool any_ = false;
+};
+
+}  // namespace mpm::core
