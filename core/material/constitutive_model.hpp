@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/material/batch.hpp"
+#include "core/material/failed_component.hpp"
 
 namespace mpm::core {
 
@@ -39,6 +40,9 @@ class ConstitutiveModel {
 
   /// Derived quantities for output and for the thermal summary; 0 where the law has none.
   virtual double specific_heat() const { return 0; }
+
+  /// For contact between components.
+  virtual FailedComponentRule failed_component_rule() const { return {}; }
 };
 
 }  // namespace mpm::core

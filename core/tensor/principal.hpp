@@ -4,7 +4,7 @@
 // cos(acos(r)/3) (Smith, Comm. ACM 4 (1961) 168), is well apart from the other two when r >= 0; where r < 0
 // the tensor is taken with the other sign. The other two do not come from the same formula, which loses half
 // the digits where they nearly coincide: the tensor is reduced to the plane normal to the first axis, where
-// half their difference is a norm. Error below 4e-15 of the largest component, also for double and triple
+// half their difference is a norm. Error below 8e-15 of the largest component, also for double and triple
 // values, and no tensor is too small or too large (tests/core/tensor/principal_test.cpp, against an iterative
 // solver).
 #pragma once

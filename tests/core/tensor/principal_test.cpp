@@ -49,7 +49,8 @@ struct Turned {
   }
 };
 
-constexpr double allowed = 4e-15;
+// Twice the worst seen, which is 3.8e-15 and has the other solver's error in it.
+constexpr double allowed = 8e-15;
 
 }  // namespace
 
