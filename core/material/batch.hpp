@@ -33,6 +33,8 @@ struct MaterialEvents {
   }
 };
 
+struct GridGeometry;
+
 struct Batch {
   // --- set by the caller ---
   const ColumnLayout* layout = nullptr;
@@ -41,7 +43,8 @@ struct Batch {
   double* block[batch_blocks] = {};  ///< start of each block
   double time = 0;                   ///< at the end of the step
   double dt = 0;
-  double cell_size = 0;  ///< characteristic length of the artificial viscosity
+  double cell_size = 0;                ///< characteristic length of the artificial viscosity
+  const GridGeometry* grid = nullptr;  ///< for `initialise`; null: a point without a grid, all is one cell
   /// Velocity gradient, row i column j = d v_i / d x_j, in the order of Mat3.
   alignas(64) Row gradient[9];
   /// Volumetric strain increment of the particle's cell; read for volume update 1 only.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/material/batch.hpp"
+#include "core/material/failed_component.hpp"
 
 namespace mpm::core {
 
@@ -43,6 +44,9 @@ class ConstitutiveModel {
   virtual double specific_heat() const { return 0; }
   /// Heat conductivity; 0: adiabatic.
   virtual double conductivity() const { return 0; }
+
+  /// For contact between components.
+  virtual FailedComponentRule failed_component_rule() const { return {}; }
 };
 
 }  // namespace mpm::core

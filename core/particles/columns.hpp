@@ -59,6 +59,7 @@ enum class Column : int {
   f_zx,
   f_zy,
   f_zz,
+  thermal_strain,
   sound_speed,
   history_0,
   history_1,
@@ -124,6 +125,7 @@ inline constexpr std::array<ColumnInfo, column_count> column_table{{
     {"f_zx", "1"},
     {"f_zy", "1"},
     {"f_zz", "1"},
+    {"thermal_strain", "1"},  // volumetric; what the pressure already knows of
     {"sound_speed", "velocity"},
     {"history_0", "1"},
     {"history_1", "1"},
@@ -137,6 +139,11 @@ inline constexpr std::array<ColumnInfo, column_count> column_table{{
 
 constexpr std::string_view name_of(Column c) { return column_table[static_cast<std::size_t>(c)].name; }
 constexpr Column next(Column c, int n) { return static_cast<Column>(static_cast<int>(c) + n); }
+
+/// F in the order of Mat3. Starts as the unit tensor.
+inline constexpr std::array deformation_gradient_columns{Column::f_xx, Column::f_xy, Column::f_xz,
+                                                         Column::f_yx, Column::f_yy, Column::f_yz,
+                                                         Column::f_zx, Column::f_zy, Column::f_zz};
 
 class ColumnSet {
  public:

@@ -205,6 +205,7 @@ void for_each_batch(Model& model, F f) {
         Batch batch{};
         batch.layout = &body.pool->layout();
         batch.cell_size = grid.geometry().smallest_cell();
+        batch.grid = &grid.geometry();
         batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
         batch.particles =
             static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));

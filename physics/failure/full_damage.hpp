@@ -1,5 +1,6 @@
 // Fails where a strength law's damage has reached one (manual 3-4, thesis 2-137). Not a type of the input: it
-// comes with every strength law that carries damage.
+// comes with every strength law that fails by damage. With DamageRandom the threshold scatters, up to one at
+// most (manual 3.2.4).
 #pragma once
 
 #include "physics/failure/point.hpp"
@@ -9,9 +10,14 @@ namespace mpm::physics {
 struct FullDamage {
   static constexpr std::array state{core::Column::damage};
 
+  double threshold = 1;
+  bool scatters = false;
+
   template <class T>
   core::MaskOf<T> fails(const FailurePoint<T>& point) const {
-    return point.damage >= 1.0;
+    if (!scatters) return point.damage >= threshold;
+    // A factor of zero still needs some damage.
+    return (point.damage >= core::min(point.threshold_factor * threshold, 1.0)) & (point.damage > 0.0);
   }
 };
 

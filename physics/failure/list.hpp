@@ -4,11 +4,15 @@
 #include <variant>
 
 #include "physics/failure/full_damage.hpp"
+#include "physics/failure/geometric_strain.hpp"
 #include "physics/failure/minimum_pressure.hpp"
 #include "physics/failure/plastic_strain.hpp"
+#include "physics/failure/principal_strain.hpp"
+#include "physics/failure/principal_stress.hpp"
 
 namespace mpm::physics {
 
-using FailureModel = std::variant<FullDamage, PlasticStrainFailure, MinimumPressureFailure>;
+using FailureModel = std::variant<FullDamage, PlasticStrainFailure, MinimumPressureFailure,
+                                  PrincipalStressFailure, PrincipalStrainFailure, GeometricStrainFailure>;
 
 }  // namespace mpm::physics

@@ -29,7 +29,7 @@ struct MinimumPressureFailure {
 
   template <class T>
   core::MaskOf<T> fails(const FailurePoint<T>& point) const {
-    return point.pressure < pmin;
+    return point.pressure < point.threshold_factor * pmin;
   }
 };
 

@@ -28,7 +28,7 @@ struct PlasticStrainFailure {
 
   template <class T>
   core::MaskOf<T> fails(const FailurePoint<T>& point) const {
-    return point.effective_plastic_strain > epmax;
+    return point.effective_plastic_strain > point.threshold_factor * epmax;
   }
 };
 

@@ -58,9 +58,49 @@ void refuse_what_is_missing(const core::MaterialInput& input, const CommonParame
     throw core::InputErrors(input.strength.source, "StrengthModel",
                             std::string(what) + " is not implemented yet");
   };
-  if (common.temperature_coefficient != 0) refuse("TemperatureCoefficient other than 0");
   if (common.conductivity != 0) refuse("CoefficientOfThermalConductivity other than 0");
-  if (input.random_failure.enable) refuse("RandomFailure");
+}
+
+/// Whether the equation's pressure depends on the energy, and so on heat.
+bool depends_on_energy(const EquationOfState& equation) {
+  return std::visit(
+      [](const auto& eos) {
+        bool depends = false;
+        for (const double mu : {-0.1, 0.0, 0.1}) {
+          EosPoint<double> point{};
+          point.compression = mu;
+          point.relative_volume = 1 / (1 + mu);
+          if constexpr (requires { eos.line(point); }) depends = depends || eos.line(point).b != 0;
+        }
+        return depends;
+      },
+      equation);
+}
+
+void check_expansion(const core::MaterialInput& input, const Material::Laws& laws) {
+  if (laws.common.temperature_coefficient == 0) return;
+  const auto fault = [&](const std::string& text) {
+    throw core::InputErrors(input.strength.source, "StrengthModel", text);
+  };
+  if (!(laws.common.specific_heat > 0)) fault("TemperatureCoefficient needs SpecHeat");
+  const bool sets_pressure = std::visit(
+      [](const auto& law) {
+        return requires { requires std::decay_t<decltype(law)>::sets_pressure; };
+      },
+      laws.strength);
+  if (sets_pressure) {
+    fault(input.strength.type + " computes its pressure itself, without TemperatureCoefficient: remove it");
+  }
+  if (depends_on_energy(laws.eos)) {
+    fault("TemperatureCoefficient must be 0 with " + input.eos->type +
+          ", whose pressure already grows with the energy of heating");
+  }
+}
+
+void check_scatter(const core::MaterialInput& input) {
+  if (!input.random_failure.enable) return;
+  const std::string fault = ThresholdScatter(input.random_failure).fault();
+  if (!fault.empty()) throw core::InputErrors(input.source, "RandomFailure", fault);
 }
 
 }  // namespace
@@ -76,6 +116,9 @@ std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput
   light(laws.strength, input, detonations);
   laws.eos = make_eos(input, laws.strength, laws.common);
   if (input.eos) read_parameters(laws.common_eos, *input.eos);
+  check_expansion(input, laws);
+  check_scatter(input);
+  laws.random_failure = input.random_failure;
   for (const core::FailureInput& failure : input.failures) {
     laws.failures.push_back(
         {make_law<FailureModel>(failure, "FailureModel", input.reference_density), failure.erosion});

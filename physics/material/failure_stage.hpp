@@ -14,17 +14,20 @@
 
 namespace mpm::physics {
 
-/// `verdict` becomes at least 1 (2 where the model erodes) where the model says so.
+/// `verdict` becomes at least 1 (2 where the model erodes) where the model says so. `scatters`: the particles
+/// have their own threshold factors.
 template <class T, class Model>
 [[gnu::noinline, gnu::flatten]] void judge(const core::Batch& batch, const Model& model, bool erodes,
-                                           double* verdict) {
+                                           bool scatters, double* verdict) {
   const core::ColumnLayout& layout = *batch.layout;
   const History<Model, FailurePoint<T>> history(model, layout);
   const int pressure_at = layout.offset(core::Column::pressure);
+  const int factor_at = scatters ? layout.offset(core::Column::threshold_factor) : -1;
   const double sentence = erodes ? 2 : 1;
   for_each_vector<T>(batch, [&](const double* block, int row) {
     FailurePoint<T> point{load_deviator<T>(block, layout), core::load<T>(block + pressure_at)};
     history.load(block, point);
+    if (factor_at >= 0) point.threshold_factor = core::load<T>(block + factor_at);
     const T before = core::load<T>(verdict + row);
     core::store(verdict + row, core::select(model.fails(point), core::max(before, sentence), before));
   });

@@ -1,7 +1,9 @@
 #include "physics/material/material.hpp"
 
+#include "core/grid/brick.hpp"
 #include "core/simd/math.hpp"
 #include "physics/laws.hpp"
+#include "physics/material/deformation.hpp"
 #include "physics/material/failure_stage.hpp"
 #include "physics/material/kinematics.hpp"
 
@@ -69,11 +71,23 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
       },
       laws_.strength);
   fails_ = !laws_.failures.empty();
+  expands_ = laws_.common.temperature_coefficient != 0;
+  scatter_thresholds();
+  follows_deformation_ = columns({}).has(Column::f_xx);
   viscous_ = viscous_ || (fails_ && laws_.common.fail_viscosity > 0);
   const double shear = shear_modulus_at_rest(laws_);
   initial_modulus_ = modulus_at_rest(laws_, shear);
   initial_shear_speed_ = std::sqrt(std::max(shear, 0.0) / laws_.reference_density);
   initial_sound_speed_ = std::sqrt(std::max(initial_modulus_, 0.0) / laws_.reference_density);
+}
+
+void Material::scatter_thresholds() {
+  const core::RandomFailureInput& random = laws_.random_failure;
+  if (!random.enable || random.distribution == core::RandomFailureInput::Distribution::constant) return;
+  for (FailureEntry& entry : laws_.failures) {
+    if (auto* damage = std::get_if<FullDamage>(&entry.model)) damage->scatters = random.random_damage;
+  }
+  scatters_ = fails_ || (random.random_damage && columns({}).has(Column::damage));
 }
 
 core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
@@ -84,6 +98,8 @@ core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
   }
   if (fails_) set.add(Column::failed);
   if (heats_) set.add(Column::temperature);
+  if (expands_) set.add({Column::temperature, Column::thermal_strain});
+  if (scatters_) set.add(Column::threshold_factor);
   if (options.keep_strain || options.volume_update == 4) set.add_range(Column::strain_xx, 6);
   return set;
 }
@@ -103,6 +119,8 @@ PressureRules Material::pressure_rules(const core::UpdateOptions& options) const
           .initial_sound_speed = initial_sound_speed_,
           .constant_sound_speed = common.constant_sound_speed != 0,
           .viscosity_in_wave_speed = options.viscosity_in_wave_speed,
+          .expansion = 3 * common.temperature_coefficient,
+          .expansion_from = common.room_temperature,
           .viscous = viscous_,
           .failed = {.type = static_cast<int>(common.failed_type), .tensile_cutoff = common.tensile_cutoff}};
 }
@@ -112,6 +130,7 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options)
   alignas(64) core::Row verdict;
   const PressureRules rules = pressure_rules(options);
   update_kinematics<T>(batch, options, laws_.reference_density);
+  if (follows_deformation_) update_deformation_gradient<T>(batch);
   std::visit([&](const auto& law) { update_strength<T>(batch, law, strength_rules()); }, laws_.strength);
   std::visit(
       [&](const auto& law, const auto& eos) {
@@ -120,7 +139,8 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options)
       laws_.strength, laws_.eos);
   if (!fails_) return;
   for (const FailureEntry& entry : laws_.failures) {
-    std::visit([&](const auto& model) { judge<T>(batch, model, entry.erodes, verdict); }, entry.model);
+    std::visit([&](const auto& model) { judge<T>(batch, model, entry.erodes, scatters_, verdict); },
+               entry.model);
   }
   apply_failure<T>(batch, rules.failed, verdict);
 }
@@ -129,6 +149,7 @@ template <class T>
 void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& options) const {
   const core::ColumnLayout& layout = *batch.layout;
   PressureRules rules = pressure_rules(options);
+  if (scatters_) draw_thresholds(batch);
   std::visit(
       [&](const auto& law, const auto& plain_eos) {
         const auto& eos = beside(plain_eos, law);
@@ -156,6 +177,9 @@ void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& opti
           law_history.store(block, point);
           put(Column::temperature, point.temperature);
           put(Column::yield_stress, point.yield_stress);
+          if (follows_deformation_) {
+            for (const Column c : {Column::f_xx, Column::f_yy, Column::f_zz}) put(c, 1.0);
+          }
 
           EosPoint<T> bulk{now.compression, now.relative_volume, T(0.0), T(0.0), T(0.0)};
           eos_history.load(block, bulk);
@@ -172,6 +196,27 @@ void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& opti
         });
       },
       laws_.strength, laws_.eos);
+}
+
+/// One draw after the other: this happens once in a particle's life.
+void Material::draw_thresholds(core::Batch& batch) const {
+  const ThresholdScatter scatter(laws_.random_failure);
+  const auto cell_of = [&](const double* lane) -> std::int64_t {
+    if (batch.grid == nullptr) return 0;
+    const core::GridGeometry& grid = *batch.grid;
+    std::int64_t cell = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      const double x = lane[batch.layout->offset(core::next(Column::position_x, axis))];
+      cell = cell * grid.cells[static_cast<std::size_t>(axis)] + grid.cell_index(x, axis);
+    }
+    return cell;
+  };
+  for_each_vector<double>(batch, [&](double* lane, int) {
+    const std::uint64_t item = scatter.per_cell()
+                                   ? static_cast<std::uint64_t>(cell_of(lane))
+                                   : static_cast<std::uint64_t>(lane[batch.layout->offset(Column::identity)]);
+    lane[batch.layout->offset(Column::threshold_factor)] = scatter.factor(item);
+  });
 }
 
 void Material::initialise(core::Batch& batch, const core::UpdateOptions& options) const {

@@ -12,6 +12,7 @@
 #include "core/scene/material.hpp"
 #include "physics/eos/list.hpp"
 #include "physics/failure/list.hpp"
+#include "physics/failure/threshold_scatter.hpp"
 #include "physics/material/common_parameters.hpp"
 #include "physics/material/pressure_stage.hpp"
 #include "physics/material/strength_stage.hpp"
@@ -34,6 +35,7 @@ class Material final : public core::ConstitutiveModel {
     StrengthModel strength;
     EquationOfState eos;
     std::vector<FailureEntry> failures;
+    core::RandomFailureInput random_failure;
   };
   explicit Material(Laws laws);
 
@@ -43,6 +45,9 @@ class Material final : public core::ConstitutiveModel {
   double initial_shear_speed() const override { return initial_shear_speed_; }
   double reference_density() const override { return laws_.reference_density; }
   double specific_heat() const override { return laws_.common.specific_heat; }
+  core::FailedComponentRule failed_component_rule() const override {
+    return {laws_.common.failure_damage_threshold, scatters_ && laws_.random_failure.random_damage};
+  }
   void initialise(core::Batch& batch, const core::UpdateOptions& options) const override;
   void update(core::Batch& batch, const core::UpdateOptions& options) const override;
 
@@ -57,13 +62,18 @@ class Material final : public core::ConstitutiveModel {
  private:
   StrengthRules strength_rules() const;
   PressureRules pressure_rules(const core::UpdateOptions& options) const;
+  void scatter_thresholds();
+  void draw_thresholds(core::Batch& batch) const;
 
   Laws laws_;
   double initial_modulus_ = 0;
   double initial_sound_speed_ = 0, initial_shear_speed_ = 0;
-  bool fails_ = false;    ///< carries the column `failed`
-  bool heats_ = false;    ///< carries the column `temperature`
-  bool viscous_ = false;  ///< has shear viscosity
+  bool fails_ = false;                ///< carries the column `failed`
+  bool heats_ = false;                ///< carries the column `temperature`
+  bool viscous_ = false;              ///< has shear viscosity
+  bool expands_ = false;              ///< with heat: carries the columns `temperature` and `thermal_strain`
+  bool scatters_ = false;             ///< carries the column `threshold_factor`
+  bool follows_deformation_ = false;  ///< carries the deformation gradient
 };
 
 /// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict

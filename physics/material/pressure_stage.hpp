@@ -23,7 +23,9 @@ struct PressureRules {
   double initial_sound_speed = 0;
   bool constant_sound_speed = false;  ///< for the critical step
   bool viscosity_in_wave_speed = true;
-  bool viscous = false;  ///< the batch's shear_viscosity is not zero throughout
+  double expansion = 0;       ///< volumetric, per degree; 0: the temperature does not count
+  double expansion_from = 0;  ///< temperature without thermal strain
+  bool viscous = false;       ///< the batch's shear_viscosity is not zero throughout
   FailedRules failed;
 };
 
@@ -101,6 +103,22 @@ void count_events(core::MaterialEvents& events, core::MaskOf<T> undefined, const
   events.not_finite += count<T>(not_finite, row, particles);
 }
 
+/// Thermal expansion: the pressure feels only what the volume has changed beyond it. With e = expansion (T -
+/// T0) the volume at rest is V0 exp(e), and `now` becomes that of V over it. Returns what e has grown since
+/// the column was last written, whoever changed the temperature. Without an effect on the temperature in turn
+/// (no cooling in tension), and only on equations whose pressure does not know of heat through E.
+template <class T>
+T expand(Density<T>& now, const PressureRules& rules, const core::ColumnLayout& layout, double* block) {
+  using core::exp;
+  double* const column = block + layout.offset(core::Column::thermal_strain);
+  const T temperature = core::load<T>(block + layout.offset(core::Column::temperature));
+  const T e = rules.expansion * (temperature - rules.expansion_from), before = core::load<T>(column);
+  core::store(column, e);
+  now.relative_volume = now.relative_volume * exp(-e);
+  now.compression = 1.0 / now.relative_volume - 1.0;
+  return e - before;
+}
+
 /// Updates pressure, viscous_pressure, internal_energy and the equation's state; fills sound_speed and
 /// critical_speed. `verdict` (null where the material cannot fail) becomes 1 where the state has no defined
 /// answer, else 0.
@@ -119,13 +137,14 @@ template <class T, class Eos>
 
   for_each_vector<T>(batch, [&](double* block, int row) {
     const T volume = core::load<T>(block + volume_at), old_volume = core::load<T>(batch.old_volume + row);
-    const Density<T> now(core::load<T>(block + mass_at), volume, rho0);
+    Density<T> now(core::load<T>(block + mass_at), volume, rho0);
     const T tr = core::load<T>(batch.volumetric_strain + row);
+    const T mechanical = rules.expansion != 0 ? tr - expand(now, rules, layout, block) : tr;
     const T old_p = core::load<T>(block + pressure_at), old_energy = core::load<T>(block + energy_at);
     const T shear = (4.0 / 3.0) * core::load<T>(batch.shear_modulus + row);
     const T specific_volume = volume * now.inverse_mass;
 
-    EosPoint<T> point{now.compression, now.relative_volume, tr, old_p, old_energy};
+    EosPoint<T> point{now.compression, now.relative_volume, mechanical, old_p, old_energy};
     history.load(block, point);
     core::MaskOf<T> outside{};
     const EosLine<T> line = limited_line(eos, point, outside);

@@ -108,6 +108,7 @@ TEST_CASE("lanes beyond the last particle are not counted", "[physics][material]
 
 TEST_CASE("what contradicts itself is refused by name", "[physics][material]") {
   using Catch::Matchers::Contains;
+  using Catch::Matchers::Equals;
   core::MaterialInput input = copper("IsoHarden");
   input.strength.values["TangMod"] = 124e9;
   CHECK_THAT(complaint(input), Contains("TangMod must be smaller than Young"));
@@ -127,13 +128,21 @@ TEST_CASE("what contradicts itself is refused by name", "[physics][material]") {
 
   input = copper("IsoElastic");
   input.strength.values["TemperatureCoefficient"] = 1e-5;
-  CHECK_THAT(complaint(input), Contains("not implemented"));
+  CHECK_THAT(complaint(input), Contains("TemperatureCoefficient needs SpecHeat"));
+  input.strength.values["SpecHeat"] = 383;
+  CHECK_THAT(complaint(input), Equals(""));
+  input = copper("IsoHarden heated", true);
+  input.strength.values["TemperatureCoefficient"] = 1e-5;
+  CHECK_THAT(complaint(input), Contains("TemperatureCoefficient must be 0 with Gruneisen"));
   input = copper("IsoElastic");
   input.strength.values["CoefficientOfThermalConductivity"] = 400;
   CHECK_THAT(complaint(input), Contains("not implemented"));
   input = copper("IsoElastic");
   input.random_failure.enable = true;
-  CHECK_THAT(complaint(input), Contains("not implemented"));
+  input.random_failure.distribution = core::RandomFailureInput::Distribution::gauss;
+  CHECK_THAT(complaint(input), Equals(""));
+  input.random_failure.gauss_mean = 0;
+  CHECK_THAT(complaint(input), Contains("GaussMean must be greater than 0"));
   input = copper("IsoElastic");
   input.strength.type = "Unobtainium";
   CHECK_THAT(complaint(input), Contains("Unobtainium is not implemented"));

@@ -38,6 +38,10 @@ const std::vector<Strength> strengths{
     {"IsoHarden", "IsoHarden", with(elastic, {{"Yield0", 200e6}, {"TangMod", 3e9}}), 0.02},
     {"IsoHarden heated", "IsoHarden",
      with(elastic, {{"Yield0", 200e6}, {"TangMod", 3e9}, {"SpecHeat", 383.0}}), 0.02},
+    {"IsoHarden expanding", "IsoHarden",
+     with(elastic,
+          {{"Yield0", 200e6}, {"TangMod", 3e9}, {"SpecHeat", 383.0}, {"TemperatureCoefficient", 17e-6}}),
+     0.02},
     {"SimJohnsonCook", "SimJohnsonCook", with(elastic, johnson_cook), 0.02},
     {"JohnsonCook", "JohnsonCook", with(with(elastic, johnson_cook), heat), 0.02},
     {"JohnsonCook damaged", "JohnsonCook", with(with(with(elastic, johnson_cook), heat), damage), 0.02},
@@ -47,6 +51,15 @@ const std::vector<Strength> strengths{
     {"HighExpBurn both", "HighExpBurn", {{"D", 6930.0}, {"beta", 0.0}, {"PCJ", 115e9}, {"mu", 20.0}}, 0.02},
     {"HighExpBurn by compression", "HighExpBurn", {{"D", 6930.0}, {"beta", 1.0}, {"PCJ", 115e9}}, 0.05},
     {"Null power law", "Null", {{"ck", 300.0}, {"nn", 0.6}}, 0.02},
+};
+
+/// One of each, with a threshold that the tests' path of some 2 % strain crosses on its way.
+const std::vector<core::FailureInput> failures{
+    {{"PlaStrain", {{"epmax", 0.01}}, {}}, false},
+    {{"Pmin", {{"pmin", -20e6}}, {}}, true},
+    {{"PriStress", {{"PriStressMax", 150e6}, {"PriStressMin", -900e6}, {"ShearStressMax", 0.0}}, {}}, false},
+    {{"PriStrain", {{"PriStrainMax", 0.01}, {"PriStrainMin", 0.0}, {"ShearStrainMax", 0.02}}, {}}, false},
+    {{"InstGeoStrain", {{"ErosionStrain", 0.01}}, {}}, true},
 };
 
 const std::map<std::string, LawInput> equations{
@@ -109,15 +122,19 @@ std::vector<Sample> all_samples() {
     if (!fluid) all.push_back({strength.label, input_of(strength, nullptr), strength.strain});
     for (const auto& [label, eos] : equations) {
       if (own_pressure || (explosive && label != "JWL")) continue;
+      if (strength.values.count("TemperatureCoefficient") > 0)
+        continue;  // these equations expand by themselves
       if (strength.label != "IsoHarden" && label != "Gruneisen" && !fluid) continue;
       all.push_back({strength.label + " + " + label, input_of(strength, &eos), strength.strain});
     }
   }
-  for (const core::FailureInput& failure : {core::FailureInput{{"PlaStrain", {{"epmax", 0.01}}, {}}, false},
-                                            core::FailureInput{{"Pmin", {{"pmin", -20e6}}, {}}, true}}) {
+  for (const core::FailureInput& failure : failures) {
     MaterialInput input = copper("IsoHarden", true);
     input.failures.push_back(failure);
     all.push_back({"IsoHarden + Gruneisen + " + failure.type, input, 0.02});
+    input.random_failure.enable = true;
+    input.random_failure.distribution = core::RandomFailureInput::Distribution::gauss;
+    if (failure.type == "PlaStrain") all.push_back({"RandomFailure", input, 0.02});
   }
   return all;
 }

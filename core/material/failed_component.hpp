@@ -1,0 +1,30 @@
+// Which particles contact takes out of their component and puts into that of the failed (manual 3.2.1,
+// FailureDamageThreshold): those that have failed, and those whose damage has reached the threshold, though
+// they may still have strength.
+#pragma once
+
+#include "core/particles/columns.hpp"
+
+namespace mpm::core {
+
+struct FailedComponentRule {
+  double damage = 1;      ///< threshold
+  bool scatters = false;  ///< times the particle's threshold_factor, but no more than 1
+
+  /// `block`: from the lane on.
+  template <class T>
+  MaskOf<T> holds(const ColumnLayout& layout, const double* block) const {
+    const auto at = [&](Column c) { return load<T>(block + layout.offset(c)); };
+    MaskOf<T> joins{};
+    if (layout.has(Column::failed)) joins = at(Column::failed) > 0.5;
+    if (layout.has(Column::damage)) {
+      T limit = damage;
+      if (scatters) limit = min(limit * at(Column::threshold_factor), 1.0);
+      // With a threshold of zero the first damage counts, not its absence.
+      joins = joins | ((at(Column::damage) >= limit) & (at(Column::damage) > 0.0));
+    }
+    return joins;
+  }
+};
+
+}  // namespace mpm::core

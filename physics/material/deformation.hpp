@@ -1,0 +1,49 @@
+// The deformation gradient, for what asks for it: F^{n+1} = (I - L dt/2)^-1 (I + L dt/2) F^n with L of the
+// middle of the step. The rotation in it is the one of the stress (Hughes and Winget 1980), orthogonal to
+// round-off, so that no strain comes from spinning; second order in dt. A step that would turn the particle
+// inside out, or whose L is no number, leaves F, as it leaves the volume (physics/material/kinematics.hpp
+// counts it), and so does failure. Shown by tests/physics/principal_failure_test.cpp.
+#pragma once
+
+#include "physics/material/kinematics.hpp"
+
+namespace mpm::physics {
+
+/// Inverse of `a` times its determinant.
+template <class T>
+core::Mat3<T> adjugate(const core::Mat3<T>& a) {
+  return {a.yy * a.zz - a.yz * a.zy, a.xz * a.zy - a.xy * a.zz, a.xy * a.yz - a.xz * a.yy,
+          a.yz * a.zx - a.yx * a.zz, a.xx * a.zz - a.xz * a.zx, a.xz * a.yx - a.xx * a.yz,
+          a.yx * a.zy - a.yy * a.zx, a.xy * a.zx - a.xx * a.zy, a.xx * a.yy - a.xy * a.yx};
+}
+
+/// I + k L
+template <class T>
+core::Mat3<T> unit_plus(double k, const core::Mat3<T>& l) {
+  return {1.0 + k * l.xx, k * l.xy, k * l.xz, k * l.yx,      1.0 + k * l.yy,
+          k * l.yz,       k * l.zx, k * l.zy, 1.0 + k * l.zz};
+}
+
+template <class T>
+[[gnu::noinline, gnu::flatten]] void update_deformation_gradient(core::Batch& batch) {
+  using core::Column;
+  const core::ColumnLayout& layout = *batch.layout;
+  const int f_at = layout.offset(Column::f_xx), failed_at = layout.offset(Column::failed);
+  for_each_vector<T>(batch, [&](double* block, int row) {
+    const core::Mat3<T> l = load_gradient<T>(batch, row);
+    const core::Mat3<T> ahead = unit_plus(0.5 * batch.dt, l), behind = unit_plus(-0.5 * batch.dt, l);
+    const T below = determinant(behind), above = determinant(ahead);
+    core::MaskOf<T> usable = (below > 0.0) & (above > 0.0);
+    if (failed_at >= 0) usable = usable & (core::load<T>(block + failed_at) < 0.5);
+    // The nine columns are neighbours, in the order of Mat3.
+    const auto at = [&](int i) { return block + f_at + core::block_lanes * i; };
+    const auto get = [&](int i) { return core::load<T>(at(i)); };
+    const core::Mat3<T> old{get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8)};
+    const core::Mat3<T> f = adjugate(behind) * (ahead * old);
+    const T scale = 1.0 / below;
+    const T now[9] = {f.xx, f.xy, f.xz, f.yx, f.yy, f.yz, f.zx, f.zy, f.zz};
+    for (int i = 0; i < 9; ++i) core::store(at(i), core::select(usable, scale * now[i], get(i)));
+  });
+}
+
+}  // namespace mpm::physics
