@@ -63,6 +63,7 @@ class Material final : public core::ConstitutiveModel {
   bool fails_ = false;    ///< carries the column `failed`
   bool heats_ = false;    ///< carries the column `temperature`
   bool viscous_ = false;  ///< has shear viscosity
+  TensionRules tension_;  ///< of the strength model
 };
 
 /// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict
