@@ -119,8 +119,8 @@ struct PAlpha : Solid {
       compression_limit = (1 + Solid::compression_limit) / density_ratio - 1;
     }
     if (sound_speed > 0 && p_crush > 0) {
-      const double stiffness = reference_density * sound_speed * sound_speed;
-      const double distension = distension_at(p_crush, p_crush / stiffness);
+      const double modulus = reference_density * sound_speed * sound_speed;
+      const double distension = distension_at(p_crush, p_crush / modulus);
       elastic_slope = (first_distension - distension) / p_crush;
       first_distension = distension;
     }
@@ -174,9 +174,9 @@ struct PAlpha : Solid {
     inner.relative_volume = 1.0 / (1.0 + inner.compression);
     inner.energy = point.energy * (1 / density_ratio);
     const EosLine<T> line = Solid::line(inner);
-    const T share = 1.0 / distension, stiffness = line.da + line.db * inner.energy;
+    const T share = 1.0 / distension, slope = line.da + line.db * inner.energy;
     const T p = (line.a + line.b * inner.energy) * share;
-    return {p, share * (stiffness * density - p), density_ratio * stiffness,
+    return {p, share * (slope * density - p), density_ratio * slope,
             line.b * share * (1 / density_ratio)};
   }
 
