@@ -176,8 +176,7 @@ struct PAlpha : Solid {
     const EosLine<T> line = Solid::line(inner);
     const T share = 1.0 / distension, slope = line.da + line.db * inner.energy;
     const T p = (line.a + line.b * inner.energy) * share;
-    return {p, share * (slope * density - p), density_ratio * slope,
-            line.b * share * (1 / density_ratio)};
+    return {p, share * (slope * density - p), density_ratio * slope, line.b * share * (1 / density_ratio)};
   }
 
   /// alpha = alpha* + k (p* - p)
@@ -188,7 +187,7 @@ struct PAlpha : Solid {
     for (int iteration = 0; iteration < 50; ++iteration) {
       const Pressure<T> now = solid(point, distension);
       const T f = distension - reached - slope * (p_reached - now.p);
-      const core::MaskOf<T> open = core::abs(f) > 1e-15;
+      const core::MaskOf<T> open = core::abs(f) > 4e-15;
       if (!core::any(open)) break;
       distension = core::select(open, distension - f / (1.0 + slope * now.by_distension), distension);
     }
@@ -209,7 +208,8 @@ struct PAlpha : Solid {
       const Pressure<T> now = solid(point, T(1.0 + pores * power));
       const T f = now.p - p_lock + span * x;
       // Beyond Plock the bracket closes on x = 0.
-      const core::MaskOf<T> open = crushes & (core::abs(f) > 1e-14 * p_lock) & (high > 1e-15);
+      const core::MaskOf<T> open =
+          crushes & (core::abs(f) > 1e-14 * p_lock + 1e-15 * now.by_compression) & (high > 1e-15);
       if (!core::any(open)) break;
       high = select(f > 0.0, x, high);
       low = select(f > 0.0, low, x);

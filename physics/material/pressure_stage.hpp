@@ -149,11 +149,12 @@ template <class T, class Eos>
 
     const T work = 0.5 * (volume + old_volume) * per_v0 * core::load<T>(batch.deviatoric_work + row);
     const T energy_star = old_energy - h * (old_p + core::load<T>(block + q_at) + q) + work;
-    T p = (acting.a + acting.b * energy_star) * response, sentence = 0.0;
+    const T stated = (acting.a + acting.b * energy_star) * response;
+    T p = stated, sentence = 0.0;
     if (rules.tension.limited) {
-      p = limit_tension(rules.tension, p, core::load<T>(batch.lowest_pressure + row), sentence);
+      p = limit_tension(rules.tension, stated, core::load<T>(batch.lowest_pressure + row), sentence);
     }
-    if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, p), p);
+    if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, stated), p);
     const T energy = energy_star - h * p;
 
     history.store(block, point);

@@ -129,6 +129,28 @@ TEST_CASE("p-alpha follows its crush curve over every solid", "[physics][p-alpha
   }
 }
 
+TEST_CASE("p-alpha of a soft foam of a stiff solid", "[physics][p-alpha]") {
+  // Plock is 1e-4 of the solid's stiffness, whose round-off is what remains; three quarters are pores.
+  PAlpha<Gruneisen> law;
+  law.c0 = 5350, law.s1 = 1.34, law.gamma0 = 2;
+  law.p_lock = 10e6, law.p_crush = 1e6, law.n = 2, law.solid_density = 2700;
+  REQUIRE(law.fault(675).empty());
+  law.prepare(675);
+  Pores<PAlpha<Gruneisen>> pores(law);
+  const double solid = 2700 * 5350.0 * 5350.0;
+  for (const double p : {1e6, 1.5e6, 4e6, 9e6, 9.99e6, 11e6}) {
+    INFO("pressure " << p);
+    const double x = std::max(10e6 - p, 0.0) / 9e6, alpha = 1 + 3 * x * x;
+    double low = 0, high = 0.01;  // the solid's compression under alpha p
+    for (int i = 0; i < 100; ++i) {
+      const double mu = 0.5 * (low + high), r = 1 - 0.34 * mu;
+      (solid * mu / (r * r) < alpha * p ? low : high) = mu;  // gamma0 = 2: mu (1 + mu)(1 - mu/(1 + mu)) = mu
+    }
+    CHECK(pores((1 + low) * 4 / alpha - 1) == Approx(p).margin(1e-14 * solid));
+    CHECK(pores.distension() == Approx(alpha).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("p-alpha over a linear solid: elastic, crushed and compacted in closed form",
           "[physics][p-alpha]") {
   const double solid = 35.27e9, alpha0 = rho0s / rho0;
