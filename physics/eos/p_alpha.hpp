@@ -202,27 +202,26 @@ struct PAlpha : Solid {
     using core::pow;
     using core::select;
     const double span = p_lock - p_crush, pores = first_distension - 1;
+    const core::MaskOf<T> compacted = solid(point, T(1.0)).p >= p_lock;
     T low = 0.0, high = x_reached, x = x_reached;
     for (int iteration = 0; iteration < 100; ++iteration) {
       const T power = pow(x, n);
       const Pressure<T> now = solid(point, T(1.0 + pores * power));
       const T f = now.p - p_lock + span * x;
-      // Beyond Plock the bracket closes on x = 0.
       const core::MaskOf<T> open =
-          crushes & (core::abs(f) > 1e-14 * p_lock + 1e-15 * now.by_compression) & (high > 1e-15);
+          crushes & !compacted & (core::abs(f) > 1e-14 * p_lock + 1e-15 * now.by_compression);
       if (!core::any(open)) break;
-      high = select(f > 0.0, x, high);
-      low = select(f > 0.0, low, x);
+      high = select(open & (f > 0.0), x, high);
+      low = select(open & !(f > 0.0), x, low);
       const T step = f / (span + now.by_distension * (n * pores) * power / core::max(x, 1e-300));
       const T next = x - step;
       x = select(open, select((next > low) & (next < high), next, 0.5 * (low + high)), x);
     }
-    x = select(high > 1e-15, x, 0.0);
-    return 1.0 + pores * pow(x, n);
+    return select(compacted, 1.0, 1.0 + pores * pow(x, n));
   }
 
-  /// alpha with p(alpha) = pressure at the compression mu, no energy; no number where that is not below the
-  /// initial distension.
+  /// alpha with p(alpha) = pressure at the compression mu, no energy; infinite where the solid alone would
+  /// not reach the pressure.
   double distension_at(double pressure, double mu) const {
     EosPoint<double> point{};
     point.compression = mu;

@@ -214,6 +214,17 @@ TEST_CASE("HJC damage in shear at constant pressure follows its closed form", "[
   CHECK(std::log2(error[0] / error[1]) == Approx(1).margin(0.1));
 }
 
+TEST_CASE("HJC strength follows the rate of the whole strain", "[physics][hjc]") {
+  const auto material = make(concrete({}, false));
+  for (const double rate : {1e-3, 1.0, 50.0, 2e4}) {
+    INFO("rate " << rate << " /s");
+    PointDriver point(*material, {});
+    shear_by(point, 0.01, 0.01 / rate);
+    CHECK(mises(point.deviator()) ==
+          Approx(48e6 * 0.79 * (1 + 0.007 * std::log(std::max(rate, 1.0)))).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("HJC damage by crushing pores", "[physics][hjc]") {
   // D = integral of d mu_p/max(D1 (p* + T*), EFMin) along the virgin curve, by quadrature of mu_p.
   const HolmquistJohnsonCookBulk law = bulk_law();

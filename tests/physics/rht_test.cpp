@@ -197,6 +197,22 @@ TEST_CASE("RHT damage in shear at constant pressure follows its closed form", "[
   CHECK(error[1] < 0.6 * error[0]);
 }
 
+TEST_CASE("RHT strength follows the rate of the whole strain", "[physics][rht]") {
+  const auto material = make(concrete({}));
+  const RHT law = concrete_35();
+  for (const double rate : {1e-7, 1e-4, 1.0, 1e3}) {
+    INFO("rate " << rate << " /s");
+    PointDriver point(*material, {});
+    shear_by(point, 0.01, 0.01 / rate);
+    // At no pressure: 0.18 fc Fr R3, with Fr ft/(1 + ft) of the way from tension to compression.
+    const double tension = std::pow(std::max(rate / 3e-6, 1.0), 0.036),
+                 compression = std::pow(std::max(rate / 3e-5, 1.0), 0.032);
+    const double fr = tension + 0.1 / 1.1 * (compression - tension);
+    CHECK(mises(point.deviator()) ==
+          Approx(0.18 * fc * fr * law.meridian_ratio(0.0, direction(30), 1.0)).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("RHT loses shear stiffness with damage", "[physics][rht]") {
   const auto material = make(concrete(at_rest));
   PointDriver point(*material, {});
