@@ -50,7 +50,9 @@ constexpr std::array optional_columns{Column::effective_plastic_strain,
                                       Column::temperature,
                                       Column::damage,
                                       Column::failed,
-                                      Column::burn_fraction};
+                                      Column::burn_fraction,
+                                      Column::porosity,
+                                      Column::bulking_pressure};
 
 const core::MaterialInput& find_material(const core::Scene& scene, const std::string& name) {
   std::string names;

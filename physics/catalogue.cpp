@@ -1,5 +1,8 @@
 #include "physics/catalogue.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "physics/eos/list.hpp"
 #include "physics/failure/list.hpp"
 #include "physics/laws.hpp"
@@ -10,11 +13,25 @@ namespace mpm::physics {
 
 namespace {
 
+/// Laws that share a name, to be told apart by a parameter, are one type with the parameters of all.
+void add(std::vector<core::TypeInfo>& infos, core::TypeInfo info) {
+  const auto same = std::ranges::find(infos, info.name, &core::TypeInfo::name);
+  if (same == infos.end()) {
+    infos.push_back(std::move(info));
+    return;
+  }
+  for (const core::ParameterInfo& parameter : info.parameters) {
+    if (std::ranges::find(same->parameters, parameter.name, &core::ParameterInfo::name) ==
+        same->parameters.end())
+      same->parameters.push_back(parameter);
+  }
+}
+
 template <class List>
 std::vector<core::TypeInfo> types() {
   std::vector<core::TypeInfo> infos;
   for_each_law<List>([&]<class Law>(std::type_identity<Law>) {
-    if constexpr (Named<Law>) infos.push_back({Law::name, Law::summary, parameter_infos<Law>()});
+    if constexpr (Named<Law>) add(infos, {Law::name, Law::summary, parameter_infos<Law>()});
   });
   return infos;
 }

@@ -50,6 +50,9 @@ List make_law(const core::LawInput& input, std::string_view element, double refe
   for_each_law<List>([&]<class Law>(std::type_identity<Law>) {
     if constexpr (Named<Law>) {
       if (input.type != Law::name) return;
+      if constexpr (requires { Law::chosen_by(input); }) {
+        if (!Law::chosen_by(input)) return;
+      }
       Law law;
       read_parameters(law, input);
       finish(law, input, element, reference_density);

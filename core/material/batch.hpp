@@ -56,6 +56,7 @@ struct Batch {
   alignas(64) Row deviatoric_work;    ///< 1/2 (s^n + s^{n+1}) : strain increment, per current volume
   alignas(64) Row shear_modulus;      ///< for the wave speed, of the state reached
   alignas(64) Row shear_viscosity;    ///< for the critical step, s = 2 viscosity D'
+  alignas(64) Row lowest_pressure;    ///< largest tension of a strength model that limits it, as a pressure
   // --- results beside the columns ---
   alignas(64) Row sound_speed;     ///< longitudinal wave speed c; filled where the layout has that column
   alignas(64) Row critical_speed;  ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is not to count

@@ -60,6 +60,7 @@ enum class Column : int {
   f_zy,
   f_zz,
   thermal_strain,
+  bulking_pressure,
   sound_speed,
   history_0,
   history_1,
@@ -126,6 +127,7 @@ inline constexpr std::array<ColumnInfo, column_count> column_table{{
     {"f_zy", "1"},
     {"f_zz", "1"},
     {"thermal_strain", "1"},  // volumetric; what the pressure already knows of
+    {"bulking_pressure", "stress"},
     {"sound_speed", "velocity"},
     {"history_0", "1"},
     {"history_1", "1"},

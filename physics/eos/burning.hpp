@@ -31,7 +31,7 @@ struct Burning : Eos {
 
   /// Of the products, for the wave speed.
   template <class T>
-  EosLine<T> line(const EosPoint<T>& point) const {
+  EosLine<T> line(EosPoint<T>& point) const {
     EosLine<T> products = Eos::line(point);
     const T slope = core::select(point.burn_fraction < 1.0, law.burn_slope(point.relative_volume), 0.0);
     products.da += slope * products.a;

@@ -18,15 +18,19 @@ struct EosPoint {
   // State: only the columns that the law names in `state` are loaded and stored.
   T max_compression = 0.0;
   T porosity = 0.0;
+  T plastic_volumetric_strain = 0.0;
+  T bulking_pressure = 0.0;
   T burn_fraction = 0.0;
   T history_4 = 0.0, history_5 = 0.0, history_6 = 0.0, history_7 = 0.0;
 
   static constexpr auto columns() {
     using P = EosPoint;
     using core::Column;
-    return std::array<ColumnMember<P, T>, 7>{{
+    return std::array<ColumnMember<P, T>, 9>{{
         {Column::max_compression, &P::max_compression},
         {Column::porosity, &P::porosity},
+        {Column::plastic_volumetric_strain, &P::plastic_volumetric_strain},
+        {Column::bulking_pressure, &P::bulking_pressure},
         {Column::burn_fraction, &P::burn_fraction},
         {Column::history_4, &P::history_4},
         {Column::history_5, &P::history_5},

@@ -1,6 +1,6 @@
-// Fails where a strength law's damage has reached one (manual 3-4, thesis 2-137). Not a type of the input: it
-// comes with every strength law that fails by damage. With DamageRandom the threshold scatters, up to one at
-// most (manual 3.2.4).
+// Fails where a strength law's damage has reached one (manual 3-4, thesis 2-137), or a threshold that the law
+// states. Not a type of the input: it comes with every strength law that fails by damage. With DamageRandom
+// the threshold scatters, up to one at most (manual 3.2.4).
 #pragma once
 
 #include "physics/failure/point.hpp"

@@ -27,7 +27,14 @@ ElasticBulk elastic_bulk(const StrengthModel& strength, const CommonParameters& 
 
 EquationOfState make_eos(const core::MaterialInput& input, const StrengthModel& strength,
                          const CommonParameters& common) {
-  if (!input.eos) return elastic_bulk(strength, common, input);
+  if (!input.eos) {
+    return std::visit(
+        [&](const auto& law) -> EquationOfState {
+          if constexpr (requires { law.own_eos(); }) return law.own_eos();
+          return elastic_bulk(strength, common, input);
+        },
+        strength);
+  }
   const bool own_pressure = std::visit(
       [](const auto& law) {
         return requires { requires std::decay_t<decltype(law)>::own_pressure; };
@@ -39,6 +46,17 @@ EquationOfState make_eos(const core::MaterialInput& input, const StrengthModel& 
         input.strength.type + " computes its pressure itself: remove the EquationOfState");
   }
   return make_law<EquationOfState>(*input.eos, "EquationOfState", input.reference_density);
+}
+
+/// Tells the strength model of the equation of state beside it, where it asks.
+void couple(StrengthModel& strength, const EquationOfState& equation, const core::MaterialInput& input) {
+  const std::string fault = std::visit(
+      [](auto& law, const auto& eos) -> std::string {
+        if constexpr (requires { law.couple(eos); }) return law.couple(eos);
+        return {};
+      },
+      strength, equation);
+  if (!fault.empty()) throw core::InputErrors(input.strength.source, "StrengthModel", fault);
 }
 
 /// Hands the places of lighting to an explosive.
@@ -115,10 +133,18 @@ std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput
   laws.strength = make_law<StrengthModel>(input.strength, "StrengthModel", input.reference_density);
   light(laws.strength, input, detonations);
   laws.eos = make_eos(input, laws.strength, laws.common);
+  couple(laws.strength, laws.eos, input);
   if (input.eos) read_parameters(laws.common_eos, *input.eos);
   check_expansion(input, laws);
   check_scatter(input);
   laws.random_failure = input.random_failure;
+  std::visit(
+      [&](const auto& eos) {
+        if constexpr (requires { eos.solid_has_sound_speed(); }) {
+          if (eos.solid_has_sound_speed()) laws.common_eos.c0 = 0;  // not that of the porous material
+        }
+      },
+      laws.eos);
   for (const core::FailureInput& failure : input.failures) {
     laws.failures.push_back(
         {make_law<FailureModel>(failure, "FailureModel", input.reference_density), failure.erosion});

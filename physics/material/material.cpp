@@ -64,13 +64,21 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
   std::visit(
       [&](const auto& law) {
         if constexpr (requires { law.fails_by_damage(); }) {
-          if (law.fails_by_damage()) laws_.failures.push_back({FullDamage{}, false});
+          if (law.fails_by_damage()) {
+            FullDamage damage;
+            if constexpr (requires { law.failing_damage(); }) damage.threshold = law.failing_damage();
+            laws_.failures.push_back({damage, false});
+          }
         }
+        if constexpr (requires { law.erodes_by_damage(); }) {
+          if (law.erodes_by_damage()) laws_.failures.push_back({FullDamage{}, true});
+        }
+        if constexpr (requires { law.tension_rules(); }) tension_ = law.tension_rules();
         if constexpr (requires { law.plastic_work_coefficient; }) heats_ = laws_.common.specific_heat > 0;
         if constexpr (requires { law.is_viscous(); }) viscous_ = law.is_viscous();
       },
       laws_.strength);
-  fails_ = !laws_.failures.empty();
+  fails_ = !laws_.failures.empty() || tension_.fails();
   expands_ = laws_.common.temperature_coefficient != 0;
   scatter_thresholds();
   follows_deformation_ = columns({}).has(Column::f_xx);
@@ -122,7 +130,8 @@ PressureRules Material::pressure_rules(const core::UpdateOptions& options) const
           .expansion = 3 * common.temperature_coefficient,
           .expansion_from = common.room_temperature,
           .viscous = viscous_,
-          .failed = {.type = static_cast<int>(common.failed_type), .tensile_cutoff = common.tensile_cutoff}};
+          .failed = {.type = static_cast<int>(common.failed_type), .tensile_cutoff = common.tensile_cutoff},
+          .tension = tension_};
 }
 
 template <class T>

@@ -74,6 +74,7 @@ class Material final : public core::ConstitutiveModel {
   bool expands_ = false;              ///< with heat: carries the columns `temperature` and `thermal_strain`
   bool scatters_ = false;             ///< carries the column `threshold_factor`
   bool follows_deformation_ = false;  ///< carries the deformation gradient
+  TensionRules tension_;              ///< of the strength model
 };
 
 /// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict

@@ -12,6 +12,7 @@
 #include "physics/history.hpp"
 #include "physics/material/failed_state.hpp"
 #include "physics/material/vectors.hpp"
+#include "physics/strength/tension.hpp"
 
 namespace mpm::physics {
 
@@ -27,6 +28,7 @@ struct PressureRules {
   double expansion_from = 0;  ///< temperature without thermal strain
   bool viscous = false;       ///< the batch's shear_viscosity is not zero throughout
   FailedRules failed;
+  TensionRules tension;
 };
 
 /// Mass and volume of a particle as everything below wants them; one division for all.
@@ -166,8 +168,12 @@ template <class T, class Eos>
 
     const T work = 0.5 * (volume + old_volume) * per_v0 * core::load<T>(batch.deviatoric_work + row);
     const T energy_star = old_energy - h * (old_p + core::load<T>(block + q_at) + q) + work;
-    T p = (acting.a + acting.b * energy_star) * response;
-    if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, p), p);
+    const T stated = (acting.a + acting.b * energy_star) * response;
+    T p = stated, sentence = 0.0;
+    if (rules.tension.limited) {
+      p = limit_tension(rules.tension, stated, core::load<T>(batch.lowest_pressure + row), sentence);
+    }
+    if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, stated), p);
     const T energy = energy_star - h * p;
 
     history.store(block, point);
@@ -181,7 +187,7 @@ template <class T, class Eos>
                               max(modulus, 0.0) * specific_volume);
     store_speeds(batch, block, row, rules, c2,
                  damping_speed(batch, rules, rate, c_before, specific_volume, row));
-    if (verdict != nullptr) core::store(verdict + row, core::select(undefined, 1.0, T(0.0)));
+    if (verdict != nullptr) core::store(verdict + row, core::select(undefined, max(sentence, 1.0), sentence));
 
     count_events<T>(batch.events, undefined, energy, negligible, row, batch.particles);
   });

@@ -113,6 +113,9 @@ template <class T, class Law>
     store_deviator(block, layout, point.s);
     core::store(batch.deviatoric_work + row, T(0.5) * contract(before + point.s, point.strain));
     core::store(batch.shear_modulus + row, point.shear_modulus);
+    if constexpr (requires { law.tension_rules(); }) {
+      core::store(batch.lowest_pressure + row, point.lowest_pressure);
+    }
     if (rules.viscous) core::store(batch.shear_viscosity + row, point.viscosity);
   });
 }

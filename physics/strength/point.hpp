@@ -24,10 +24,11 @@ struct StrengthPoint {
   core::Sym3<T> s;  ///< deviatoric stress
 
   // --- results beside the stress; laws that have none leave them ----------------------------------------
-  T shear_modulus = 0.0;  ///< for the wave speed
-  T viscosity = 0.0;      ///< shear viscosity reached, s = 2 viscosity D', for the critical step
-  T yield_stress = 0.0;   ///< for output
-  T plastic_work = 0.0;   ///< of this step, per current volume: what heats
+  T shear_modulus = 0.0;    ///< for the wave speed
+  T viscosity = 0.0;        ///< shear viscosity reached, s = 2 viscosity D', for the critical step
+  T yield_stress = 0.0;     ///< for output
+  T plastic_work = 0.0;     ///< of this step, per current volume: what heats
+  T lowest_pressure = 0.0;  ///< read from laws with tension_rules(): the pressure is held at or above it
 
   // --- state: only the columns that the law names in `state` are loaded and stored -----------------------
   T effective_plastic_strain = 0.0;
@@ -35,6 +36,7 @@ struct StrengthPoint {
   T temperature = 0.0;
   T porosity = 0.0;
   T plastic_volumetric_strain = 0.0;
+  T bulking_pressure = 0.0;
   T burn_fraction = 0.0;
   T lighting_time = 0.0;
   T history_0 = 0.0, history_1 = 0.0, history_2 = 0.0, history_3 = 0.0;
@@ -42,12 +44,13 @@ struct StrengthPoint {
   static constexpr auto columns() {
     using P = StrengthPoint;
     using core::Column;
-    return std::array<ColumnMember<P, T>, 11>{{
+    return std::array<ColumnMember<P, T>, 12>{{
         {Column::effective_plastic_strain, &P::effective_plastic_strain},
         {Column::damage, &P::damage},
         {Column::temperature, &P::temperature},
         {Column::porosity, &P::porosity},
         {Column::plastic_volumetric_strain, &P::plastic_volumetric_strain},
+        {Column::bulking_pressure, &P::bulking_pressure},
         {Column::burn_fraction, &P::burn_fraction},
         {Column::lighting_time, &P::lighting_time},
         {Column::history_0, &P::history_0},

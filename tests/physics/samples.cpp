@@ -114,6 +114,79 @@ MaterialInput input_of(const Strength& strength, const LawInput* eos) {
   return input;
 }
 
+// Concrete of 48 MPa (manual, table 6.4; Poisson's ratio 0.2, so Young = 2.4 G), concrete of 35 MPa and
+// silicon carbide (tables 6.8 and 6.7). Yield0 is asked for by the language, and not used.
+const Values hjc{{"Young", 35.664e9}, {"Poisson", 0.2}, {"Yield0", 0.0}, {"A", 0.79},   {"B", 1.6},
+                 {"N", 0.61},         {"C", 0.007},     {"fc", 48e6},    {"SMax", 7.0}, {"D1", 0.04},
+                 {"D2", 1.0},         {"EFMin", 0.01},  {"T", 4e6},      {"epso", 1.0}};
+const LawInput hjc_bulk{"HolmquistJohnsonCook",
+                        {{"PCrush", 16e6},
+                         {"MuCrush", 0.001},
+                         {"K1", 85e9},
+                         {"K2", -171e9},
+                         {"K3", 208e9},
+                         {"PLock", 0.8e9},
+                         {"MuLock", 0.1},
+                         {"Poisson", 0.2}},
+                        {}};
+const Values rht{{"Young", 40e9},  {"Poisson", 0.2}, {"Yield0", 0.0},   {"fc", 35e6},    {"ft_fc", 0.1},
+                 {"fs_fc", 0.18},  {"A", 1.6},       {"N", 0.61},       {"Q20", 0.6805}, {"BQ", 0.0105},
+                 {"PREFACT", 2.0}, {"TENSRAT", 0.7}, {"COMPRAT", 0.53}, {"B", 1.6},      {"M", 0.61},
+                 {"alpha", 0.032}, {"delta", 0.036}, {"epso", 1.0},     {"D1", 0.04},    {"D2", 1.0},
+                 {"EFMin", 0.01},  {"SHRATD", 0.13}};
+const Values porous{{"Plock", 6e9}, {"Pcrush", 23.3e6}, {"n", 3.0}, {"rho0s", 2750.0}};
+const LawInput p_alpha_polynomial2{"PAlpha",
+                                   with(porous, {{"EOSID", 2.0},
+                                                 {"A1", 35.27e9},
+                                                 {"A2", 39.58e9},
+                                                 {"A3", 9.04e9},
+                                                 {"B0", 1.22},
+                                                 {"B1", 1.22},
+                                                 {"T1", 35.27e9},
+                                                 {"T2", 0.0}}),
+                                   {}};
+// The sound speed of the porous solid is that of Young's modulus 40 GPa, roughly.
+const LawInput p_alpha_polynomial{"PAlpha",
+                                  with(porous, {{"EOSID", 1.0},
+                                                {"C0", 3000.0},
+                                                {"c0", 0.0},
+                                                {"c1", 35.27e9},
+                                                {"c2", 39.58e9},
+                                                {"c3", 9.04e9},
+                                                {"c4", 1.22},
+                                                {"c5", 1.22},
+                                                {"c6", 0.0}}),
+                                  {}};
+const LawInput p_alpha_gruneisen{
+    "PAlpha", with(porous, {{"EOSID", 3.0}, {"C0", 3580.0}, {"S1", 1.3}, {"gamma0", 1.2}}), {}};
+const Values jh2{{"Young", 423e9}, {"Poisson", 0.156}, {"Yield0", 0.0}, {"A", 0.96},   {"B", 0.35},
+                 {"C", 0.009},     {"M", 1.0},         {"N", 0.65},     {"epso", 1.0}, {"T", 0.37e9},
+                 {"SFMax", 0.8},   {"Shel", 13e9},     {"Phel", 5.9e9}, {"beta", 1.0}, {"D1", 0.48},
+                 {"D2", 0.48},     {"K2", 361e9},      {"K3", 200e9}};
+
+Sample brittle(const std::string& label, double density, const std::string& type, const Values& values,
+               const LawInput* eos, double strain) {
+  MaterialInput input = input_of({label, type, values, strain}, eos);
+  input.reference_density = density;
+  return {label, input, strain};
+}
+
+void add_brittle_samples(std::vector<Sample>& all) {
+  const Values metal{{"Young", 35.664e9}, {"Poisson", 0.2}, {"Yield0", 40e6}, {"TangMod", 3e9}};
+  const auto add = [&](const std::string& label, double density, const std::string& type,
+                       const Values& values, const LawInput* eos,
+                       double strain) { all.push_back(brittle(label, density, type, values, eos, strain)); };
+  add("IsoHarden + HolmquistJohnsonCook", 2440, "IsoHarden", metal, &hjc_bulk, 0.05);
+  add("IsoHarden + PAlpha over Polynomial", 2314, "IsoHarden", metal, &p_alpha_polynomial, 0.05);
+  add("IsoHarden + PAlpha over Polynomial2", 2314, "IsoHarden", metal, &p_alpha_polynomial2, 0.05);
+  add("IsoHarden + PAlpha over Gruneisen", 2314, "IsoHarden", metal, &p_alpha_gruneisen, 0.05);
+  add("HolmquistJohnsonCook", 2440, "HolmquistJohnsonCook", hjc, nullptr, 0.01);
+  add("HolmquistJohnsonCook both", 2440, "HolmquistJohnsonCook", hjc, &hjc_bulk, 0.02);
+  add("RHT", 2314, "RHT", with(rht, {{"CapFlag", 0.0}}), nullptr, 0.01);
+  add("RHT + PAlpha", 2314, "RHT", rht, &p_alpha_polynomial2, 0.02);
+  add("JH2", 3163, "JH2", jh2, nullptr, 0.05);
+}
+
 std::vector<Sample> all_samples() {
   std::vector<Sample> all;
   for (const Strength& strength : strengths) {
@@ -136,6 +209,7 @@ std::vector<Sample> all_samples() {
     input.random_failure.distribution = core::RandomFailureInput::Distribution::gauss;
     if (failure.type == "PlaStrain") all.push_back({"RandomFailure", input, 0.02});
   }
+  add_brittle_samples(all);
   return all;
 }
 

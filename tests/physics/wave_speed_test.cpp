@@ -39,8 +39,7 @@ double stress_after(PointDriver& point, const Vec3<double>& n, double strain, do
 
 /// d(stress along n)/d(strain along n), against a step without strain: what relaxes by itself is no
 /// stiffness.
-double tangent(PointDriver& point, const Vec3<double>& n, double strain) {
-  constexpr double dt = 1e-12;
+double tangent(PointDriver& point, const Vec3<double>& n, double strain, double dt) {
   return (stress_after(point, n, strain, dt) - stress_after(point, n, 0, dt)) / strain;
 }
 
@@ -59,10 +58,14 @@ TEST_CASE("the wave speed of every law is not below its tangent's", "[physics][w
     const RandomPath path(13, s.strain, duration);
     const int steps = 200;
     double largest = 0, stiffest = 0;
+    // Where strength follows the rate of the whole strain, a fast strain lifts it at once, which is no
+    // stiffness: in tension RHT's pressure with it. A slow one leaves it at rest.
+    const double dt = s.input.strength.has("delta") ? 1 : 1e-12;
     for (int i = 0; i < steps; ++i) {
       point.step(path.gradient((i + 0.5) * duration / steps), duration / steps);
       if (i % 20 != 0) continue;
-      point.step({}, 1e-12);
+      // Strength that damage takes goes on sinking for some steps.
+      for (int rest = 0; rest < 30; ++rest) point.step({}, dt);
       const double modulus = point.density() * point.sound_speed() * point.sound_speed();
       // (2-57) holds for dE = -p dV. The work of the deviatoric stress heats as well; with dp/dE < 2 here
       // that adds at most twice the largest principal deviator, 2/3 of the von Mises stress.
@@ -71,7 +74,7 @@ TEST_CASE("the wave speed of every law is not below its tangent's", "[physics][w
         Vec3<double> n{normal(random), normal(random), normal(random)};
         n = (1 / std::sqrt(dot(n, n))) * n;
         for (const double strain : {1e-7, -1e-7}) {
-          const double slope = tangent(point, n, strain);
+          const double slope = tangent(point, n, strain, dt);
           largest = std::max(largest, slope / bound);
           // An explosive has the speed of its products before it has burnt.
           const bool burns = point.has(Column::burn_fraction) && point.value(Column::burn_fraction) < 1;

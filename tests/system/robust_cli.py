@@ -74,7 +74,7 @@ def read_vtu(path):
 
 class CommandLine(Case):
     def test_help_and_version(self):
-        for program in ("mpm_run", "mpm_check", "mpm_point"):
+        for program in ("mpm_run", "mpm_check", "mpm_point", "mpm_hjc"):
             if not (BIN / program).exists():
                 print(f"{program} is not built: left out")
                 continue

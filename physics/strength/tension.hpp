@@ -1,0 +1,27 @@
+// The largest tension that a strength model bears (StrengthPoint::lowest_pressure), and what reaching it
+// means besides that the pressure stays there. A law that limits the tension states the rules as
+// tension_rules().
+#pragma once
+
+#include <limits>
+
+#include "core/simd/lanes.hpp"
+
+namespace mpm::physics {
+
+struct TensionRules {
+  bool limited = false;
+  double verdict = 0;                                        ///< 1: fails there
+  double erosion = std::numeric_limits<double>::infinity();  ///< tension beyond which it is eroded, stress
+  bool fails() const { return verdict > 0 || erosion < std::numeric_limits<double>::infinity(); }
+};
+
+/// The pressure held at or above `lowest`; `sentence` becomes what the rules say of one that would be below.
+template <class T>
+T limit_tension(const TensionRules& rules, const T& pressure, const T& lowest, T& sentence) {
+  sentence = core::select(pressure <= lowest, rules.verdict, sentence);
+  sentence = core::select(pressure < -rules.erosion, 2.0, sentence);
+  return core::max(pressure, lowest);
+}
+
+}  // namespace mpm::physics
