@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -104,16 +105,27 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; 
 
 /// The micro and the middle dot of data sheets, of which UTF-8 makes two bytes, in plain letters.
 std::string plain(std::string_view text) {
-  std::string result(text);
-  const auto replace = [&](std::string_view from, std::string_view to) {
-    for (std::size_t at = result.find(from); at != result.npos; at = result.find(from, at + to.size()))
-      result.replace(at, from.size(), to);
-  };
-  replace("\xC2\xB5", "u");  // micro sign
-  replace("\xCE\xBC", "u");  // Greek mu
-  replace("\xC2\xB7", " ");
-  replace("*", " ");
+  constexpr std::array<std::pair<std::string_view, char>, 4> replacements{
+      {{"\xC2\xB5", 'u'}, {"\xCE\xBC", 'u'}, {"\xC2\xB7", ' '}, {"*", ' '}}};  // micro, mu, dot
+  std::string result;
+  while (!text.empty()) {
+    char next = text.front();
+    std::size_t used = 1;
+    for (const auto& [from, to] : replacements) {
+      if (!text.starts_with(from)) continue;
+      next = to;
+      used = from.size();
+    }
+    result.push_back(next);
+    text.remove_prefix(used);
+  }
   return result;
+}
+
+std::string join(const std::vector<std::string>& words, std::string_view separator) {
+  std::string text;
+  for (const std::string& word : words) text.append(text.empty() ? "" : separator).append(word);
+  return text;
 }
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -121,13 +133,13 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 /// `; did you mean 'x'?` for a name that differs by case only or is spelled out, else the list.
 template <class Table>
 std::string suggestion(std::string_view word, const Table& table) {
-  std::vector<std::string_view> names;
+  std::vector<std::string> names;
   for (const auto& row : table) {
     const bool same = std::ranges::equal(word, row.name, [](char a, char b) { return lower(a) == lower(b); });
     if (same) return fmt::format("; did you mean '{}'?", row.name);
-    names.push_back(row.name);
+    names.emplace_back(row.name);
   }
-  return fmt::format("; known are {}", fmt::join(names, ", "));
+  return fmt::format("; known are {}", join(names, ", "));
 }
 
 /// product := factor {blank factor};  quotient := product ['/' factor];  factor := (atom | '(' quotient ')')
@@ -238,10 +250,10 @@ std::string quotient_text(const std::array<std::string_view, 4>& symbols, const 
     if (exponents[i] > 0) above.push_back(power_text(symbols[i], exponents[i]));
     if (exponents[i] < 0) below.push_back(power_text(symbols[i], -exponents[i]));
   }
-  std::string text = above.empty() ? "1" : fmt::format("{}", fmt::join(above, " "));
-  if (below.size() == 1) text += "/" + below[0];
-  if (below.size() > 1) text += fmt::format("/({})", fmt::join(below, " "));
-  return text;
+  std::string text = above.empty() ? "1" : join(above, " ");
+  if (below.empty()) return text;
+  if (below.size() == 1) return fmt::format("{}/{}", text, below[0]);
+  return fmt::format("{}/({})", text, join(below, " "));
 }
 
 /// value * factor; a factor that is a power of ten but for rounding is taken as one, so that the decimals of
@@ -342,12 +354,12 @@ UnitSystem UnitSystem::parse(std::string_view text) {
     given[i] = true;
     system.bases_[i] = {unit->name, unit->unit.in_si};
   }
-  std::vector<std::string_view> missing;
+  std::vector<std::string> missing;
   for (std::size_t i = 0; i < 3; ++i)
-    if (!given[i]) missing.push_back(kinds[i]);
+    if (!given[i]) missing.emplace_back(kinds[i]);
   if (!missing.empty())
     throw UnitError(fmt::format("'{}' lacks a unit of {}; three units are needed, as in \"mm g ms\"", text,
-                                fmt::join(missing, " and of ")));
+                                join(missing, " and of ")));
   return system;
 }
 
