@@ -56,12 +56,11 @@ int report(const physics::PathEnd& end, const std::vector<physics::Leg>& legs,
            const physics::PointDriver& point, const std::string& stress_unit) {
   int code = 0;
   if (!end.reached) {
-    fmt::print(
-        stderr,
-        "mpm_point: leg {} ({}): at time {} a stress of {:.6g} {} cannot be reached, the nearest found is "
-        "{:.6g}; the table ends there\n",
-        end.leg + 1, legs[static_cast<std::size_t>(end.leg)].kind, point.time(), end.wanted, stress_unit,
-        end.found);
+    fmt::print(stderr,
+               "mpm_point: leg {} ({}): at time {} a stress of {:.6g} {} cannot be reached, the nearest is "
+               "{:.6g}; the table ends there\n",
+               end.leg + 1, legs[static_cast<std::size_t>(end.leg)].kind, point.time(), end.wanted,
+               stress_unit, end.found);
     code = 3;
   }
   const core::MaterialEvents& events = point.events();

@@ -28,16 +28,16 @@ constexpr std::array<Kind, 11> kinds{{
     {"uniaxial_stress", "E [E...]", "axial strain E along x, lateral stress zero (a tensile test)"},
     {"uniaxial_strain", "E [E...]", "axial strain E along x, no lateral strain (a plate impact)"},
     {"triaxial", "E [E...] confining P",
-     "axial strain under constant lateral pressure P: E < 0 compression, "
-     "E > 0 extension; P is applied first"},
+     "axial strain under constant lateral pressure P, which is applied first:\n"
+     "      E < 0 compression, E > 0 extension"},
     {"biaxial", "E [E...] [confining P]", "axial strain, z held (plane strain), y under pressure P"},
     {"equibiaxial", "E [E...]", "x and y strained alike, z free (a bulge test)"},
     {"simple_shear", "G [G...]", "shear gamma_xy = G"},
     {"hydrostatic", "E [E...]", "volumetric strain E, equal in all directions"},
     {"pressure", "P [P...]", "to pressure P by equal strains"},
-    {"mixed", "e_xx=E s_yy=S ...",
-     "each component by its strain e at the end (counted from the leg's beginning) "
-     "or its stress s at the end; those not named do not strain"},
+    {"mixed", "e_xx=E s_yy=S ... time T",
+     "each of xx, yy, zz, xy, yz, xz by its strain e or its stress s at the end; strains count from the\n"
+     "      leg's beginning, and what is not named does not strain"},
     {"hold", "time T", "no strain for a time T (relaxation)"},
     {"table", "FILE", "deformation gradient F over time: lines of time F11 F12 F13 F21 ... F33"},
 }};

@@ -1,6 +1,8 @@
 #include "apps/common/point_table.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <stdexcept>
@@ -94,19 +96,32 @@ std::vector<Measurement> read_measurements(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw std::runtime_error(fmt::format("{}: cannot be read", file));
   std::vector<Measurement> all;
+  std::size_t strain = 0, stress = 1;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
-    std::vector<std::optional<double>> values;
+    std::vector<std::string_view> words;
     for (std::size_t at = 0; at < line.size();) {
       const std::size_t begin = line.find_first_not_of(" \t\r,;", at);
       if (begin == line.npos) break;
       at = std::min(line.find_first_of(" \t\r,;", begin), line.size());
-      values.push_back(io::parse_real(std::string_view(line).substr(begin, at - begin)));
+      words.push_back(std::string_view(line).substr(begin, at - begin));
     }
-    if (values.empty() || !values[0]) continue;
-    if (values.size() < 2 || !values[1])
+    if (words.empty()) continue;
+    if (!io::parse_real(words[0])) {
+      const auto column = [&](std::string_view name, std::size_t otherwise) {
+        const auto found = std::ranges::find(words, name);
+        return found == words.end() ? otherwise : static_cast<std::size_t>(found - words.begin());
+      };
+      strain = column("strain", strain);
+      stress = column("stress", column("stress_xx", stress));
+      continue;
+    }
+    const auto value = [&](std::size_t i) {
+      return i < words.size() ? io::parse_real(words[i]) : std::optional<double>();
+    };
+    if (!value(strain) || !value(stress))
       throw std::runtime_error(fmt::format("{}, line {}: expected strain and stress", file, number));
-    all.push_back({*values[0], *values[1]});
+    all.push_back({*value(strain), *value(stress)});
   }
   if (all.empty()) throw std::runtime_error(fmt::format("{}: no line of strain and stress", file));
   return all;

@@ -45,7 +45,9 @@ PointSample sample(const physics::PointDriver& point, const physics::PathPoint& 
 struct Measurement {
   double strain = 0, stress = 0;
 };
-/// Lines of two numbers; those that do not begin with a number are headings. Throws std::runtime_error.
+/// Columns of numbers: those that a heading calls `strain` and `stress` (or `stress_xx`: a table of
+/// mpm_point), else the first two. Lines that do not begin with a number are headings. Throws
+/// std::runtime_error.
 std::vector<Measurement> read_measurements(const std::string& file);
 
 /// The pair of components that the picture and the comparison show: axial or, where it is larger, shear

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace mpm::physics {
@@ -282,8 +281,11 @@ class Walker {
         part(leg, known, start, duration, middle, to, rates, depth + 1))
       return true;
     if (end_.reached) {
+      // What drives is what cannot be reached; what must stay at a value only follows.
+      const auto ramp = std::ranges::find(leg.controls, true, &StressControl::ramp);
       end_.reached = false;
-      std::tie(end_.found, end_.wanted) = step.worst();
+      end_.wanted = ramp != leg.controls.end() ? ramp->target : step.worst().second;
+      end_.found = ramp != leg.controls.end() ? weighted(ramp->weight, point_.stress()) : step.worst().first;
     }
     return false;
   }

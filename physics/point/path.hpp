@@ -58,8 +58,8 @@ struct PathPoint {
 struct PathEnd {
   bool reached = true;
   int leg = 0;
-  double wanted = 0;  ///< stress of the first control that failed
-  double found = 0;   ///< what the last trial gave
+  double wanted = 0;  ///< the stress that drives the leg, else the one that is to stay
+  double found = 0;   ///< how near the walk came
 };
 
 /// Walks the legs; `visit` is called before the first and after every step.
