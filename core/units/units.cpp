@@ -17,25 +17,14 @@ struct NamedDimension {
   Dimension dimension;  ///< length, mass, time, temperature
 };
 
-constexpr std::array<NamedDimension, 18> dimensions{{
-    {"length", {1, 0, 0, 0}},
-    {"mass", {0, 1, 0, 0}},
-    {"time", {0, 0, 1, 0}},
-    {"temperature", {0, 0, 0, 1}},
-    {"area", {2, 0, 0, 0}},
-    {"volume", {3, 0, 0, 0}},
-    {"velocity", {1, 0, -1, 0}},
-    {"acceleration", {1, 0, -2, 0}},
-    {"density", {-3, 1, 0, 0}},
-    {"force", {1, 1, -2, 0}},
-    {"stress", {-1, 1, -2, 0}},
-    {"pressure", {-1, 1, -2, 0}},
-    {"energy", {2, 1, -2, 0}},
-    {"power", {2, 1, -3, 0}},
-    {"momentum", {1, 1, -1, 0}},
-    {"viscosity", {-1, 1, -1, 0}},
-    {"frequency", {0, 0, -1, 0}},
-    {"1/time", {0, 0, -1, 0}},
+constexpr std::array<NamedDimension, 19> dimensions{{
+    {"length", {1, 0, 0, 0}},      {"mass", {0, 1, 0, 0}},          {"time", {0, 0, 1, 0}},
+    {"temperature", {0, 0, 0, 1}}, {"area", {2, 0, 0, 0}},          {"volume", {3, 0, 0, 0}},
+    {"velocity", {1, 0, -1, 0}},   {"acceleration", {1, 0, -2, 0}}, {"density", {-3, 1, 0, 0}},
+    {"force", {1, 1, -2, 0}},      {"stress", {-1, 1, -2, 0}},      {"pressure", {-1, 1, -2, 0}},
+    {"energy", {2, 1, -2, 0}},     {"power", {2, 1, -3, 0}},        {"momentum", {1, 1, -1, 0}},
+    {"viscosity", {-1, 1, -1, 0}}, {"frequency", {0, 0, -1, 0}},    {"1/time", {0, 0, -1, 0}},
+    {"degree", {0, 0, 0, 0}},
 }};
 
 struct NamedUnit {
@@ -47,7 +36,7 @@ constexpr Dimension length{1, 0, 0, 0}, mass{0, 1, 0, 0}, time{0, 0, 1, 0}, temp
 constexpr Dimension stress{-1, 1, -2, 0}, energy{2, 1, -2, 0}, power_{2, 1, -3, 0}, force{1, 1, -2, 0};
 
 // The first of equal units is the one that output uses.
-constexpr std::array<NamedUnit, 50> units{{
+constexpr std::array<NamedUnit, 51> units{{
     {"m", {length, 1}},
     {"dm", {length, 1e-1}},
     {"cm", {length, 1e-2}},
@@ -98,6 +87,7 @@ constexpr std::array<NamedUnit, 50> units{{
     {"kN", {force, 1e3}},
     {"MN", {force, 1e6}},
     {"Hz", {{0, 0, -1, 0}, 1}},
+    {"degree", {{0, 0, 0, 0}, 1}},  // angles are pure numbers, and the laws that ask for degrees get degrees
 }};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -279,6 +269,7 @@ Dimension power(const Dimension& a, double e) {
 Dimension operator/(const Dimension& a, const Dimension& b) { return a * power(b, -1); }
 
 std::string to_text(const Dimension& dimension) {
+  if (dimension == Dimension{}) return "1";
   for (const NamedDimension& row : dimensions)
     if (row.dimension == dimension && row.name != "frequency") return std::string(row.name);
   return quotient_text({"mass", "length", "time", "temperature"}, dimension);

@@ -143,6 +143,7 @@ MaterialChoice parse_material(std::string_view bytes, const std::filesystem::pat
   MaterialChoice choice;
   choice.units = units_of(document);
   const std::vector<core::MaterialInput> materials = build_materials(node, context);
+  choice.detonations = build_detonations(node, context);
   if (node.child("Solution"))
     choice.volume_update = static_cast<int>(build_solution(node, context).volume.update);
   diagnostics.raise_if_any();

@@ -10,6 +10,7 @@
 
 #include "core/scene/catalogue.hpp"
 #include "core/scene/material.hpp"
+#include "core/scene/scene.hpp"
 #include "core/units/units.hpp"
 
 namespace mpm::io {
@@ -23,6 +24,7 @@ struct MaterialRequest {
 
 struct MaterialChoice {
   core::MaterialInput material;
+  std::vector<core::DetonationItem> detonations;
   int volume_update = 0;                  ///< of Solution / Volume, where there is one
   std::optional<core::UnitSystem> units;  ///< where the input names them
 };

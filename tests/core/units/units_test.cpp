@@ -19,6 +19,7 @@ TEST_CASE("dimensions in the words of the laws' tables", "[units]") {
     Dimension dimension;
   };
   for (const Row& row : {Row{"1", {}},
+                         {"degree", {}},
                          {"stress", {-1, 1, -2, 0}},
                          {"stress time", {-1, 1, -1, 0}},
                          {"density", {-3, 1, 0, 0}},
