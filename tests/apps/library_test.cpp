@@ -156,8 +156,8 @@ TEST_CASE("every entry with implemented laws makes a material or says what is mi
     INFO(entry.name);
     const std::string said = complaint([&] {
       const auto choice = io::library_material(entry.name, "mm g ms", catalogue);
-      CHECK(physics::make_material(choice.material)->reference_density() ==
-            choice.material.reference_density);
+      const auto material = physics::make_material(choice.material);
+      CHECK(material->reference_density() == choice.material.reference_density);
     });
     INFO(said);
     if (!implemented(catalogue.strength, entry.strength) || !implemented(catalogue.eos, entry.eos))
@@ -166,6 +166,8 @@ TEST_CASE("every entry with implemented laws makes a material or says what is mi
       CHECK(said.find("attribute 'type' is missing") != said.npos);
     else if (entry.name == "W-alloy-JC" || entry.name == "DU-0.75Ti-JC")
       CHECK(said.find("attribute 'Young' is missing") != said.npos);
+    else if (entry.strength == "HighExpBurn")  // complete but for the place where it is lit
+      CHECK(said.find("add a Detonation") != said.npos);
     else
       CHECK(said == "none");
   }
