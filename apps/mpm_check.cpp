@@ -11,6 +11,7 @@
 #include "core/discretise/seeds.hpp"
 #include "core/scene/scene.hpp"
 #include "io/input/echo.hpp"
+#include "io/input/library.hpp"
 #include "io/input/reader.hpp"
 #include "io/input/reference.hpp"
 #include "physics/catalogue.hpp"
@@ -24,6 +25,7 @@ struct Settings {
   bool reference = false;
   bool echo = false;
   bool accept_later = false;
+  bool materials = false;
 };
 
 /// An estimate; reads particle files to their end. Throws every complaint about shapes and files.
@@ -78,12 +80,14 @@ int main(int argc, char** argv) {
   app.add_option("FILE", settings.files, "input files, with or without .xmp");
   app.add_flag("--reference", settings.reference, "print the keyword reference in Markdown");
   app.add_flag("--echo", settings.echo, "print each file as it was understood, with all defaults");
+  app.add_flag("--materials", settings.materials, "list the material library: laws, values, sources");
   app.add_flag("--accept-later", settings.accept_later, "let pass what is known but not implemented yet");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? 0 : 2; }
   if (settings.reference) fmt::print("{}", io::keyword_reference(physics::catalogue()));
-  if (settings.files.empty() && !settings.reference) {
+  if (settings.materials) fmt::print("{}", io::library_listing(io::library(), physics::catalogue()));
+  if (settings.files.empty() && !settings.reference && !settings.materials) {
     fmt::print(stderr, "mpm_check: no file given; see --help\n");
     return 2;
   }

@@ -1,179 +1,168 @@
-// mpm_point INPUT --material NAME --path KIND --to STRAIN...: drives one particle of a material of an input
-// file along a strain path and prints the response as a table (CSV): for calibration, and to see what a law
-// does. Exit code 0 done, 2 wrong input, 3 where the material gave no defined answer.
+// mpm_point: one particle of a material, of an input file or of the library, driven along a path of strains
+// and stresses as in a laboratory; prints the response as a table (CSV) and draws it (SVG). For calibration,
+// and to see what a law does. Exit code 0 done, 2 wrong input, 3 where the material gave no defined answer, 5
+// file error.
 
-#include <array>
 #include <cstdio>
-#include <map>
+#include <exception>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "core/scene/scene.hpp"
-#include "io/input/reader.hpp"
+#include "apps/common/point_path.hpp"
+#include "apps/common/point_table.hpp"
+#include "core/scene/errors.hpp"
+#include "io/input/material_reader.hpp"
 #include "physics/catalogue.hpp"
 #include "physics/material/material.hpp"
-#include "physics/point/point_driver.hpp"
 
 namespace {
 
 using namespace mpm;
-using core::Column;
 
 struct Settings {
-  std::string input;
-  std::string material;
-  std::string output;
-  physics::Path path{.rate = 1, .targets = {}, .steps = 1000};
-  std::vector<double> gradient;
-  std::vector<double> cycle;
+  std::string input, material, library, units, path, output, plot, data;
+  std::vector<std::string> set;
+  apps::PathDefaults defaults;
+  bool isothermal = false;
   double density = 0;
   double cell_size = 0;
   int every = 1;
 };
 
-const std::map<std::string, physics::PathKind> kinds{
-    {"uniaxial-strain", physics::PathKind::uniaxial_strain},
-    {"uniaxial-stress", physics::PathKind::uniaxial_stress},
-    {"simple-shear", physics::PathKind::simple_shear},
-    {"hydrostatic", physics::PathKind::hydrostatic},
-    {"gradient", physics::PathKind::gradient},
-};
-
-/// Columns of the table beyond stress and energy, where the material carries them.
-constexpr std::array optional_columns{Column::effective_plastic_strain,
-                                      Column::yield_stress,
-                                      Column::temperature,
-                                      Column::damage,
-                                      Column::failed,
-                                      Column::burn_fraction,
-                                      Column::porosity,
-                                      Column::bulking_pressure};
-
-const core::MaterialInput& find_material(const core::Scene& scene, const std::string& name) {
-  std::string names;
-  for (const core::MaterialInput& material : scene.materials) {
-    if (material.name == name || (name.empty() && scene.materials.size() == 1)) return material;
-    names += " " + material.name;
-  }
-  throw CLI::ValidationError("--material", "which one of:" + names);
+io::MaterialChoice choose(Settings& settings) {
+  if (settings.input.empty() == settings.library.empty())
+    throw CLI::ValidationError("mpm_point", "name an input file or --library NAME; see --help");
+  if (settings.isothermal) settings.set.emplace_back("PlasticWorkCoefficient=0");
+  if (settings.library.empty())
+    return io::read_material(settings.input, physics::catalogue(), {settings.material, settings.set});
+  if (settings.units.empty())
+    throw CLI::ValidationError("--units",
+                               "library values are converted to units of yours, as in --units \"mm g ms\"");
+  return io::library_material(settings.library, settings.units, physics::catalogue(), settings.set);
 }
 
-void complete_path(Settings& settings) {
-  if (settings.path.kind == physics::PathKind::gradient) {
-    const std::vector<double>& g = settings.gradient;
-    if (g.size() != 9) throw CLI::ValidationError("--gradient", "nine components, row by row, are needed");
-    settings.path.gradient = {g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7], g[8]};
-  }
-  if (!settings.cycle.empty()) {
-    const double amplitude = settings.cycle[0];
-    const int cycles = settings.cycle.size() > 1 ? static_cast<int>(settings.cycle[1]) : 1;
-    for (int i = 0; i < cycles; ++i)
-      settings.path.targets.insert(settings.path.targets.end(), {amplitude, -amplitude});
-    settings.path.targets.push_back(0);
-  }
-  if (settings.path.targets.empty()) throw CLI::ValidationError("--to", "--to or --cycle is needed");
+bool write(const std::string& file, const std::string& text) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "w"), &std::fclose);
+  return stream && std::fwrite(text.data(), 1, text.size(), stream.get()) == text.size() &&
+         std::fflush(stream.get()) == 0;
 }
 
-void print_header(std::FILE* file, const physics::PointDriver& point) {
-  fmt::print(
-      file,
-      "time,strain,stress_xx,stress_yy,stress_zz,stress_xy,stress_yz,stress_xz,pressure,viscous_pressure,"
-      "von_mises,density,internal_energy,sound_speed");
-  for (Column column : optional_columns) {
-    if (point.has(column)) fmt::print(file, ",{}", core::name_of(column));
+/// Says on standard error what the table does not show; the exit code.
+int report(const physics::PathEnd& end, const std::vector<physics::Leg>& legs,
+           const physics::PointDriver& point, const std::string& stress_unit) {
+  int code = 0;
+  if (!end.reached) {
+    fmt::print(stderr,
+               "mpm_point: leg {} ({}): at time {} a stress of {:.6g} {} cannot be reached, the nearest is "
+               "{:.6g}; the table ends there\n",
+               end.leg + 1, legs[static_cast<std::size_t>(end.leg)].kind, point.time(), end.wanted,
+               stress_unit, end.found);
+    code = 3;
   }
-  fmt::print(file, "\n");
+  const core::MaterialEvents& events = point.events();
+  if (events.not_finite > 0) {
+    fmt::print(stderr, "mpm_point: the state is no number in {} steps\n", events.not_finite);
+    code = 3;
+  }
+  if (events.failed > 0) fmt::print(stderr, "mpm_point: the material failed on the way (column failed)\n");
+  return code;
 }
 
-void print_row(std::FILE* file, const physics::PointDriver& point, double strain) {
-  const core::Sym3<double> s = point.stress();
-  fmt::print(file, "{},{},{},{},{},{},{},{},{},{},{},{},{},{}", point.time(), strain, s.xx, s.yy, s.zz, s.xy,
-             s.yz, s.xz, point.value(Column::pressure), point.value(Column::viscous_pressure),
-             mises(point.deviator()), point.density(), point.energy(), point.sound_speed());
-  for (Column column : optional_columns) {
-    if (point.has(column)) fmt::print(file, ",{}", point.value(column));
-  }
-  fmt::print(file, "\n");
-}
+int run(Settings& settings) {
+  const std::vector<physics::Leg> legs = apps::parse_path(settings.path, settings.defaults);
+  const std::vector<apps::Measurement> measured =
+      settings.data.empty() ? std::vector<apps::Measurement>{} : apps::read_measurements(settings.data);
+  const io::MaterialChoice choice = choose(settings);
+  const auto material = physics::make_material(choice.material, choice.detonations);
+  physics::PointDriver point(*material, {.density = settings.density,
+                                         .cell_size = settings.cell_size,
+                                         .update = {.volume_update = choice.volume_update},
+                                         .extra_columns = {core::Column::yield_stress}});
+  const apps::PointTable table(point, choice.units);
+  std::string text = table.heading();
+  std::vector<apps::PointSample> samples;
+  std::string last;
+  const physics::PathEnd end = physics::walk(point, legs, [&](const physics::PathPoint& at) {
+    const bool shown = samples.size() % static_cast<std::size_t>(settings.every) == 0;
+    samples.push_back(apps::sample(point, at));
+    if (shown) text += table.row(at);
+    last = shown ? std::string() : table.row(at);
+  });
+  text += last;  // the end of the path is always there
 
-int run(const Settings& settings) {
-  const core::Scene scene = io::read_scene(settings.input, physics::catalogue());
-  const auto material = physics::make_material(find_material(scene, settings.material), scene.detonations);
-  physics::PointDriver point(*material,
-                             {.density = settings.density,
-                              .cell_size = settings.cell_size,
-                              .update = {.volume_update = static_cast<int>(scene.solution.volume.update)},
-                              .extra_columns = {Column::yield_stress}});
-
-  const bool to_file = !settings.output.empty();
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(
-      to_file ? std::fopen(settings.output.c_str(), "w") : nullptr, &std::fclose);
-  if (to_file && !opened) {
+  if (settings.output.empty()) {
+    fmt::print("{}", text);
+    if (std::fflush(stdout) != 0) return 5;
+  } else if (!write(settings.output, text)) {
     fmt::print(stderr, "mpm_point: cannot write {}\n", settings.output);
     return 5;
   }
-  std::FILE* table = to_file ? opened.get() : stdout;
-
-  print_header(table, point);
-  int row = 0;
-  const int rows = settings.path.steps * static_cast<int>(settings.path.targets.size());
-  const bool converged = physics::drive(point, settings.path, [&](double strain) {
-    if (row % settings.every == 0 || row == rows) print_row(table, point, strain);
-    ++row;
-  });
-  if (!converged)
-    fmt::print(stderr, "mpm_point: the lateral stress could not be brought to zero in every step\n");
-  const core::MaterialEvents& events = point.events();
-  if (events.not_finite > 0)
-    fmt::print(stderr, "mpm_point: the state is no number in {} steps\n", events.not_finite);
-  if (std::fflush(table) != 0) {
-    fmt::print(stderr, "mpm_point: writing the table failed\n");
+  const std::string unit = table.unit("stress");
+  const std::string title = fmt::format("{}: {}", choice.material.name, settings.path);
+  if (!settings.plot.empty() && !write(settings.plot, apps::plot(title, samples, measured, unit))) {
+    fmt::print(stderr, "mpm_point: cannot write {}\n", settings.plot);
     return 5;
   }
-  return converged && events.not_finite == 0 ? 0 : 3;
+  if (!measured.empty()) {
+    const apps::Misfit fit = apps::misfit(apps::stress_strain(samples), measured);
+    fmt::print(stderr, "mpm_point: {} of {} measured points compared; rms difference {:.4g} {} ({:.3g} %)\n",
+               fit.points, measured.size(), fit.rms, unit,
+               fit.largest > 0 ? 100 * fit.rms / fit.largest : 0.0);
+  }
+  return report(end, legs, point, unit);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app("Drives one particle of a material along a strain path. Strains are logarithmic, rates true.");
-  app.add_option("INPUT", settings.input, "input file with the material, with or without .xmp")->required();
+  CLI::App app(
+      "Drives one particle of a material along a path of strains and stresses: what a law does, without a "
+      "grid.\n\n"
+      "  mpm_point --library OFHC-Cu-JC --units \"mm g ms\" --path \"uniaxial_stress 0.2 rate 1000\" --plot "
+      "cu.svg\n"
+      "  mpm_point case.xmp --material cu --path \"uniaxial_strain -0.1 rate 10\" -o cu.csv");
+  app.add_option("INPUT", settings.input,
+                 "input file with the material, with or without .xmp; materials alone will do");
   app.add_option("-m,--material", settings.material, "its name; not needed where the file has only one");
-  app.add_option("-p,--path", settings.path.kind, "kind of path")
-      ->transform(CLI::CheckedTransformer(kinds))
-      ->default_str("uniaxial-strain");
-  app.add_option("-t,--to", settings.path.targets, "strain to reach; several: one after the other");
-  app.add_option("--cycle", settings.cycle, "AMPLITUDE [CYCLES]: to and fro, and back to zero")
-      ->expected(1, 2);
-  app.add_option("-r,--rate", settings.path.rate, "strain rate")
+  app.add_option("-l,--library", settings.library,
+                 "material of the library; mpm_check --materials lists them");
+  app.add_option("-u,--units", settings.units, "units of path and table with --library, as in \"mm g ms\"");
+  app.add_option("-s,--set", settings.set, "NAME=VALUE: sets one parameter anew; may be repeated")
+      ->allow_extra_args(false);
+  app.add_flag("--isothermal", settings.isothermal,
+               "plastic work does not heat: --set PlasticWorkCoefficient=0");
+  app.add_option("-p,--path", settings.path, "the path, see below")->required();
+  app.add_option("--repeat", settings.defaults.repeat, "the whole path so many times")
+      ->check(CLI::PositiveNumber);
+  app.add_option("-r,--rate", settings.defaults.rate, "strain rate of legs that name none")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("-n,--steps", settings.path.steps, "steps to each strain")
+  app.add_option("-n,--steps", settings.defaults.steps, "steps of legs that name none")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--gradient", settings.gradient,
-                 "velocity gradient per unit rate, row by row, for --path gradient")
-      ->expected(9);
   app.add_option("--density", settings.density, "density at the start, if not the reference density")
       ->check(CLI::PositiveNumber);
   app.add_option("--cell-size", settings.cell_size, "cell size, for the artificial viscosity; none without")
       ->check(CLI::PositiveNumber);
   app.add_option("--every", settings.every, "print every so many steps")->check(CLI::PositiveNumber);
   app.add_option("-o,--output", settings.output, "file for the table; standard output without");
+  app.add_option("--plot", settings.plot,
+                 "file for a picture (SVG): stress over strain, q over p, p over volume");
+  app.add_option("--data", settings.data,
+                 "measured strain and stress, two columns: drawn, and the difference is printed");
+  app.footer(apps::path_help());
   try {
     app.parse(argc, argv);
-    complete_path(settings);
     return run(settings);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const core::InputErrors& errors) {
     fmt::print(stderr, "{}\n", errors.what());
-    return 2;
-  }
+  } catch (const std::exception& error) { fmt::print(stderr, "mpm_point: {}\n", error.what()); }
+  return 2;
 }

@@ -121,6 +121,7 @@ class Checker {
   }
 
   void missing_attributes(const Node& node) {
+    if (node.element().incomplete) return;
     for (const AttributeSpec& row : node.spec().attributes) {
       if (!row.required || !row.applies_to(node.type()) || node.find(row.name)) continue;
       if (std::ranges::find(misspelt_, row.name) != misspelt_.end()) continue;
@@ -161,6 +162,7 @@ class Checker {
             fmt::format("stands once in <{}>; the first is on line {}", node.name(), first->second));
       element(Node(document_, i, *spec, node.type()));
     }
+    if (node.element().incomplete) return;
     for (const ElementSpec& spec : node.spec().children)
       if (spec.required && !first_line.contains(spec.name) &&
           (spec.for_types.empty() || (!node.type().empty() && spec.applies_to(node.type()))))

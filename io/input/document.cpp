@@ -48,6 +48,34 @@ std::string_view Document::keep(std::string_view text) {
   return {copy, text.size()};
 }
 
+void Document::set_attribute(std::uint32_t element, std::string_view name, std::string_view value, int line) {
+  XmlElement& e = elements_[element];
+  const auto begin = attributes_.begin() + e.first_attribute, end = begin + e.attribute_count;
+  const XmlAttribute made{keep_name(name), keep(value), line};
+  if (const auto found = std::find_if(begin, end, [&](const XmlAttribute& a) { return a.name == name; });
+      found != end) {
+    *found = made;
+    return;
+  }
+  std::vector<XmlAttribute> moved(begin, end);  // an element's attributes are neighbours
+  moved.push_back(made);
+  e.first_attribute = static_cast<std::uint32_t>(attributes_.size());
+  e.attribute_count = static_cast<std::uint32_t>(moved.size());
+  attributes_.insert(attributes_.end(), moved.begin(), moved.end());
+}
+
+std::uint32_t Document::add_child(std::uint32_t parent, std::string_view name, int line) {
+  const auto index = static_cast<std::uint32_t>(elements_.size());
+  XmlElement child;
+  child.name = keep_name(name);
+  child.line = line;
+  elements_.push_back(child);
+  std::uint32_t* link = &elements_[parent].first_child;
+  while (*link != 0) link = &elements_[*link].next_sibling;
+  *link = index;
+  return index;
+}
+
 class DocumentBuilder {
  public:
   explicit DocumentBuilder(xmlParserCtxtPtr parser) : parser_(parser) {
@@ -109,7 +137,8 @@ class DocumentBuilder {
                        static_cast<std::uint32_t>(document_.attributes_.size()),
                        0,
                        0,
-                       0};
+                       0,
+                       false};
     int at_line = element.line;
     const xmlChar* at = tag;
     for (int i = 0; i < count; ++i, raw += 5) {

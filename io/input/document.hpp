@@ -29,6 +29,7 @@ struct XmlElement {
   std::uint32_t attribute_count = 0;
   std::uint32_t first_child = 0;   ///< 0: none (the root is nobody's child)
   std::uint32_t next_sibling = 0;  ///< 0: none
+  bool incomplete = false;         ///< what should complete it was wrong: nothing is missing in it
 };
 
 class Document {
@@ -46,9 +47,17 @@ class Document {
   };
   const std::vector<StrayText>& stray_texts() const { return stray_texts_; }
 
+  // What stands for something else (a name of the library) is filled in before the document is checked.
+  // Elements keep their numbers.
+  /// Replaces the value where the element has the attribute.
+  void set_attribute(std::uint32_t element, std::string_view name, std::string_view value, int line);
+  std::uint32_t add_child(std::uint32_t parent, std::string_view name, int line);
+  void mark_incomplete(std::uint32_t element) { elements_[element].incomplete = true; }
+
  private:
   friend class DocumentBuilder;
   std::string_view keep(std::string_view text);
+  std::string_view keep_name(std::string_view name) { return *names_.emplace(name).first; }
 
   std::vector<XmlElement> elements_;
   std::vector<XmlAttribute> attributes_;

@@ -11,6 +11,7 @@
 #include "io/input/checker.hpp"
 #include "io/input/document.hpp"
 #include "io/input/file_access.hpp"
+#include "io/input/library.hpp"
 #include "io/input/specification.hpp"
 #include "io/input/text.hpp"
 
@@ -93,11 +94,13 @@ core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& fil
                         const ReadOptions& options) {
   Diagnostics diagnostics(file.string());
   std::optional<XmlError> error;
-  const Document document = parse_document(bytes, error);
-  if (error)
+  Document document = parse_document(bytes, error);
+  if (error) {
     report(*error, root, diagnostics);
-  else
+  } else {
+    fill_in_from_library(document, library(), diagnostics);
     check(document, root, options.accept_later, diagnostics);
+  }
   core::Scene scene;
   if (!error && document.elements().front().name == root.name)
     scene = build(Node(document, 0, root, {}), {diagnostics, file.parent_path(), options.check_files});

@@ -1,7 +1,6 @@
 #include "physics/point/point_driver.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace mpm::physics {
@@ -61,72 +60,6 @@ void PointDriver::restore(const State& state) {
   std::copy(state.block.begin(), state.block.end(), block_.begin());
   batch_.time = state.time;
   batch_.events = state.events;
-}
-
-namespace {
-
-Mat3<double> scaled(double k, const Mat3<double>& a) {
-  return {k * a.xx, k * a.xy, k * a.xz, k * a.yx, k * a.yy, k * a.yz, k * a.zx, k * a.zy, k * a.zz};
-}
-
-/// One step of uniaxial stress. The lateral stress grows with the lateral rate, so its root is bracketed and
-/// then found by the secant, with bisection as the safeguard. `ratio`, lateral over axial rate, starts from
-/// the last step's and is returned in place.
-bool step_without_lateral_stress(PointDriver& point, double axial_rate, double dt, double& ratio) {
-  const PointDriver::State before = point.save();
-  double scale = 0;
-  const auto lateral_stress = [&](double r) {
-    point.restore(before);
-    point.step({axial_rate, 0, 0, 0, r * axial_rate, 0, 0, 0, r * axial_rate}, dt);
-    const core::Sym3<double> stress = point.stress();
-    scale = std::max({scale, std::abs(stress.xx), std::abs(stress.yy)});
-    return axial_rate > 0 ? stress.yy : -stress.yy;  // grows with r either way
-  };
-  double low = ratio - 0.05, high = ratio + 0.05;
-  double f_low = lateral_stress(low), f_high = lateral_stress(high);
-  for (double width = 0.1; f_low > 0 && width < 1e3; width *= 2) f_low = lateral_stress(low -= width);
-  for (double width = 0.1; f_high < 0 && width < 1e3; width *= 2) f_high = lateral_stress(high += width);
-  if (f_low > 0 || f_high < 0) return scale == 0;
-  for (int i = 0; i < 200; ++i) {
-    double next = low - f_low * (high - low) / (f_high - f_low);
-    // The secant creeps where one end stays: every third step halves the bracket.
-    if (i % 3 == 2 || !(next > low && next < high)) next = 0.5 * (low + high);
-    const double f = lateral_stress(ratio = next);
-    if (std::abs(f) <= 1e-9 * scale || high - low <= 1e-15 * std::max(1.0, std::abs(next))) {
-      return std::abs(f) <= 1e-6 * scale;
-    }
-    (f > 0 ? high : low) = next;
-    (f > 0 ? f_high : f_low) = f;
-  }
-  return false;
-}
-
-}  // namespace
-
-bool drive(PointDriver& point, const Path& path, const std::function<void(double)>& visit) {
-  double strain = 0, ratio = -0.3;
-  bool converged = true;
-  visit(strain);
-  for (const double target : path.targets) {
-    const double start = strain, length = target - start;
-    if (length == 0) continue;
-    const double rate = length > 0 ? path.rate : -path.rate;
-    const double dt = length / rate / path.steps;
-    for (int i = 1; i <= path.steps; ++i) {
-      switch (path.kind) {
-        case PathKind::uniaxial_strain: point.step({rate, 0, 0, 0, 0, 0, 0, 0, 0}, dt); break;
-        case PathKind::simple_shear: point.step({0, rate, 0, 0, 0, 0, 0, 0, 0}, dt); break;
-        case PathKind::hydrostatic: point.step({rate / 3, 0, 0, 0, rate / 3, 0, 0, 0, rate / 3}, dt); break;
-        case PathKind::gradient: point.step(scaled(rate, path.gradient), dt); break;
-        case PathKind::uniaxial_stress:
-          converged = step_without_lateral_stress(point, rate, dt, ratio) && converged;
-          break;
-      }
-      strain = start + length * i / path.steps;
-      visit(strain);
-    }
-  }
-  return converged;
 }
 
 }  // namespace mpm::physics

@@ -8,7 +8,7 @@ import h5py
 import numpy
 
 import _mpm
-from _mpm import BIN, DONE, FILE_ERROR, INPUT_ERROR, Case
+from _mpm import BIN, DONE, FILE_ERROR, INPUT_ERROR, NUMERICAL_FAILURE, Case
 
 # Names that would break a carelessly written file.
 TITLE = "a -- b <c> & \u201cd\u201d \u706b"
@@ -157,14 +157,29 @@ class CommandLine(Case):
         if not (BIN / "mpm_point").exists():
             self.skipTest("mpm_point is not built")
         case = self.write(collision())
-        path = ["-p", "uniaxial-strain", "-t", "0.001", "-n", "10"]
-        outcome = _mpm.run([case, "-m", "soft", *path], program="mpm_point")
+        outcome = _mpm.run([case, "-m", "soft", "-p", "uniaxial_strain 0.001 steps 10"], program="mpm_point")
         self.assertEqual(outcome.code, DONE, outcome)
-        head, *rows = outcome.out.splitlines()
+        head, units, *rows = outcome.out.splitlines()
+        self.assertEqual(len(units.split(",")), len(head.split(",")))
         last = dict(zip(head.split(","), map(float, rows[-1].split(","))))
         modulus = 1000 * 0.7 / (1.3 * 0.4)
         self.assertAlmostEqual(last["stress_xx"] / (0.001 * modulus), 1, delta=2e-3)
-        self.assertEqual(_mpm.run([case, "-m", "steel", "-t", "1"], program="mpm_point").code, INPUT_ERROR)
+        outcome = _mpm.run([case, "-m", "steel", "-p", "hold time 1"], program="mpm_point")
+        self.assertEqual(outcome.code, INPUT_ERROR)
+        self.assertIn("it has no material 'steel'; it has", outcome.err)
+        for bad in (["-p", "nonsense 1"], ["-p", "hold time 1", "--set", "Young=-1"], []):
+            self.assertEqual(_mpm.run([case, "-m", "soft", *bad], program="mpm_point").code, INPUT_ERROR, bad)
+        library = ["--library", "Al-plastic", "--units", "mm g ms"]
+        outcome = _mpm.run([*library, "-p", "uniaxial_stress stress 500 time 1"], program="mpm_point")
+        self.assertEqual(outcome.code, NUMERICAL_FAILURE, outcome)
+        self.assertIn("a stress of 500 MPa cannot be reached, the nearest is 290", outcome.err)
+        self.assertEqual(_mpm.run([*library, "-p", "hold time 1", "-o", "/nowhere/a.csv"],
+                                  program="mpm_point").code, FILE_ERROR)
+
+    def test_materials(self):
+        outcome = _mpm.run(["--materials"], program="mpm_check")
+        self.assertEqual((outcome.code, outcome.err), (DONE, ""), outcome)
+        self.assertIn("OFHC-Cu-JC: JohnsonCook", outcome.out)
 
 
 class Results(Case):

@@ -53,6 +53,9 @@ std::string materials() {
                    "<RandomFailure enable='1' RandomType='2' FailDistribution='2' GaussMean='1' "
                    "GaussStd='0.2' WeibMed='1.2549' "
                    "WeibMod='20.270' WeibRefVol='1' WeibPartVol='1000' DamageRandom='1'/>");
+  text +=
+      "<Material name='cu' library='OFHC-Cu-linear' units='mm g ms'><ReferenceDensity value='1'/>"
+      "<StrengthModel type='IsoElastic' Young='1' Poisson='0.3'/></Material>\n";
   text += material("type='CauchyElastic'" + common) + material("type='Elastic_1D'" + common);
   text += material("type='ElaPlastic'" + plastic) + material("type='IsoHarden' TangMod='100'" + plastic);
   text += material("type='LinHarElaPlastic_1D' TangMod='100' Young='1' Yield0='2'");
@@ -273,7 +276,7 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   const std::string echo = io::to_text(scene);
   CHECK(io::to_text(io::parse_scene(echo, "all.xmp", core::Catalogue{}, options)) == echo);
 
-  CHECK(scene.materials.size() == 25);
+  CHECK(scene.materials.size() == 26);
   CHECK(scene.components[0].bodies.size() == 21);
   CHECK(std::get<core::BoolGeometry>(scene.components[0].bodies[2].geometry).subtrahend_body == 1);
   CHECK(scene.detonations.size() == 2);
