@@ -110,19 +110,19 @@ class Decks(Case):
         if not (BIN / "mpm_point").exists():
             self.skipTest("mpm_point is not built")
 
-    def point(self, density, strength, eos="", path=()):
+    def point(self, density, strength, eos="", path=""):
         text = _mpm.scene([_mpm.block("cube", (2, 2, 2), (4, 4, 4))], _mpm.grid((0, 0, 0), (8, 8, 8)),
                           _mpm.solution(1), [_mpm.material("soft", density, strength, eos)])
-        return _mpm.run([self.write(text), *map(str, path)], program="mpm_point")
+        return _mpm.run([self.write(text), "-p", path], program="mpm_point")
 
     def end(self, *arguments, path):
-        outcome = self.point(*arguments, path=[*path, "-n", 1000])
+        outcome = self.point(*arguments, path=path)
         self.assertEqual(outcome.code, DONE, outcome)
-        head, *rows = outcome.out.splitlines()
+        head, _, *rows = outcome.out.splitlines()
         return dict(zip(head.split(","), map(float, rows[-1].split(","))))
 
     def test_concrete_crushes(self):
-        last = self.end(2.44e-3, CONCRETE, CRUSHING, path=["-p", "hydrostatic", "-t", -0.05])
+        last = self.end(2.44e-3, CONCRETE, CRUSHING, path="hydrostatic -0.05")
         mu = last["density"] / 2.44e-3 - 1
         # 3-54; mu_plock by the cubic: 0.110554.
         self.assertAlmostEqual(last["pressure"] / (16 + 784 * (mu - 0.001) / (0.110554 - 0.001)), 1, delta=1e-4)
@@ -130,16 +130,16 @@ class Decks(Case):
 
     def test_ceramic_yields_at_its_elastic_limit(self):
         # Phel + 2/3 Shel: 2.79 GPa, where the intact strength, 1.004 of Shel, is reached.
-        last = self.end(3.7e-3, ALUMINA, path=["-p", "uniaxial-strain", "-t", -0.0109, "-r", 1e-6])
+        last = self.end(3.7e-3, ALUMINA, path="uniaxial_strain -0.0109 rate 1e-6")
         self.assertEqual(last["damage"], 0)
-        last = self.end(3.7e-3, ALUMINA, path=["-p", "uniaxial-strain", "-t", -0.0112, "-r", 1e-6])
+        last = self.end(3.7e-3, ALUMINA, path="uniaxial_strain -0.0112 rate 1e-6")
         self.assertGreater(last["damage"], 0)
         self.assertAlmostEqual(-last["stress_xx"] / 2793, 1, delta=0.02)
 
     def test_concrete_over_each_solid(self):
         for number, solid in SOLIDS.items():
             with self.subTest(EOSID=number):
-                last = self.end(2.314e-3, RHT, POROUS.format(solid), path=["-p", "hydrostatic", "-t", -0.1])
+                last = self.end(2.314e-3, RHT, POROUS.format(solid), path="hydrostatic -0.1")
                 # 3-52 with the pressure reached: alpha rho is the solid's density under alpha p, E that of the solid.
                 p = last["pressure"]
                 alpha = 1 + (2750 / 2314 - 1) * ((6000 - p) / (6000 - 23.3)) ** 3
@@ -153,9 +153,9 @@ class Decks(Case):
         # Uniaxial stress to the failure surface: fc, since Y*(fc/3) = 1 on the compressive meridian; at a rate below
         # all reference rates.
         rows = self.point(2.314e-3, RHT, POROUS.format(SOLIDS[2]),
-                          path=["-p", "uniaxial-stress", "-t", -0.004, "-n", 2000, "-r", 1e-9])
+                          path="uniaxial_stress -0.004 rate 1e-9 steps 2000")
         self.assertEqual(rows.code, DONE, rows.err)
-        head, *lines = rows.out.splitlines()
+        head, _, *lines = rows.out.splitlines()
         column = head.split(",").index("stress_xx")
         self.assertAlmostEqual(max(-float(line.split(",")[column]) for line in lines) / 35, 1, delta=0.01)
 
@@ -164,13 +164,13 @@ class Decks(Case):
                                (SOLIDS[3].replace(' C0="3581"', ""), "EOSID 3, Gruneisen, needs the attribute C0"),
                                (SOLIDS[2].replace("2", "4", 1), "EOSID")):
             with self.subTest(message=message):
-                outcome = self.point(2.314e-3, RHT, POROUS.format(solid), path=["-t", 0.01])
+                outcome = self.point(2.314e-3, RHT, POROUS.format(solid), path="hydrostatic 0.01")
                 self.assertEqual(outcome.code, INPUT_ERROR, outcome)
                 self.assertIn(message, outcome.err)
-        outcome = self.point(2.314e-3, RHT, path=["-t", 0.01])
+        outcome = self.point(2.314e-3, RHT, path="hydrostatic 0.01")
         self.assertEqual(outcome.code, INPUT_ERROR, outcome)
         self.assertIn("CapFlag", outcome.err)
-        outcome = self.point(2.44e-3, CONCRETE.replace(' EFMin="0.01"', ""), CRUSHING, path=["-t", 0.01])
+        outcome = self.point(2.44e-3, CONCRETE.replace(' EFMin="0.01"', ""), CRUSHING, path="hydrostatic 0.01")
         self.assertEqual(outcome.code, INPUT_ERROR, outcome)
         self.assertIn("EFMin", outcome.err)
 
