@@ -52,7 +52,7 @@ TEST_CASE("legs of a path", "[path]") {
       path("uniaxial_stress 0.01 -0.01; hold time 3; uniaxial_stress 0.02; hydrostatic 0.1;");
   REQUIRE(run.size() == 5);
   CHECK(run[0].from_zero);
-  for (const std::size_t i : {1, 2, 3}) CHECK(!run[i].from_zero);
+  for (const std::size_t i : {std::size_t{1}, std::size_t{2}, std::size_t{3}}) CHECK(!run[i].from_zero);
   CHECK(run[4].from_zero);
   CHECK(run[0].rate == 2);
   CHECK(run[0].steps == 50);
