@@ -20,7 +20,8 @@ void for_each_node(const GridGeometry& g, const BlockPlace& place, int lane, F f
   for (int n = 0; n < 8; ++n) {
     const int i = n & 1, j = (n >> 1) & 1, k = n >> 2;
     f(place.node[lane] + corner_node(n), wx[i] * wy[j] * wz[k],
-      Vec3<double>{(2 * i - 1) * g.inverse_cell.x * wy[j] * wz[k], (2 * j - 1) * g.inverse_cell.y * wx[i] * wz[k],
+      Vec3<double>{(2 * i - 1) * g.inverse_cell.x * wy[j] * wz[k],
+                   (2 * j - 1) * g.inverse_cell.y * wx[i] * wz[k],
                    (2 * k - 1) * g.inverse_cell.z * wx[i] * wy[j]});
   }
 }
@@ -33,8 +34,10 @@ Conduction::Conduction(Model& model, Exchange& exchange)
   if (!any_) return;
   heat_.resize(static_cast<std::size_t>(omp_get_max_threads()));
   flux_.resize(heat_.size());
-  for (AlignedDoubles& a : heat_) a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
-  for (AlignedDoubles& a : flux_) a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
+  for (AlignedDoubles& a : heat_)
+    a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
+  for (AlignedDoubles& a : flux_)
+    a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
 }
 
 template <class F>
@@ -98,19 +101,23 @@ void Conduction::map_flux() {
                           const BlockPlace& place, int used) {
       for (int l = 0; l < used; ++l) {
         Vec3<double> gradient{};
-        for_each_node(grid.geometry(), place, l, [&](int node, double, const Vec3<double>& g) {
+        double unseen = block[layout.offset(Column::temperature) + l];
+        for_each_node(grid.geometry(), place, l, [&](int node, double shape, const Vec3<double>& g) {
           gradient = gradient + nodes[node_doubles * node + 1] * g;
+          unseen -= nodes[node_doubles * node + 1] * shape;
         });
+        const double heat = body.model->specific_heat() * block[layout.offset(Column::mass) + l] * unseen;
         const Vec3<double> flow =
             (-body.model->conductivity() * block[layout.offset(Column::volume) + l]) * gradient;
-        for_each_node(grid.geometry(), place, l, [&](int node, double, const Vec3<double>& g) {
+        for_each_node(grid.geometry(), place, l, [&](int node, double shape, const Vec3<double>& g) {
           to[flux_doubles * node] += dot(flow, g);
+          to[flux_doubles * node + 1] += shape * heat;
         });
       }
     });
   };
   for_each_by_threads(0, grid.boundary(), 4, map);
-  exchange_.begin_halo(grid, NodeArray::first, 0, 1);
+  exchange_.begin_halo(grid, NodeArray::first, 0, 2);
   for_each_by_threads(grid.boundary(), grid.owned(), 4, map);
 }
 
@@ -120,20 +127,25 @@ void Conduction::warm(double dt) {
     const auto s = static_cast<Slot>(slot);
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     double *nodes = heat_[thread].data(), *flux = flux_[thread].data();
-    sum_contributions<NodeArray::second>(grid, shared_, s, nodes);
+    temperatures(s, nodes);
     sum_contributions<NodeArray::first>(grid, shared_, s, flux);
-    for (int n = 0; n < shared_.nodes(); ++n) {
+    for (int n = 0; n < shared_.nodes(); ++n) {  // to the nodes' rise, and P T'
       const double capacity = nodes[node_doubles * n];
-      flux[node_doubles * n] = capacity > 0 ? dt * flux[node_doubles * n] / capacity : 0;
+      double* at = flux + node_doubles * n;
+      at[0] = capacity > 0 ? dt * at[0] / capacity : 0;
+      at[1] = capacity > 0 ? at[1] / capacity : 0;
     }
-    for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block, const BlockPlace& place,
-                          int used) {
+    const Vec3<double>& h = grid.geometry().inverse_cell;
+    for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block,
+                          const BlockPlace& place, int used) {
       const double per_volume = body.model->reference_density() * body.model->specific_heat();
       for (int l = 0; l < used; ++l) {
-        double rise = 0;
+        double rise = 0, unseen = block[layout.offset(Column::temperature) + l];
         for_each_node(grid.geometry(), place, l, [&](int node, double shape, const Vec3<double>&) {
           rise += shape * flux[node_doubles * node];
+          unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
         });
+        rise -= std::min(2 * diffusivity(body, block, l) * dot(h, h) * dt, 1.0) * unseen;
         block[layout.offset(Column::temperature) + l] += rise;
         block[layout.offset(Column::internal_energy) + l] += per_volume * rise;
       }
@@ -141,21 +153,23 @@ void Conduction::warm(double dt) {
   });
 }
 
+double Conduction::diffusivity(const Body& body, const double* block, int lane) const {
+  const ColumnLayout& layout = body.pool->layout();
+  return body.model->conductivity() / body.model->specific_heat() *
+         block[layout.offset(Column::volume) + lane] / block[layout.offset(Column::mass) + lane];
+}
+
 double Conduction::critical_step() const {
   if (!any_) return std::numeric_limits<double>::infinity();
-  const GridGeometry& g = model_.grid->geometry();
-  const double curvature = dot(g.inverse_cell, g.inverse_cell);
-  double diffusivity = 0;
-  core::for_each_block(model_, [&](int body, const ColumnLayout& layout, const double* block, int used) {
-    const ConstitutiveModel& m = *model_.bodies[static_cast<std::size_t>(body)].model;
-    if (!(m.conductivity() > 0)) return;
-    for (int l = 0; l < used; ++l) {
-      diffusivity = std::max(diffusivity, m.conductivity() / m.specific_heat() *
-                                              block[layout.offset(Column::volume) + l] /
-                                              block[layout.offset(Column::mass) + l]);
-    }
-  });
-  return 1 / (2 * diffusivity * curvature);
+  double most = 0;
+  for (int s = 0; s < model_.grid->owned(); ++s) {
+    for_each_block(static_cast<Slot>(s), [&](const ColumnLayout&, const Body& body, const double* block,
+                                             const BlockPlace&, int used) {
+      for (int l = 0; l < used; ++l) most = std::max(most, diffusivity(body, block, l));
+    });
+  }
+  const Vec3<double>& h = model_.grid->geometry().inverse_cell;
+  return 1 / (2 * most * dot(h, h));
 }
 
 }  // namespace mpm::core

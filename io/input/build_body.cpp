@@ -141,7 +141,7 @@ core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& conte
   const bool pulls = load.traction != Vector{};
   if (const auto normal = node.given_integer("normal")) load.normal = static_cast<int>(*normal);
   if (pulls != (load.normal >= 0))
-    node.complain(context.diagnostics, "normal", "goes with tx, ty, tz: give both or neither");
+    node.complain(context.diagnostics, "normal and tx, ty, tz go together: give both or neither");
   if (!pulls && load.pressure == 0)
     node.complain(context.diagnostics, "needs a pressure, or tx, ty, tz and normal");
   static constexpr std::array<std::array<const char*, 2>, 3> sides{

@@ -71,12 +71,11 @@ void light(StrengthModel& strength, const core::MaterialInput& input,
   }
 }
 
-void refuse_what_is_missing(const core::MaterialInput& input, const CommonParameters& common) {
-  const auto refuse = [&](const char* what) {
+void check_conduction(const core::MaterialInput& input, const CommonParameters& common) {
+  if (common.conductivity > 0 && !(common.specific_heat > 0)) {
     throw core::InputErrors(input.strength.source, "StrengthModel",
-                            std::string(what) + " is not implemented yet");
-  };
-  if (common.conductivity != 0) refuse("CoefficientOfThermalConductivity other than 0");
+                            "CoefficientOfThermalConductivity needs SpecHeat");
+  }
 }
 
 /// Whether the equation's pressure depends on the energy, and so on heat.
@@ -129,7 +128,7 @@ std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput
   laws.name = input.name;
   laws.reference_density = input.reference_density;
   read_parameters(laws.common, input.strength);
-  refuse_what_is_missing(input, laws.common);
+  check_conduction(input, laws.common);
   laws.strength = make_law<StrengthModel>(input.strength, "StrengthModel", input.reference_density);
   light(laws.strength, input, detonations);
   laws.eos = make_eos(input, laws.strength, laws.common);

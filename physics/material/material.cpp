@@ -107,6 +107,7 @@ core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
   if (fails_) set.add(Column::failed);
   if (heats_) set.add(Column::temperature);
   if (expands_) set.add({Column::temperature, Column::thermal_strain});
+  if (laws_.common.conductivity > 0) set.add(Column::temperature);
   if (scatters_) set.add(Column::threshold_factor);
   if (options.keep_strain || options.volume_update == 4) set.add_range(Column::strain_xx, 6);
   return set;

@@ -45,6 +45,7 @@ class Material final : public core::ConstitutiveModel {
   double initial_shear_speed() const override { return initial_shear_speed_; }
   double reference_density() const override { return laws_.reference_density; }
   double specific_heat() const override { return laws_.common.specific_heat; }
+  double conductivity() const override { return laws_.common.conductivity; }
   core::FailedComponentRule failed_component_rule() const override {
     return {laws_.common.failure_damage_threshold, scatters_ && laws_.random_failure.random_damage};
   }

@@ -136,7 +136,7 @@ TEST_CASE("what contradicts itself is refused by name", "[physics][material]") {
   CHECK_THAT(complaint(input), Contains("TemperatureCoefficient must be 0 with Gruneisen"));
   input = copper("IsoElastic");
   input.strength.values["CoefficientOfThermalConductivity"] = 400;
-  CHECK_THAT(complaint(input), Contains("not implemented"));
+  CHECK_THAT(complaint(input), Contains("CoefficientOfThermalConductivity needs SpecHeat"));
   input = copper("IsoElastic");
   input.random_failure.enable = true;
   input.random_failure.distribution = core::RandomFailureInput::Distribution::gauss;

@@ -250,9 +250,7 @@ TEST_CASE("known, but not implemented yet") {
        {"line 17: <Grid shape=\"CPDI\">: known, but not implemented yet; remove the attribute or set it to "
         "its "
         "default, linear"}},
-      {"boundary=\"2\"",
-       "boundary=\"3\"",
-       {"line 19: <XMin boundary=\"3\">: known, but not implemented yet; use one of 0, 1, 2, 4"}},
+      {"boundary=\"2\"", "boundary=\"3\"", {"ok"}},
       {"<DCell", "<MovingGrid enable='1'/><DCell", {"line 22: <MovingGrid enable=\"1\">: " + zero}},
       {"<DCell", "<MovingGrid enable='0' x_min='0'/><DCell", {"ok"}},
       {"</Material>", "<RandomFailure enable='1'/></Material>", {"ok"}},
@@ -282,9 +280,15 @@ TEST_CASE("known, but not implemented yet") {
         "the "
         "attribute or set it to its default, 1.05"}},
       {"</PeneBlast>", "<DomainDecomposition rebalance_interval='auto'/></PeneBlast>", {"ok"}},
+      {"<InitialVelocity", "<ConstrainRigidPosition value='1'/><InitialVelocity", {"ok"}},
       {"<InitialVelocity",
-       "<ConstrainRigidPosition value='1'/><InitialVelocity",
-       {"line 14: <ConstrainRigidPosition value=\"1\">: known, but not implemented yet; set it to 0"}},
+       "<Traction tx='1' xmin='2' xmax='1'/><InitialVelocity",
+       {"line 14: <Traction>: normal and tx, ty, tz go together: give both or neither",
+        "line 14: <Traction xmax=\"1\">: must be greater than xmin"}},
+      {"<InitialVelocity",
+       "<Traction ramp='0'/><InitialVelocity",
+       {"line 14: <Traction ramp=\"0\">: expected a number greater than 0",
+        "line 14: <Traction>: needs a pressure, or tx, ty, tz and normal"}},
   });
 }
 
