@@ -8,7 +8,7 @@ from _mpm import Case
 
 ELASTIC = 'type="IsoElastic" Young="117e3" Poisson="0.35" FailedType="0"'
 CRITERIA = ('<FailureModel type="PriStress" PriStressMax="6000" PriStressMin="0" ShearStressMax="6000"/>'
-            '<FailureModel type="InstGeoStrain" ErosionStrain="0.3" Erosion="1"/>')
+            '<FailureModel type="InstGeoStrain" ErosionStrain="0.6" Erosion="1"/>')
 BODIES = [_mpm.block("gaussian", (1.1, 3.3, 4.2), (4, 4, 4), (600, 100, 0), of="gaussian"),
           _mpm.block("weibull", (9.3, 4.7, 3.4), (4, 5, 4), (-500, -100, 60), of="weibull")]
 END = 0.011
