@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <string>
 
 #include "core/random/philox.hpp"
 #include "core/scene/material.hpp"
@@ -26,13 +25,6 @@ class ThresholdScatter {
   explicit ThresholdScatter(const Input& input) : input_(input) {}
 
   bool per_cell() const { return input_.spread == Input::Spread::cell; }
-
-  std::string fault() const {
-    if (input_.distribution == Input::Distribution::gauss && !(input_.gauss_mean > 0)) {
-      return "GaussMean must be greater than 0: it multiplies thresholds";
-    }
-    return "";
-  }
 
   /// `item`: identity of the particle, or number of the cell.
   double factor(std::uint64_t item) const {

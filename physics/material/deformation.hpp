@@ -28,21 +28,24 @@ template <class T>
 [[gnu::noinline, gnu::flatten]] void update_deformation_gradient(core::Batch& batch) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
-  const int f_at = layout.offset(Column::f_xx), failed_at = layout.offset(Column::failed);
+  const int f_at = layout.offset(Column::f_xx);
   for_each_vector<T>(batch, [&](double* block, int row) {
     const core::Mat3<T> l = load_gradient<T>(batch, row);
     const core::Mat3<T> ahead = unit_plus(0.5 * batch.dt, l), behind = unit_plus(-0.5 * batch.dt, l);
     const T below = determinant(behind), above = determinant(ahead);
-    core::MaskOf<T> usable = (below > 0.0) & (above > 0.0);
-    if (failed_at >= 0) usable = usable & (core::load<T>(block + failed_at) < 0.5);
     // The nine columns are neighbours, in the order of Mat3.
     const auto at = [&](int i) { return block + f_at + core::block_lanes * i; };
     const auto get = [&](int i) { return core::load<T>(at(i)); };
     const core::Mat3<T> old{get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8)};
     const core::Mat3<T> f = adjugate(behind) * (ahead * old);
     const T scale = 1.0 / below;
-    const T now[9] = {f.xx, f.xy, f.xz, f.yx, f.yy, f.yz, f.zx, f.zy, f.zz};
-    for (int i = 0; i < 9; ++i) core::store(at(i), core::select(usable, scale * now[i], get(i)));
+    T now[9] = {f.xx, f.xy, f.xz, f.yx, f.yy, f.yz, f.zx, f.zy, f.zz}, size = 0.0;
+    for (T& component : now) {
+      component *= scale;
+      size += component * component;
+    }
+    const core::MaskOf<T> usable = (below > 0.0) & (above > 0.0) & (size < 1e150);
+    for (int i = 0; i < 9; ++i) core::store(at(i), core::select(usable, now[i], get(i)));
   });
 }
 

@@ -114,12 +114,6 @@ void check_expansion(const core::MaterialInput& input, const Material::Laws& law
   }
 }
 
-void check_scatter(const core::MaterialInput& input) {
-  if (!input.random_failure.enable) return;
-  const std::string fault = ThresholdScatter(input.random_failure).fault();
-  if (!fault.empty()) throw core::InputErrors(input.source, "RandomFailure", fault);
-}
-
 }  // namespace
 
 std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput& input,
@@ -135,7 +129,6 @@ std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput
   couple(laws.strength, laws.eos, input);
   if (input.eos) read_parameters(laws.common_eos, *input.eos);
   check_expansion(input, laws);
-  check_scatter(input);
   laws.random_failure = input.random_failure;
   std::visit(
       [&](const auto& eos) {

@@ -81,7 +81,12 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
   fails_ = !laws_.failures.empty() || tension_.fails();
   expands_ = laws_.common.temperature_coefficient != 0;
   scatter_thresholds();
-  follows_deformation_ = columns({}).has(Column::f_xx);
+  const auto carries_deformation = [](const auto& law) { return columns_of(law).has(Column::f_xx); };
+  for (const FailureEntry& entry : laws_.failures) {
+    if (std::visit(carries_deformation, entry.model)) follows_deformation_ = true;
+  }
+  // A strength law that carries it keeps it up to date itself.
+  if (std::visit(carries_deformation, laws_.strength)) follows_deformation_ = false;
   viscous_ = viscous_ || (fails_ && laws_.common.fail_viscosity > 0);
   const double shear = shear_modulus_at_rest(laws_);
   initial_modulus_ = modulus_at_rest(laws_, shear);
@@ -93,7 +98,9 @@ void Material::scatter_thresholds() {
   const core::RandomFailureInput& random = laws_.random_failure;
   if (!random.enable || random.distribution == core::RandomFailureInput::Distribution::constant) return;
   for (FailureEntry& entry : laws_.failures) {
-    if (auto* damage = std::get_if<FullDamage>(&entry.model)) damage->scatters = random.random_damage;
+    // Erosion by damage waits for all of it (manual 3.2.1.10).
+    auto* const damage = std::get_if<FullDamage>(&entry.model);
+    if (damage != nullptr && !entry.erodes) damage->scatters = random.random_damage;
   }
   scatters_ = fails_ || (random.random_damage && columns({}).has(Column::damage));
 }

@@ -212,6 +212,22 @@ TEST_CASE("det F is the volume ratio, and a step inside out changes neither",
   CHECK(ratio() == before);
   point.step({std::nan(""), 0, 0, 0, 0, 0, 0, 0, 0}, 1e-3);
   CHECK(ratio() == before);
+  // A fluid's stretch without end does not end in what is no number.
+  for (int i = 0; i < 1000; ++i) point.step({1e3, 0, 0, 0, -1e3, 0, 0, 0, 0}, 1e-3);
+  CHECK(std::isfinite(ratio()));
+}
+
+TEST_CASE("what has failed can still be eroded for its shape", "[physics][failure][principal]") {
+  const auto material = elastic({{{"Pmin", {{"pmin", -500e6}}, {}}, false}, geometric(0.5)});
+  PointDriver point(*material, {});
+  drive(point, {.kind = PathKind::hydrostatic, .targets = {0.01}, .steps = 100}, [](double) {});
+  CHECK(point.value(Column::failed) == 1);
+  const double gamma = 2 * std::sinh(0.5 * std::sqrt(3) / 2);
+  drive(point, {.kind = PathKind::simple_shear, .targets = {2.0}, .steps = 1000}, [&](double strain) {
+    if (strain < gamma - 1e-5) CHECK(point.value(Column::failed) == 1);
+    if (strain > gamma + 1e-5) CHECK(point.value(Column::failed) == 2);
+  });
+  CHECK(point.events().failed == 1);
 }
 
 TEST_CASE("ten criteria stand side by side, and the first that is met decides",
