@@ -274,6 +274,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     body.component = component;
     body.material = static_cast<int>(input.material);
     body.model = model.materials[input.material].get();
+    body.rigid = body.model->rigid();
     body.no_output = input.no_output;
     if (input.prescribed_velocity) {
       const auto& v = *input.prescribed_velocity;

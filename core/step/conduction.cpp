@@ -20,7 +20,8 @@ void for_each_node(const GridGeometry& g, const BlockPlace& place, int lane, F f
   for (int n = 0; n < 8; ++n) {
     const int i = n & 1, j = (n >> 1) & 1, k = n >> 2;
     f(place.node[lane] + corner_node(n), wx[i] * wy[j] * wz[k],
-      Vec3<double>{(2 * i - 1) * g.inverse_cell.x * wy[j] * wz[k], (2 * j - 1) * g.inverse_cell.y * wx[i] * wz[k],
+      Vec3<double>{(2 * i - 1) * g.inverse_cell.x * wy[j] * wz[k],
+                   (2 * j - 1) * g.inverse_cell.y * wx[i] * wz[k],
                    (2 * k - 1) * g.inverse_cell.z * wx[i] * wy[j]});
   }
 }
@@ -33,8 +34,10 @@ Conduction::Conduction(Model& model, Exchange& exchange)
   if (!any_) return;
   heat_.resize(static_cast<std::size_t>(omp_get_max_threads()));
   flux_.resize(heat_.size());
-  for (AlignedDoubles& a : heat_) a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
-  for (AlignedDoubles& a : flux_) a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
+  for (AlignedDoubles& a : heat_)
+    a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
+  for (AlignedDoubles& a : flux_)
+    a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
 }
 
 template <class F>
@@ -126,8 +129,8 @@ void Conduction::warm(double dt) {
       const double capacity = nodes[node_doubles * n];
       flux[node_doubles * n] = capacity > 0 ? dt * flux[node_doubles * n] / capacity : 0;
     }
-    for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block, const BlockPlace& place,
-                          int used) {
+    for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block,
+                          const BlockPlace& place, int used) {
       const double per_volume = body.model->reference_density() * body.model->specific_heat();
       for (int l = 0; l < used; ++l) {
         double rise = 0;

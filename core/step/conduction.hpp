@@ -3,11 +3,11 @@
 // Heat and its capacity go from the particles to the nodes, as momentum and mass do; the flux through each
 // particle, from the nodes' temperatures, changes the nodes' heat; the particles take the nodes' increments:
 //   T_i = sum m c T S_i / C_i,  C_i = sum m c S_i,  Q_i = -sum V k grad T . grad S_i,  dT_i = dt Q_i / C_i
-// The sum of Q_i is zero, so heat is kept to round-off; it is internal energy, which moves with it. The grid's
-// faces are adiabatic, and so are bodies without conductivity. The first node array and the second, idle
-// between steps, carry Q and (C, C T). Stable up to 1/(2 a (1/dx^2 + 1/dy^2 + 1/dz^2)) for a = k/(rho c), the
-// bound of the regular grid with lumped capacities; that joins the critical step.
-// Shown by tests/system/physics_heat.py.
+// The sum of Q_i is zero, so heat is kept to round-off; it is internal energy, which moves with it. The
+// grid's faces are adiabatic, and so are bodies without conductivity. The first node array and the second,
+// idle between steps, carry Q and (C, C T). Stable up to 1/(2 a (1/dx^2 + 1/dy^2 + 1/dz^2)) for a = k/(rho
+// c), the bound of the regular grid with lumped capacities; that joins the critical step. Shown by
+// tests/system/physics_heat.py.
 #pragma once
 
 #include <vector>
