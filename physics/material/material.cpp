@@ -105,6 +105,7 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
         if constexpr (requires { law.plastic_work_coefficient; }) heats_ = laws_.common.specific_heat > 0;
         if constexpr (requires { law.is_viscous(); }) viscous_ = law.is_viscous();
         if constexpr (requires { requires std::decay_t<decltype(law)>::rigid; }) rigid_ = true;
+        if constexpr (requires { requires std::decay_t<decltype(law)>::uniaxial; }) uniaxial_ = true;
       },
       laws_.strength);
   fails_ = !laws_.failures.empty() || tension_.fails();

@@ -45,6 +45,7 @@ class Material final : public core::ConstitutiveModel {
   double initial_shear_speed() const override { return initial_shear_speed_; }
   double reference_density() const override { return laws_.reference_density; }
   bool rigid() const override { return rigid_; }
+  bool uniaxial() const override { return uniaxial_; }
   double specific_heat() const override { return laws_.common.specific_heat; }
   core::FailedComponentRule failed_component_rule() const override {
     return {laws_.common.failure_damage_threshold, scatters_ && laws_.random_failure.random_damage};
@@ -79,7 +80,7 @@ class Material final : public core::ConstitutiveModel {
   bool scatters_ = false;             ///< carries the column `threshold_factor`
   bool follows_deformation_ = false;  ///< carries the deformation gradient
   TensionRules tension_;              ///< of the strength model
-  bool rigid_ = false;
+  bool rigid_ = false, uniaxial_ = false;
 };
 
 /// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict
