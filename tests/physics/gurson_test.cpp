@@ -166,8 +166,8 @@ TEST_CASE("coalescence empties the surface and the particle fails at ff", "[phys
   CHECK(point.value(Column::pressure) == 0);
 }
 
-TEST_CASE("a step of any size ends on or within the surface", "[physics][gurson]") {
-  for (const double size : {1e-4, 1e-2, 0.1, 0.5}) {
+TEST_CASE("a step of some per cent of strain ends on or within the surface", "[physics][gurson]") {
+  for (const double size : {1e-4, 1e-2, 0.05}) {
     for (unsigned seed = 0; seed < 40; ++seed) {
       const auto material = make(porous({{"f0", seed % 2 ? 0.1 : 0.001}, {"TangMod", 1e9}}));
       PointDriver point(*material, with_yield());
@@ -175,7 +175,7 @@ TEST_CASE("a step of any size ends on or within the surface", "[physics][gurson]
       for (int i = 0; i < 3 && point.value(Column::failed) == 0; ++i) {
         point.step(path.gradient(0.1 + 0.3 * i), 0.3);
         INFO("size " << size << " seed " << seed << " step " << i);
-        if (point.value(Column::failed) == 0) CHECK(surface(point) < (size < 0.05 ? 1e-8 : 1e-6));
+        if (point.value(Column::failed) == 0) CHECK(surface(point) < 1e-8);
         CHECK(point.events().not_finite == 0);
       }
     }
