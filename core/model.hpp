@@ -25,7 +25,10 @@ struct Body {
   int material = 0;   ///< index into the scene's materials
   const ConstitutiveModel* model = nullptr;
   std::optional<Vec3<double>> prescribed_velocity;
+  bool rigid = false;  ///< flies straight on under gravity where no velocity is prescribed
   bool no_output = false;
+  /// Its particles move at their own velocity, not the grid's.
+  bool keeps_velocity() const { return rigid || prescribed_velocity.has_value(); }
   std::unique_ptr<BlockPool> pool;  ///< this rank's particles of the body
 };
 

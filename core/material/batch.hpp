@@ -57,6 +57,8 @@ struct Batch {
   alignas(64) Row shear_modulus;      ///< for the wave speed, of the state reached
   alignas(64) Row shear_viscosity;    ///< for the critical step, s = 2 viscosity D'
   alignas(64) Row lowest_pressure;    ///< largest tension of a strength model that limits it, as a pressure
+  alignas(64) Row law_pressure;       ///< the strength law's, where it computes the pressure itself
+  alignas(64) Row bulk_modulus;       ///< likewise, for the wave speed
   // --- results beside the columns ---
   alignas(64) Row sound_speed;     ///< longitudinal wave speed c; filled where the layout has that column
   alignas(64) Row critical_speed;  ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is not to count

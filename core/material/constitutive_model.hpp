@@ -31,6 +31,10 @@ class ConstitutiveModel {
   /// Shear wave speed at rest; 0 for a fluid.
   virtual double initial_shear_speed() const { return 0; }
   virtual double reference_density() const = 0;
+  /// A rigid body takes no velocity from the grid and is never deformed.
+  virtual bool rigid() const { return false; }
+  /// A bar's stress: along x, which the owner of bars turns into the bar's axis.
+  virtual bool uniaxial() const { return false; }
 
   /// First state of new particles whose position, velocity, mass, volume and identity are set and whose other
   /// columns are zero: energy, temperature, the pressure of a body placed at another density, history.

@@ -254,6 +254,12 @@ double available_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+bool made_of_bars(const Geometry& geometry) {
+  return std::holds_alternative<BarMeshGeometry>(geometry) ||
+         std::holds_alternative<BarLinesGeometry>(geometry) ||
+         std::holds_alternative<BarNetGeometry>(geometry);
+}
+
 Model prepare_model(std::shared_ptr<const Scene> scene,
                     std::vector<std::unique_ptr<ConstitutiveModel>> materials,
                     const ColumnSet& output_columns) {
@@ -274,6 +280,14 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     body.component = component;
     body.material = static_cast<int>(input.material);
     body.model = model.materials[input.material].get();
+    body.rigid = body.model->rigid();
+    if (body.model->uniaxial() && !made_of_bars(input.geometry)) {
+      throw InputErrors(
+          input.source, "Body",
+          fmt::format("material `{}` is for bars, and body `{}` of type \"{}\" has none: give it a "
+                      "material without _1D",
+                      scene->materials[input.material].name, input.name, input.type));
+    }
     body.no_output = input.no_output;
     if (input.prescribed_velocity) {
       const auto& v = *input.prescribed_velocity;

@@ -43,6 +43,10 @@ class Loads {
   void begin_step(Model& model, double time, double dt);
 
   bool any() const { return !bodies_.empty(); }
+  /// Per mass, at this step.
+  Vec3<double> acceleration(int body) const {
+    return any() ? bodies_[static_cast<std::size_t>(body)].acceleration : Vec3<double>{};
+  }
   bool nonreflecting() const { return nonreflecting_; }
   /// Whether add_forces has anything to do for this body in this brick.
   bool act(const BrickGrid& grid, Slot slot, int body) const {

@@ -51,7 +51,7 @@ class BlocksAhead {
   std::size_t distance_;
 };
 
-void move_as_prescribed(const ColumnLayout& layout, double dt, double* block) {
+void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block) {
   double* x = block + layout.offset(Column::position_x);
   const double* v = block + layout.offset(Column::velocity_x);
   for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
@@ -246,10 +246,29 @@ void Passes::hold_velocities(const Body& body, double* block, int used, Workplac
   }
 }
 
+void Passes::fly_on(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
+  const ColumnLayout& layout = body.pool->layout();
+  const Vec3<double> pull = forces_.gravity + loads_.acceleration(number_of(body));
+  double* velocity = block + layout.offset(Column::velocity_x);
+  std::copy_n(velocity, 3 * block_lanes, at.before);
+  add_velocity_increment(place, layout, at.nodes.data(), block);
+  for (int i = 0; i < used; ++i) {
+    // As with a prescribed velocity: what turns the grid's answer into free flight does work on it.
+    const double m = block[layout.offset(Column::mass) + i];
+    for (int a = 0; a < 3; ++a) {
+      double& v = velocity[block_lanes * a + i];
+      const double free = at.before[block_lanes * a + i] + dt * pull[a];
+      at.work += m * (free - v) * free;
+      v = free;
+    }
+  }
+}
+
 /// v += dv; the work of loads belongs to the velocities from before it.
 void Passes::kick(Slot s, const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
   if (const int number = number_of(body); loads_.act(*model_.grid, s, number))
     at.work += loads_.work(model_, s, number, place, block, used, at.nodes.data());
+  if (body.rigid && !body.prescribed_velocity) return fly_on(body, place, block, used, at);
   add_velocity_increment(place, body.pool->layout(), at.nodes.data(), block);
   if (body.prescribed_velocity || velocity_limit_ < std::numeric_limits<double>::infinity()) {
     hold_velocities(body, block, used, at);
@@ -344,9 +363,9 @@ template <bool moves>
           strain<false>(frame, place, layout, at.nodes.data(), dt, block, batch.gradient, block_lanes * b);
         } else {
           std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
-          strain<true>(frame, place, layout, at.nodes.data(), body.prescribed_velocity ? 0.0 : dt, block,
+          strain<true>(frame, place, layout, at.nodes.data(), body.keeps_velocity() ? 0.0 : dt, block,
                        batch.gradient, block_lanes * b);
-          if (body.prescribed_velocity) move_as_prescribed(layout, dt, block);
+          if (body.keeps_velocity()) move_at_own_velocity(layout, dt, block);
           book_motion(layout, block, used_lanes(cohort, at_block), at);
         }
       }
@@ -495,8 +514,8 @@ void Passes::update_velocities_and_move() {
       const BlockPlace place(frame, layout, block);
       kick(s, body, place, block, used, at);
       std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
-      if (body.prescribed_velocity) {
-        move_as_prescribed(layout, dt, block);
+      if (body.keeps_velocity()) {
+        move_at_own_velocity(layout, dt, block);
       } else {
         move_with_grid(place, layout, at.nodes.data(), dt, block);
       }

@@ -87,6 +87,8 @@ class Passes {
   template <Mapped what, class F>
   void map_bricks(F work);
   void kick(Slot s, const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
+  /// The velocity of a rigid body that nothing guides.
+  void fly_on(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
   void hold_velocities(const Body& body, double* block, int used, Workplace& at);
   void velocities_of_brick(Slot s, Workplace& at);
   double kick_and_move(Slot s, Workplace& at);

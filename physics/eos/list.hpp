@@ -11,6 +11,7 @@
 #include "physics/eos/p_alpha.hpp"
 #include "physics/eos/polynomial.hpp"
 #include "physics/eos/polynomial2.hpp"
+#include "physics/eos/strength_pressure.hpp"
 
 namespace mpm::physics {
 
@@ -21,9 +22,10 @@ inline constexpr int solid_number<Polynomial2> = 2;
 template <>
 inline constexpr int solid_number<Gruneisen> = 3;
 
-/// The first is what a material without EquationOfState has.
+/// The first is what a material without EquationOfState has, the last what one has whose strength law
+/// computes the pressure.
 using EquationOfState =
     std::variant<ElasticBulk, Gruneisen, Polynomial, Polynomial2, Jwl, CeramicBulk, HolmquistJohnsonCookBulk,
-                 PAlpha<Polynomial>, PAlpha<Polynomial2>, PAlpha<Gruneisen>>;
+                 PAlpha<Polynomial>, PAlpha<Polynomial2>, PAlpha<Gruneisen>, StrengthPressure>;
 
 }  // namespace mpm::physics

@@ -31,13 +31,15 @@ EquationOfState make_eos(const core::MaterialInput& input, const StrengthModel& 
     return std::visit(
         [&](const auto& law) -> EquationOfState {
           if constexpr (requires { law.own_eos(); }) return law.own_eos();
+          if constexpr (SetsPressure<std::decay_t<decltype(law)>>) return StrengthPressure{law.bulk};
           return elastic_bulk(strength, common, input);
         },
         strength);
   }
   const bool own_pressure = std::visit(
-      [](const auto& law) {
-        return requires { requires std::decay_t<decltype(law)>::own_pressure; };
+      [&](const auto& law) {
+        using Law = std::decay_t<decltype(law)>;
+        return SetsPressure<Law> || requires { requires Law::own_pressure; };
       },
       strength);
   if (own_pressure) {

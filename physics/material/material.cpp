@@ -6,12 +6,18 @@
 #include "physics/material/deformation.hpp"
 #include "physics/material/failure_stage.hpp"
 #include "physics/material/kinematics.hpp"
+#include "physics/material/scatter.hpp"
 
 namespace mpm::physics {
 
 using core::Column;
 
 namespace {
+
+/// Whether make_material puts the two together: no other pair is compiled.
+template <class Law, class Eos>
+constexpr bool pair =
+    SetsPressure<std::remove_cvref_t<Law>> == std::is_same_v<std::remove_cvref_t<Eos>, StrengthPressure>;
 
 /// The law at rest: no strain, no stress. What it says then of stiffness and strength holds at the start.
 template <class T, class Law>
@@ -37,23 +43,45 @@ EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0) {
   return line;
 }
 
-double shear_modulus_at_rest(const Material::Laws& laws) {
+/// What the particle starts with: the same, or of the law's point, where that has placed the particle.
+template <class T, class Law, class Eos>
+EosLine<T> start(const Law&, const Eos& eos, const StrengthPoint<T>& point, EosPoint<T>& bulk, double e0) {
+  if constexpr (SetsPressure<Law>) {
+    bulk.pressure = point.pressure;
+    return StrengthPressure::line(point.pressure, point.bulk_modulus, bulk.relative_volume);
+  } else {
+    return start(eos, bulk, e0);
+  }
+}
+
+StrengthPoint<double> point_at_rest(const Material::Laws& laws) {
   StrengthPoint<double> at_rest{};
   at_rest.density = laws.reference_density;
   at_rest.temperature = laws.common.room_temperature;
-  return std::visit([&](const auto& law) { return rest(law, at_rest).shear_modulus; }, laws.strength);
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        if constexpr (SetsPressure<Law>) law.place(at_rest, 1.0);
+        at_rest = rest(law, at_rest);
+      },
+      laws.strength);
+  return at_rest;
 }
 
 /// rho0 c0^2 of the undeformed material.
-double modulus_at_rest(const Material::Laws& laws, double shear) {
+double modulus_at_rest(const Material::Laws& laws, const StrengthPoint<double>& at_rest) {
+  const double shear = at_rest.shear_modulus;
   if (laws.common_eos.c0 > 0)
     return 4.0 / 3.0 * shear + laws.reference_density * laws.common_eos.c0 * laws.common_eos.c0;
   return std::visit(
-      [&](const auto& eos) {
-        EosPoint<double> point{};
-        point.relative_volume = 1;
-        const EosLine<double> line = start(eos, point, laws.common_eos.e0);
-        return 4.0 / 3.0 * shear + isentropic_modulus(line, 0.0, 1.0, point.pressure, point.energy);
+      [&]<class Eos>(const Eos& eos) {
+        if constexpr (std::is_same_v<Eos, StrengthPressure>) {
+          return 4.0 / 3.0 * shear + at_rest.bulk_modulus;
+        } else {
+          EosPoint<double> point{};
+          point.relative_volume = 1;
+          const EosLine<double> line = start(eos, point, laws.common_eos.e0);
+          return 4.0 / 3.0 * shear + isentropic_modulus(line, 0.0, 1.0, point.pressure, point.energy);
+        }
       },
       laws.eos);
 }
@@ -76,6 +104,8 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
         if constexpr (requires { law.tension_rules(); }) tension_ = law.tension_rules();
         if constexpr (requires { law.plastic_work_coefficient; }) heats_ = laws_.common.specific_heat > 0;
         if constexpr (requires { law.is_viscous(); }) viscous_ = law.is_viscous();
+        if constexpr (requires { requires std::decay_t<decltype(law)>::rigid; }) rigid_ = true;
+        if constexpr (requires { requires std::decay_t<decltype(law)>::uniaxial; }) uniaxial_ = true;
       },
       laws_.strength);
   fails_ = !laws_.failures.empty() || tension_.fails();
@@ -88,9 +118,9 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
   // A strength law that carries it keeps it up to date itself.
   if (std::visit(carries_deformation, laws_.strength)) follows_deformation_ = false;
   viscous_ = viscous_ || (fails_ && laws_.common.fail_viscosity > 0);
-  const double shear = shear_modulus_at_rest(laws_);
-  initial_modulus_ = modulus_at_rest(laws_, shear);
-  initial_shear_speed_ = std::sqrt(std::max(shear, 0.0) / laws_.reference_density);
+  const StrengthPoint<double> at_rest = point_at_rest(laws_);
+  initial_modulus_ = modulus_at_rest(laws_, at_rest);
+  initial_shear_speed_ = std::sqrt(std::max(at_rest.shear_modulus, 0.0) / laws_.reference_density);
   initial_sound_speed_ = std::sqrt(std::max(initial_modulus_, 0.0) / laws_.reference_density);
 }
 
@@ -144,6 +174,11 @@ PressureRules Material::pressure_rules(const core::UpdateOptions& options) const
 
 template <class T>
 void Material::update_as(core::Batch& batch, const core::UpdateOptions& options) const {
+  if (rigid_) {
+    std::fill_n(batch.critical_speed, core::batch_particles, 0.0);
+    std::fill_n(batch.sound_speed, core::batch_particles, 0.0);
+    return;
+  }
   alignas(64) core::Row verdict;
   const PressureRules rules = pressure_rules(options);
   update_kinematics<T>(batch, options, laws_.reference_density);
@@ -151,7 +186,8 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options)
   std::visit([&](const auto& law) { update_strength<T>(batch, law, strength_rules()); }, laws_.strength);
   std::visit(
       [&](const auto& law, const auto& eos) {
-        update_pressure<T>(batch, beside(eos, law), rules, fails_ ? verdict : nullptr);
+        if constexpr (pair<decltype(law), decltype(eos)>)
+          update_pressure<T>(batch, beside(eos, law), rules, fails_ ? verdict : nullptr);
       },
       laws_.strength, laws_.eos);
   if (!fails_) return;
@@ -162,55 +198,65 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options)
   apply_failure<T>(batch, rules.failed, verdict);
 }
 
+template <class T, class Law, class PlainEos>
+void Material::initialise_pair(core::Batch& batch, const PressureRules& rules, const Law& law,
+                               const PlainEos& plain_eos) const {
+  const core::ColumnLayout& layout = *batch.layout;
+  const auto& eos = beside(plain_eos, law);
+  const History<Law, StrengthPoint<T>> law_history(law, layout);
+  const History<std::decay_t<decltype(eos)>, EosPoint<T>> eos_history(eos, layout);
+  for_each_vector<T>(batch, [&](double* block, int row) {
+    const auto put = [&](Column c, const T& value) {
+      if (layout.has(c)) core::store(block + layout.offset(c), value);
+    };
+    const auto get = [&](Column c) { return core::load<T>(block + layout.offset(c)); };
+    const T volume = get(Column::volume);
+    const Density<T> now(get(Column::mass), volume, rules.reference_density);
+
+    if (follows_deformation_) {
+      for (const Column c : {Column::f_xx, Column::f_yy, Column::f_zz}) put(c, 1.0);
+    }
+    StrengthPoint<T> point{};
+    law_history.load(block, point);
+    point.density = now.density;
+    point.temperature = laws_.common.room_temperature;
+    point.time = batch.time;
+    point.cell_size = batch.cell_size;
+    if constexpr (requires(core::Vec3<T> x) { law.initialise(point, x); }) {
+      law.initialise(
+          point, core::Vec3<T>{get(Column::position_x), get(Column::position_y), get(Column::position_z)});
+    }
+    if constexpr (requires { law.scatters(); }) {
+      if (law.scatters()) point.deviate = normal_deviate(get(Column::identity));
+    }
+    EosPoint<T> bulk{now.compression, now.relative_volume, T(0.0), T(0.0), T(0.0)};
+    if constexpr (SetsPressure<Law>) { bulk.energy = law.place(point, now.relative_volume); }
+    point = rest(law, point);
+    law_history.store(block, point);
+    put(Column::temperature, point.temperature);
+    put(Column::yield_stress, point.yield_stress);
+
+    eos_history.load(block, bulk);
+    const EosLine<T> line = start(law, eos, point, bulk, laws_.common_eos.e0);
+    eos_history.store(block, bulk);
+    put(Column::pressure, bulk.pressure);
+    put(Column::internal_energy, bulk.energy);
+
+    const T modulus =
+        (4.0 / 3.0) * point.shear_modulus +
+        isentropic_modulus(line, now.compression, now.relative_volume, bulk.pressure, bulk.energy);
+    const T c2 = core::max(modulus, 0.0) * volume * now.inverse_mass;
+    store_speeds(batch, block, row, rules, c2, T(0.0));
+  });
+}
+
 template <class T>
 void Material::initialise_as(core::Batch& batch, const core::UpdateOptions& options) const {
-  const core::ColumnLayout& layout = *batch.layout;
-  PressureRules rules = pressure_rules(options);
+  const PressureRules rules = pressure_rules(options);
   if (scatters_) draw_thresholds(batch);
   std::visit(
-      [&](const auto& law, const auto& plain_eos) {
-        const auto& eos = beside(plain_eos, law);
-        const History<std::decay_t<decltype(law)>, StrengthPoint<T>> law_history(law, layout);
-        const History<std::decay_t<decltype(eos)>, EosPoint<T>> eos_history(eos, layout);
-        for_each_vector<T>(batch, [&](double* block, int row) {
-          const auto put = [&](Column c, const T& value) {
-            if (layout.has(c)) core::store(block + layout.offset(c), value);
-          };
-          const auto get = [&](Column c) { return core::load<T>(block + layout.offset(c)); };
-          const T volume = get(Column::volume);
-          const Density<T> now(get(Column::mass), volume, rules.reference_density);
-
-          StrengthPoint<T> point{};
-          law_history.load(block, point);
-          point.density = now.density;
-          point.temperature = laws_.common.room_temperature;
-          point.time = batch.time;
-          point.cell_size = batch.cell_size;
-          if constexpr (requires(core::Vec3<T> x) { law.initialise(point, x); }) {
-            law.initialise(point, core::Vec3<T>{get(Column::position_x), get(Column::position_y),
-                                                get(Column::position_z)});
-          }
-          point = rest(law, point);
-          law_history.store(block, point);
-          put(Column::temperature, point.temperature);
-          put(Column::yield_stress, point.yield_stress);
-          if (follows_deformation_) {
-            for (const Column c : {Column::f_xx, Column::f_yy, Column::f_zz}) put(c, 1.0);
-          }
-
-          EosPoint<T> bulk{now.compression, now.relative_volume, T(0.0), T(0.0), T(0.0)};
-          eos_history.load(block, bulk);
-          const EosLine<T> line = start(eos, bulk, laws_.common_eos.e0);
-          eos_history.store(block, bulk);
-          put(Column::pressure, bulk.pressure);
-          put(Column::internal_energy, bulk.energy);
-
-          const T modulus =
-              (4.0 / 3.0) * point.shear_modulus +
-              isentropic_modulus(line, now.compression, now.relative_volume, bulk.pressure, bulk.energy);
-          const T c2 = core::max(modulus, 0.0) * volume * now.inverse_mass;
-          store_speeds(batch, block, row, rules, c2, T(0.0));
-        });
+      [&](const auto& law, const auto& eos) {
+        if constexpr (pair<decltype(law), decltype(eos)>) initialise_pair<T>(batch, rules, law, eos);
       },
       laws_.strength, laws_.eos);
 }

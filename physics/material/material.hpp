@@ -44,6 +44,8 @@ class Material final : public core::ConstitutiveModel {
   double initial_sound_speed() const override { return initial_sound_speed_; }
   double initial_shear_speed() const override { return initial_shear_speed_; }
   double reference_density() const override { return laws_.reference_density; }
+  bool rigid() const override { return rigid_; }
+  bool uniaxial() const override { return uniaxial_; }
   double specific_heat() const override { return laws_.common.specific_heat; }
   double conductivity() const override { return laws_.common.conductivity; }
   core::FailedComponentRule failed_component_rule() const override {
@@ -61,6 +63,9 @@ class Material final : public core::ConstitutiveModel {
   const Laws& laws() const { return laws_; }
 
  private:
+  template <class T, class Law, class PlainEos>
+  void initialise_pair(core::Batch& batch, const PressureRules& rules, const Law& law,
+                       const PlainEos& plain_eos) const;
   StrengthRules strength_rules() const;
   PressureRules pressure_rules(const core::UpdateOptions& options) const;
   void scatter_thresholds();
@@ -76,6 +81,7 @@ class Material final : public core::ConstitutiveModel {
   bool scatters_ = false;             ///< carries the column `threshold_factor`
   bool follows_deformation_ = false;  ///< carries the deformation gradient
   TensionRules tension_;              ///< of the strength model
+  bool rigid_ = false, uniaxial_ = false;
 };
 
 /// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict

@@ -9,6 +9,7 @@
 
 #include "physics/eos/burning.hpp"
 #include "physics/eos/point.hpp"
+#include "physics/eos/strength_pressure.hpp"
 #include "physics/history.hpp"
 #include "physics/material/failed_state.hpp"
 #include "physics/material/vectors.hpp"
@@ -149,7 +150,12 @@ template <class T, class Eos>
     EosPoint<T> point{now.compression, now.relative_volume, mechanical, old_p, old_energy};
     history.load(block, point);
     core::MaskOf<T> outside{};
-    const EosLine<T> line = limited_line(eos, point, outside);
+    const EosLine<T> line = [&] {
+      if constexpr (std::is_same_v<Eos, StrengthPressure>)
+        return eos.line(batch, row, now.relative_volume);
+      else
+        return limited_line(eos, point, outside);
+    }();
 
     const EosLine<T> acting = acting_line(eos, point, line);
 

@@ -6,6 +6,7 @@
 // FailViscosity D', and their state rests.
 #pragma once
 
+#include "physics/eos/strength_pressure.hpp"
 #include "physics/history.hpp"
 #include "physics/material/kinematics.hpp"
 #include "physics/strength/point.hpp"
@@ -82,8 +83,8 @@ void hold_failed(StrengthPoint<T>& point, const History<Law, StrengthPoint<T>>& 
   history.restore(block, point, failed);
 }
 
-/// Fills deviatoric_work, shear_modulus and shear_viscosity of the batch; updates s, the law's state and,
-/// where the layout has it, the temperature (thesis 2-119).
+/// Fills deviatoric_work, shear_modulus and shear_viscosity of the batch, and the rows of a law's own
+/// pressure; updates s, the law's state and, where the layout has it, the temperature (thesis 2-119).
 template <class T, class Law>
 [[gnu::noinline, gnu::flatten]] void update_strength(core::Batch& batch, const Law& law,
                                                      const StrengthRules& rules) {
@@ -115,6 +116,10 @@ template <class T, class Law>
     core::store(batch.shear_modulus + row, point.shear_modulus);
     if constexpr (requires { law.tension_rules(); }) {
       core::store(batch.lowest_pressure + row, point.lowest_pressure);
+    }
+    if constexpr (SetsPressure<Law>) {
+      core::store(batch.law_pressure + row, point.pressure);
+      core::store(batch.bulk_modulus + row, point.bulk_modulus);
     }
     if (rules.viscous) core::store(batch.shear_viscosity + row, point.viscosity);
   });

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/simd/math.hpp"
 #include "physics/parameter.hpp"
 #include "physics/strength/point.hpp"
 
@@ -25,6 +26,24 @@ struct IsotropicElasticity {
   void elastic_step(StrengthPoint<T>& point) const {
     point.s = point.s + T(2 * shear) * point.strain;
     point.shear_modulus = shear;
+  }
+
+  /// The same and the pressure's trial value (2-97), for laws with `sets_pressure`.
+  template <class T>
+  void elastic_step_with_pressure(StrengthPoint<T>& point) const {
+    elastic_step(point);
+    point.pressure = point.pressure - bulk * point.volumetric_strain;
+    point.bulk_modulus = bulk;
+  }
+
+  /// For laws with `sets_pressure`: gives a new particle of relative volume v = V/V0 its pressure and returns
+  /// its energy, the elastic work of bringing it there (as ElasticBulk does).
+  template <class T>
+  T place(StrengthPoint<T>& point, const T& v) const {
+    using core::log;
+    const T log_v = log(v);
+    point.pressure = -bulk * log_v;
+    return bulk * (v * log_v - v + 1.0);
   }
 };
 

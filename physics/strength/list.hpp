@@ -4,20 +4,28 @@
 #include <variant>
 
 #include "physics/strength/cauchy_elastic.hpp"
+#include "physics/strength/deshpande_fleck.hpp"
+#include "physics/strength/drucker_prager.hpp"
 #include "physics/strength/ela_plastic.hpp"
+#include "physics/strength/gurson.hpp"
 #include "physics/strength/high_exp_burn.hpp"
 #include "physics/strength/holmquist_johnson_cook.hpp"
 #include "physics/strength/iso_elastic.hpp"
 #include "physics/strength/iso_harden.hpp"
 #include "physics/strength/jh2.hpp"
 #include "physics/strength/johnson_cook.hpp"
+#include "physics/strength/mooney_rivlin.hpp"
 #include "physics/strength/null.hpp"
 #include "physics/strength/rht.hpp"
+#include "physics/strength/rigid.hpp"
 #include "physics/strength/sim_johnson_cook.hpp"
+#include "physics/strength/uniaxial.hpp"
 
 namespace mpm::physics {
 
-using StrengthModel = std::variant<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook,
-                                   JohnsonCook, Null, HighExpBurn, HolmquistJohnsonCook, RHT, JH2>;
+using StrengthModel =
+    std::variant<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook, JohnsonCook, Null,
+                 HighExpBurn, HolmquistJohnsonCook, RHT, JH2, DruckerPrager, DFFoam, Gurson, MooneyRivlin,
+                 Elastic1D, LinHarElaPlastic1D, Rigid>;
 
 }  // namespace mpm::physics

@@ -17,14 +17,19 @@ struct StrengthPoint {
   double cell_size = 0;  ///< 0: none, a point without a grid
   core::Sym3<T> strain;  ///< deviator of the strain increment
   T volumetric_strain;   ///< its trace
-  T pressure;            ///< at the beginning of the step, positive in compression
   T density;             ///< at the end of the step
 
   // --- changed -----------------------------------------------------------------------------------------
+  /// Positive in compression; at the beginning of the step. Changed only by laws with `sets_pressure`.
+  T pressure;
   core::Sym3<T> s;  ///< deviatoric stress
+
+  // --- given only to laws that say so --------------------------------------------------------------------
+  T deviate = 0.0;  ///< standard normal, the particle's own; to `place` of laws that scatter
 
   // --- results beside the stress; laws that have none leave them ----------------------------------------
   T shear_modulus = 0.0;    ///< for the wave speed
+  T bulk_modulus = 0.0;     ///< likewise; read from laws with `sets_pressure`
   T viscosity = 0.0;        ///< shear viscosity reached, s = 2 viscosity D', for the critical step
   T yield_stress = 0.0;     ///< for output
   T plastic_work = 0.0;     ///< of this step, per current volume: what heats
@@ -40,11 +45,13 @@ struct StrengthPoint {
   T burn_fraction = 0.0;
   T lighting_time = 0.0;
   T history_0 = 0.0, history_1 = 0.0, history_2 = 0.0, history_3 = 0.0;
+  T f_xx = 0.0, f_xy = 0.0, f_xz = 0.0, f_yx = 0.0, f_yy = 0.0, f_yz = 0.0, f_zx = 0.0, f_zy = 0.0,
+    f_zz = 0.0;
 
   static constexpr auto columns() {
     using P = StrengthPoint;
     using core::Column;
-    return std::array<ColumnMember<P, T>, 12>{{
+    return std::array<ColumnMember<P, T>, 21>{{
         {Column::effective_plastic_strain, &P::effective_plastic_strain},
         {Column::damage, &P::damage},
         {Column::temperature, &P::temperature},
@@ -57,6 +64,15 @@ struct StrengthPoint {
         {Column::history_1, &P::history_1},
         {Column::history_2, &P::history_2},
         {Column::history_3, &P::history_3},
+        {Column::f_xx, &P::f_xx},
+        {Column::f_xy, &P::f_xy},
+        {Column::f_xz, &P::f_xz},
+        {Column::f_yx, &P::f_yx},
+        {Column::f_yy, &P::f_yy},
+        {Column::f_yz, &P::f_yz},
+        {Column::f_zx, &P::f_zx},
+        {Column::f_zy, &P::f_zy},
+        {Column::f_zz, &P::f_zz},
     }};
   }
 };

@@ -41,6 +41,20 @@ double walk(PointDriver& point, const RandomPath& path, int steps) {
   return walk(point, path, steps, [] {});
 }
 
+bool sets_pressure(const Material& material) {
+  return std::visit([]<class Law>(const Law&) { return physics::SetsPressure<Law>; },
+                    material.laws().strength);
+}
+
+/// Its stored energy is not that of a linear elastic deviator.
+bool hyperelastic(const Material& material) {
+  return std::visit(
+      []<class Law>(const Law&) {
+        return requires { requires Law::hyperelastic; };
+      },
+      material.laws().strength);
+}
+
 PointDriver::Update scalar_update(const Material& material) {
   return [&material](core::Batch& batch, const core::UpdateOptions& options) {
     material.update_as<double>(batch, options);
@@ -113,6 +127,8 @@ TEST_CASE("every law gives the same answer in SI and in mm-g-ms", "[physics][law
 TEST_CASE("plastic laws end each step on or below their yield surface", "[physics][laws]") {
   for (const Sample& s : samples()) {
     const auto material = make(s.input);
+    // Laws that set the pressure have surfaces of both invariants, and tests of their own for the return.
+    if (sets_pressure(*material)) continue;
     PointDriver::Options options;
     options.extra_columns = {Column::yield_stress};
     PointDriver point(*material, options);
@@ -139,8 +155,10 @@ TEST_CASE("plastic laws end each step on or below their yield surface", "[physic
 
 TEST_CASE("plastic flow and viscous flow never give energy back", "[physics][laws]") {
   for (const Sample& s : samples()) {
+    if (!s.solid) continue;
     INFO(s.label);
     const auto material = make(s.input);
+    if (hyperelastic(*material)) continue;
     PointDriver point(*material, {});
     const RandomPath path(4, s.strain, duration);
     const int steps = 400;
@@ -179,6 +197,7 @@ TEST_CASE("plastic flow and viscous flow never give energy back", "[physics][law
 
 TEST_CASE("every law converges with first order or better as the step is refined", "[physics][laws]") {
   for (const Sample& s : samples()) {
+    if (!s.solid) continue;
     INFO(s.label);
     const auto material = make(s.input);
     const RandomPath path(5, s.strain, duration);

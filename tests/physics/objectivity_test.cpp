@@ -85,6 +85,7 @@ TEST_CASE("a quarter turn carries s_xx over to s_yy", "[physics][objectivity]") 
 
 TEST_CASE("every law is objective under ten superposed turns", "[physics][objectivity]") {
   for (const Sample& s : samples()) {
+    if (!s.solid) continue;
     INFO(s.label);
     const auto material = make(s.input);
     const double coarse = error(*material, s.strain, 4000), fine = error(*material, s.strain, 8000);

@@ -25,6 +25,24 @@ const Values johnson_cook{{"Yield0", 90e6}, {"B", 292e6}, {"n", 0.31}, {"C", 0.0
 const Values heat{{"m", 1.09}, {"melt", 1356.0}, {"roomt", 293.0}, {"SpecHeat", 383.0}};
 const Values damage{{"D1", 0.54}, {"D2", 4.89}, {"D3", -3.03}, {"D4", 0.014}, {"D5", 1.12}};
 
+// Soil: Young, Poisson and the angle of friction of the thesis' table 6.1; cohesion and dilation for the
+// tests.
+const Values soil{{"Young", 70e6}, {"Poisson", 0.3}};
+
+// q1, q2, fc, ff and nucleation: Tvergaard and Needleman, Acta Metallurgica 32 (1984) 157.
+const Values voids{{"Yield0", 200e6}, {"q1", 1.5}, {"q2", 1.0}, {"f0", 0.02}, {"fc", 0.15}, {"ff", 0.25}};
+const Values nucleation{{"fN", 0.04}, {"sN", 0.1}, {"eN", 0.3}};
+
+bool solids_are_not(const std::string& type) {
+  return type == "Elastic_1D" || type == "LinHarElaPlastic_1D" || type == "Rigid";
+}
+
+/// Strength laws that compute the pressure themselves: no equation of state beside them.
+bool own_pressure(const std::string& type) {
+  return type == "CauchyElastic" || type == "DruckerPrager" || type == "DFFoam" || type == "Gurson" ||
+         type == "MooneyRivlin" || solids_are_not(type);
+}
+
 /// Strength laws: label, type, parameters, path strain.
 struct Strength {
   std::string label, type;
@@ -51,6 +69,55 @@ const std::vector<Strength> strengths{
     {"HighExpBurn both", "HighExpBurn", {{"D", 6930.0}, {"beta", 0.0}, {"PCJ", 115e9}, {"mu", 20.0}}, 0.02},
     {"HighExpBurn by compression", "HighExpBurn", {{"D", 6930.0}, {"beta", 1.0}, {"PCJ", 115e9}}, 0.05},
     {"Null power law", "Null", {{"ck", 300.0}, {"nn", 0.6}}, 0.02},
+    {"DruckerPrager", "DruckerPrager",
+     with(soil, {{"qfai", 0.4}, {"kfai", 200e3}, {"qpsi", 0.1}, {"ten_f", 100e3}}), 0.02},
+    {"DruckerPrager Mohr-Coulomb", "DruckerPrager",
+     with(soil, {{"phi", 20.0}, {"c", 300e3}, {"psi", 0.0}, {"ten_f", 300e3}, {"match", 3.0}}), 0.02},
+    {"DFFoam",
+     "DFFoam",
+     {{"Young", 1e9},
+      {"Poisson", 0.1},
+      {"Yield0", 5e6},
+      {"alfa", 1.6},
+      {"epsud", 0.06},
+      {"alal", 4e6},
+      {"gama", 1e6},
+      {"bebe", 2.5},
+      {"vole", 0.0}},
+     0.02},
+    {"DFFoam breaking",
+     "DFFoam",
+     {{"Young", 1e9},
+      {"Poisson", 0.0},
+      {"Yield0", 5e6},
+      {"alfa", 2.1},
+      {"epsud", 1.6},
+      {"alal", 4e6},
+      {"gama", 1e6},
+      {"bebe", 2.5},
+      {"vole", 0.5}},
+     0.02},
+    {"Gurson linear", "Gurson", with(with(elastic, voids), {{"TangMod", 3e9}}), 0.02},
+    {"Gurson power", "Gurson",
+     with(with(elastic, voids), {{"N_hard", 10.0}, {"fN", 0.04}, {"sN", 0.005}, {"eN", 0.01}}), 0.02},
+    {"Gurson JohnsonCook", "Gurson",
+     with(with(with(elastic, voids), nucleation), with(johnson_cook, {{"Yield0", 90e6}, {"epmax", 0.6}})),
+     0.02},
+    {"Gurson scattered", "Gurson",
+     with(with(elastic, voids),
+          {{"TangMod", 3e9}, {"Gauss_f0", 0.03}, {"Gauss_sn", 0.01}, {"SpecHeat", 383.0}}),
+     0.02},
+    {"MooneyRivlin", "MooneyRivlin", {{"Mr_A2", 0.4e6}, {"Mr_B2", 0.1e6}, {"Poisson", 0.49}}, 0.1},
+    {"MooneyRivlin compressible",
+     "MooneyRivlin",
+     {{"Mr_A2", 0.4e6}, {"Mr_B2", -0.1e6}, {"Poisson", 0.3}},
+     0.1},
+    {"Elastic_1D", "Elastic_1D", elastic, 0.02},
+    {"LinHarElaPlastic_1D",
+     "LinHarElaPlastic_1D",
+     {{"Young", 124e9}, {"Yield0", 200e6}, {"TangMod", 3e9}},
+     0.02},
+    {"Rigid", "Rigid", {}, 0.02},
 };
 
 /// One of each, with a threshold that the tests' path of some 2 % strain crosses on its way.
@@ -191,10 +258,10 @@ std::vector<Sample> all_samples() {
   std::vector<Sample> all;
   for (const Strength& strength : strengths) {
     const bool explosive = strength.type == "HighExpBurn", fluid = strength.type == "Null" || explosive;
-    const bool own_pressure = strength.type == "CauchyElastic";
-    if (!fluid) all.push_back({strength.label, input_of(strength, nullptr), strength.strain});
+    const bool solid = !solids_are_not(strength.type);
+    if (!fluid) all.push_back({strength.label, input_of(strength, nullptr), strength.strain, solid});
     for (const auto& [label, eos] : equations) {
-      if (own_pressure || (explosive && label != "JWL")) continue;
+      if (own_pressure(strength.type) || (explosive && label != "JWL")) continue;
       if (strength.values.count("TemperatureCoefficient") > 0)
         continue;  // these equations expand by themselves
       if (strength.label != "IsoHarden" && label != "Gruneisen" && !fluid) continue;
@@ -243,6 +310,7 @@ double Units::factor(std::string_view dimension, double exponent) const {
       {"time", time},
       {"1/time", 1 / time},
       {"temperature", 1},
+      {"degree", 1},
       {"1/temperature", 1},
       {"stress time", stress() * time},
       {"stress time^nn", stress() * std::pow(time, exponent)},

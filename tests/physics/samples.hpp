@@ -19,6 +19,8 @@ struct Sample {
   core::MaterialInput input;
   /// Strain that a test's path should reach: beyond yield where the law yields.
   double strain = 0.02;
+  /// False for bars, whose axis is x, and rigid bodies: not for statements on tensors.
+  bool solid = true;
 };
 
 /// Every strength law with the elastic bulk and with an equation of state, and every equation of state with a

@@ -268,6 +268,37 @@ class Prescribed(Case):
         self.assertGreater(energy["external_work"], 10)
         self.assertLess(abs(energy["relative_drift"]), 0.02)
 
+    def test_rigid_body(self):
+        """It flies on through all that is in its way, under gravity, undeformed, and its stiffness limits no step."""
+        gravity = (0.5, -0.2, 0)
+        bodies = [_mpm.block("ram", (1, 2, 2), (2, 4, 4), (3, 0.5, -0.25), of="iron"),
+                  _mpm.block("freight", (3, 2, 2), (3, 4, 4))]
+        materials = [_mpm.material(), _mpm.material("iron", 50.0, 'type="Rigid"')]
+        more = '<Gravity ax="{}" ay="{}" az="{}"/>'.format(*gravity)
+        for algorithm, ranks in (("MUSL", 1), ("MUSL", 2), ("USF", 1), ("USL", 2)):
+            with self.subTest(algorithm=algorithm, ranks=ranks):
+                self.write(_mpm.scene(bodies, _mpm.grid((0, 0, 0), ROOM), _mpm.solution(1.0, algorithm, more=more),
+                                      materials))
+                self.run_in("out", [self.folder / "case.xmp"], ranks=ranks)
+                found = strict_summary(self.folder / "out")
+                ram, freight = found["bodies"]
+                for axis, (start, speed) in enumerate([(2, 3), (4, 0.5), (4, -0.25)]):
+                    self.assertAlmostEqual(ram["velocity"][axis], speed + gravity[axis], delta=1e-9)
+                    # Equal steps of v += g dt, x += v dt are ahead by g t dt/2, dt at most 0.5/37.
+                    way = speed + gravity[axis] / 2
+                    self.assertAlmostEqual(ram["centre"][axis], start + way, delta=0.01 * abs(gravity[axis]) + 1e-9)
+                    self.assertAlmostEqual(ram["upper"][axis] - ram["lower"][axis], (1.5, 3.5, 3.5)[axis], delta=1e-9)
+                self.assertEqual(ram["internal"], 0)
+                self.assertGreater(freight["velocity"][0], 1)
+                self.assertLess(abs(found["energy"]["relative_drift"]), 0.02)
+                self.assertLess(found["steps"], 150)  # the freight's waves take 37 a unit: 74 steps at this factor
+
+    def test_bar_laws_are_for_bars(self):
+        self.write(_mpm.scene([_mpm.block("cube", (1, 1, 1), (2, 2, 2))], _mpm.grid((0, 0, 0), ROOM), _mpm.solution(1),
+                              [_mpm.material(strength='type="Elastic_1D" Young="1000" Poisson="0.3"')]))
+        outcome = self.run_in("out", [self.folder / "case.xmp"], code=_mpm.INPUT_ERROR)
+        self.assertRegex(outcome.complaint, "material `soft` is for bars, and body `cube`")
+
     def test_dynamic_relaxation(self):
         """A column under its own weight, between walls without friction. At rest (linear elasticity, uniaxial strain,
         M the modulus): sigma_zz = -rho g (H - z), mean settlement rho g H^2 / (3 M). The damping is critical for the

@@ -1,0 +1,173 @@
+// Drucker-Prager plasticity with a tension cut-off (manual 3.2.1.16, thesis 6.2). With tau = sqrt(J2):
+//   shear    f = tau + qfai sigma_m - kfai,   g = tau + qpsi sigma_m       (6-6, 6-9)
+//   tension  f = sigma_m - ten_f, associated                               (6-7, 6-10)
+// The trial stress returns to the surface along the flow of the end of the step, which for these straight
+// lines is exact: to the cone, to the cut-off, or to the edge between them, where both mechanisms flow
+// (Koiter). The thesis divides the two by a diagonal h (6-11) instead, which near the edge leaves stress
+// outside the one or the other surface. Equivalent plastic strain: (6-39) and (6-48) in one. The Mohr-Coulomb
+// constants phi, c, psi in the place of qfai, kfai, qpsi are matched by (6-50) to (6-58). ten_f may not
+// exceed the apex kfai/qfai (6-8), and qpsi not qfai: flow would then give energy back. Where qfai = 0 there
+// is no apex and ten_f stays as given, where the thesis sets it to zero (6-49). The pressure is the law's
+// own: no EquationOfState. Shown by tests/physics/drucker_prager_test.cpp.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "physics/strength/elasticity.hpp"
+
+namespace mpm::physics {
+
+struct DruckerPrager : IsotropicElasticity {
+  static constexpr std::string_view name = "DruckerPrager";
+  static constexpr std::string_view summary = "soil: friction, cohesion, dilation, tension cut-off";
+  static constexpr std::array state{core::Column::effective_plastic_strain};
+  static constexpr bool sets_pressure = true;
+
+  static constexpr double not_given = -1;
+  double friction = not_given;                                    ///< qfai
+  double cohesion = not_given;                                    ///< kfai, stress
+  double dilation = not_given;                                    ///< qpsi
+  double tension = 0;                                             ///< ten_f, stress
+  double friction_angle = not_given, dilation_angle = not_given;  ///< phi and psi, degrees
+  double coulomb_cohesion = not_given;                            ///< c, stress
+  double match = 2;
+  double plastic_work_coefficient = 0;
+  /// Derived: by how much the tangent along a direction n may exceed K + 4/3 G where the cone is reached.
+  /// Flow that is not associated takes (G s_nn/tau + K qfai)(G s_nn/tau + K qpsi)/(G + K qfai qpsi) off that
+  /// modulus, which is negative between the two roots.
+  double stiffening = 0;
+
+  static constexpr auto parameters() {
+    using P = DruckerPrager;
+    return join(
+        elastic_parameters<P>(),
+        std::array<Parameter<P>, 9>{{
+            {&P::friction,
+             {.name = "qfai", .min = 0, .meaning = "friction parameter", .group = "qfai, kfai, qpsi"}},
+            {&P::cohesion,
+             {.name = "kfai",
+              .min = 0,
+              .dimension = "stress",
+              .meaning = "cohesion parameter: sqrt(J2) at yield without mean stress",
+              .group = "qfai, kfai, qpsi"}},
+            {&P::dilation,
+             {.name = "qpsi",
+              .min = 0,
+              .meaning = "dilation parameter, <= qfai",
+              .group = "qfai, kfai, qpsi"}},
+            {&P::tension,
+             {.name = "ten_f",
+              .required = true,
+              .min = 0,
+              .dimension = "stress",
+              .meaning = "largest mean tension, <= kfai/qfai"}},
+            {&P::friction_angle,
+             {.name = "phi",
+              .min = 0,
+              .max = 90,
+              .max_open = true,
+              .dimension = "degree",
+              .meaning = "in the place of qfai, kfai and qpsi: Mohr-Coulomb friction angle",
+              .group = "phi, c, psi"}},
+            {&P::coulomb_cohesion,
+             {.name = "c",
+              .min = 0,
+              .dimension = "stress",
+              .meaning = "Mohr-Coulomb cohesion",
+              .group = "phi, c, psi"}},
+            {&P::dilation_angle,
+             {.name = "psi",
+              .min = 0,
+              .max = 90,
+              .max_open = true,
+              .dimension = "degree",
+              .meaning = "Mohr-Coulomb dilation angle, <= phi",
+              .group = "phi, c, psi"}},
+            {&P::match,
+             {.name = "match",
+              .default_value = 2,
+              .min = 1,
+              .max = 3,
+              .integer = true,
+              .meaning = "cone for phi, c, psi: 1 through the compressive edges of the Mohr-Coulomb pyramid, "
+                         "2 through its tensile edges, 3 inscribed (plane strain)"}},
+            {&P::plastic_work_coefficient,
+             {.name = "PlasticWorkCoefficient",
+              .default_value = 0.9,
+              .min = 0,
+              .max = 1,
+              .meaning = "part of the plastic work that becomes heat"}},
+        }});
+  }
+
+  std::string fault() const {
+    const bool cone = friction != not_given, pyramid = friction_angle != not_given;
+    if (cone == pyramid) return "DruckerPrager needs either qfai, kfai and qpsi or phi, c and psi";
+    if (pyramid && dilation_angle > friction_angle) return "psi must not exceed phi";
+    if (cone && dilation > friction) return "qpsi must not exceed qfai";
+    DruckerPrager law = *this;
+    law.match_pyramid();
+    if (law.friction == 0 && law.cohesion == 0) return "without friction and cohesion there is no strength";
+    if (law.tension > (1 + rounding) * law.apex()) {
+      return "ten_f must not exceed the apex of the cone, kfai/qfai = " + std::to_string(law.apex());
+    }
+    return "";
+  }
+  void prepare() {
+    derive_moduli();
+    match_pyramid();
+    tension = std::min(tension, apex());
+    const double excess = bulk * (friction - dilation);
+    stiffening = excess * excess / (4 * (shear + bulk * friction * dilation));
+  }
+  /// kfai/qfai, the mean tension at which the cone ends.
+  double apex() const { return friction > 0 ? cohesion / friction : HUGE_VAL; }
+
+  template <class T>
+  void update(StrengthPoint<T>& point) const {
+    using core::max;
+    using core::select;
+    elastic_step_with_pressure(point);
+    const T tau = sqrt(0.5 * contract(point.s, point.s)), mean = -point.pressure;
+    // Shear alone (6-34); where that leaves the mean stress beyond the cut-off, the tension mechanism is
+    // active too and takes what exceeds it, and shear flows only as far as the edge (or not at all).
+    const double edge = cohesion - friction * tension;
+    const T alone = max(tau + friction * mean - cohesion, 0.0) * (1 / (shear + bulk * friction * dilation));
+    const core::MaskOf<T> torn = mean - (bulk * dilation) * alone > tension;
+    const T slip = select(torn, max(tau - edge, 0.0) * (1 / shear), alone);
+    const T expansion = select(torn, (mean - tension) * (1 / bulk), dilation * slip);
+    const T mean_after = mean - bulk * expansion, tau_after = max(tau - shear * slip, 0.0);
+    point.s = select(slip > 0.0, tau_after / tau, T(1.0)) * point.s;
+    point.pressure = -mean_after;
+    point.effective_plastic_strain += sqrt(slip * slip * (1.0 / 3) + expansion * expansion * (2.0 / 9));
+    const T strength = cohesion - friction * mean_after;
+    point.bulk_modulus = bulk + select(tau_after < (1 - 1e-6) * strength, 0.0, T(stiffening));
+    point.yield_stress = std::sqrt(3.0) * strength;
+    point.plastic_work = tau_after * slip + mean_after * expansion;
+  }
+
+ private:
+  /// How far ten_f may exceed the apex by the rounding of printed constants; it then is the apex. The thesis'
+  /// own table 6.5 gives 112.21 kPa for an apex of 112.207 kPa.
+  static constexpr double rounding = 1e-3;
+
+  void match_pyramid() {
+    if (friction_angle == not_given) return;
+    const double degree = std::acos(-1.0) / 180;
+    friction = slope(friction_angle * degree);
+    dilation = slope(dilation_angle * degree);
+    const double cosine = std::cos(friction_angle * degree), sine = std::sin(friction_angle * degree);
+    cohesion = match == 3 ? 3 * coulomb_cohesion * cosine / std::sqrt(9 * cosine * cosine + 12 * sine * sine)
+                          : 6 * coulomb_cohesion * cosine / (std::sqrt(3.0) * (3 - sign() * sine));
+  }
+  double sign() const { return match == 1 ? 1 : -1; }
+  double slope(double angle) const {
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    return match == 3 ? 3 * sine / std::sqrt(9 * cosine * cosine + 12 * sine * sine)
+                      : 6 * sine / (std::sqrt(3.0) * (3 - sign() * sine));
+  }
+};
+
+}  // namespace mpm::physics
