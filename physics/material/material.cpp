@@ -111,12 +111,7 @@ Material::Material(Laws laws) : laws_(std::move(laws)) {
   fails_ = !laws_.failures.empty() || tension_.fails();
   expands_ = laws_.common.temperature_coefficient != 0;
   scatter_thresholds();
-  const auto carries_deformation = [](const auto& law) { return columns_of(law).has(Column::f_xx); };
-  for (const FailureEntry& entry : laws_.failures) {
-    if (std::visit(carries_deformation, entry.model)) follows_deformation_ = true;
-  }
-  // A strength law that carries it keeps it up to date itself.
-  if (std::visit(carries_deformation, laws_.strength)) follows_deformation_ = false;
+  follows_deformation_ = columns({}).has(Column::f_xx);
   viscous_ = viscous_ || (fails_ && laws_.common.fail_viscosity > 0);
   const StrengthPoint<double> at_rest = point_at_rest(laws_);
   initial_modulus_ = modulus_at_rest(laws_, at_rest);
