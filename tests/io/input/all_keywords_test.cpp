@@ -85,7 +85,9 @@ std::string materials() {
       "D2='1' K2='0' K3='0'" +
       plastic);
   text += material(
-      "type='DruckerPrager' qfai='0.4' kfai='1' qpsi='0.1' ten_f='1' PlasticWorkCoefficient='0.5'" + common);
+      "type='DruckerPrager' qfai='0.4' kfai='1' qpsi='0.1' ten_f='1' phi='30' c='1' psi='10' match='1' "
+      "PlasticWorkCoefficient='0.5'" +
+      common);
   text += material("type='DFFoam' alfa='2' epsud='1' alal='1' gama='1' bebe='3' vole='0.5'" + plastic);
   text += material(
       "type='Gurson' q1='1.5' q2='1' f0='0.01' Gauss_f0='0.01' Gauss_sn='0.001' fc='0.15' ff='0.25' "
