@@ -15,6 +15,7 @@
 #include "io/input/reader.hpp"
 #include "io/input/reference.hpp"
 #include "physics/catalogue.hpp"
+#include "physics/material/material.hpp"
 
 namespace {
 
@@ -28,18 +29,26 @@ struct Settings {
   bool materials = false;
 };
 
-/// An estimate; reads particle files to their end. Throws every complaint about shapes and files.
-double count_particles(const core::Scene& scene) {
+/// Does, and adds what is thrown to the complaints.
+template <class F>
+void collect(std::vector<core::Diagnostic>& complaints, F f) {
+  try {
+    f();
+  } catch (const core::InputErrors& errors) {
+    complaints.insert(complaints.end(), errors.diagnostics().begin(), errors.diagnostics().end());
+  }
+}
+
+/// Makes every material and the sources of all particles, whose files it reads to their ends: the number of
+/// particles, an estimate. Throws every complaint about what the laws, shapes and files forbid together.
+double make_everything(const core::Scene& scene) {
   double count = 0;
   std::vector<core::Diagnostic> wrong;
+  collect(wrong, [&] { physics::make_materials(scene); });
   for (const core::ComponentInput& component : scene.components) {
     for (const core::BodyInput& body : component.bodies) {
       if (body.deactivated || body.for_bool) continue;
-      try {
-        count += core::make_seed_source(scene, body)->expected_particles();
-      } catch (const core::InputErrors& errors) {
-        wrong.insert(wrong.end(), errors.diagnostics().begin(), errors.diagnostics().end());
-      }
+      collect(wrong, [&] { count += core::make_seed_source(scene, body)->expected_particles(); });
     }
   }
   if (!wrong.empty()) throw core::InputErrors(std::move(wrong));
@@ -60,7 +69,7 @@ bool check(const std::string& job, const Settings& settings) {
     const core::Scene scene = io::read_scene(job, physics::catalogue(),
                                              {.check_files = true, .accept_later = settings.accept_later});
     std::string verdict = summary(scene);
-    if (!settings.accept_later) verdict += fmt::format(", about {:.4g} particles", count_particles(scene));
+    if (!settings.accept_later) verdict += fmt::format(", about {:.4g} particles", make_everything(scene));
     if (settings.echo)
       fmt::print("{}", io::to_text(scene));
     else

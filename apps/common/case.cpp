@@ -90,13 +90,6 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world) {
   return c;
 }
 
-std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene) {
-  std::vector<std::unique_ptr<core::ConstitutiveModel>> materials;
-  for (const core::MaterialInput& m : scene.materials)
-    materials.push_back(physics::make_material(m, scene.detonations));
-  return materials;
-}
-
 ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world) {
   if (!is_restart(options.job)) {
     throw core::InputErrors(core::SourceLocation{options.job, 0}, "-h5pt",

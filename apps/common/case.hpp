@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "apps/common/options.hpp"
-#include "core/material/constitutive_model.hpp"
 #include "core/scene/scene.hpp"
 #include "parallel/mpi.hpp"
 
@@ -21,8 +20,6 @@ struct Case {
 
 /// Rank 0 reads, every rank gets the same scene or the same InputErrors. Collective.
 Case load_case(const RunOptions& options, const parallel::Communicator& world);
-
-std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene);
 
 /// -h5pt. Collective.
 ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world);

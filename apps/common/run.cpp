@@ -24,6 +24,7 @@
 #include "io/output/summary.hpp"
 #include "io/restart/restart.hpp"
 #include "parallel/mpi_exchange.hpp"
+#include "physics/material/material.hpp"
 
 namespace mpm::apps {
 
@@ -103,8 +104,8 @@ class Run {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
     core::check_decomposition(case_.scene->decomposition, exchange_.size());
-    model_ =
-        core::prepare_model(case_.scene, make_materials(*case_.scene), io::columns_for(case_.scene->output));
+    model_ = core::prepare_model(case_.scene, physics::make_materials(*case_.scene),
+                                 io::columns_for(case_.scene->output));
     std::vector<std::string> notices;
     if (case_.restart) {
       const io::RestartResult state = io::read_restart(*case_.restart, model_, exchange_);

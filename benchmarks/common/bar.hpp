@@ -16,6 +16,7 @@
 #include "io/input/reader.hpp"
 #include "io/output/variables.hpp"
 #include "physics/catalogue.hpp"
+#include "physics/material/material.hpp"
 
 namespace mpm::benchmarks {
 
@@ -114,7 +115,7 @@ struct BarRun {
  private:
   BarRun(core::Scene of, core::Exchange* others)
       : scene(std::make_shared<const core::Scene>(std::move(of))),
-        model(core::prepare_model(scene, apps::make_materials(*scene), io::columns_for(scene->output))) {
+        model(core::prepare_model(scene, physics::make_materials(*scene), io::columns_for(scene->output))) {
     core::Exchange& exchange = others != nullptr ? *others : alone;
     core::discretise(model, exchange);
     core::start_clock(model, exchange);

@@ -10,6 +10,7 @@
 #include "core/material/constitutive_model.hpp"
 #include "core/scene/body.hpp"
 #include "core/scene/material.hpp"
+#include "core/scene/scene.hpp"
 #include "physics/eos/list.hpp"
 #include "physics/failure/list.hpp"
 #include "physics/failure/threshold_scatter.hpp"
@@ -88,5 +89,8 @@ class Material final : public core::ConstitutiveModel {
 /// each other.
 std::unique_ptr<core::ConstitutiveModel> make_material(
     const core::MaterialInput& input, const std::vector<core::DetonationItem>& detonations = {});
+
+/// All materials of a scene, in its order. Throws what is wrong with any of them, together.
+std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene);
 
 }  // namespace mpm::physics
