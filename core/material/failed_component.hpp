@@ -21,7 +21,9 @@ struct FailedComponentRule {
       T limit = damage;
       if (scatters) limit = min(limit * at(Column::threshold_factor), 1.0);
       // With a threshold of zero the first damage counts, not its absence.
-      joins = joins | ((at(Column::damage) >= limit) & (at(Column::damage) > 0.0));
+      const T damaged = at(Column::damage);
+      const MaskOf<T> enough = damaged >= limit, some = damaged > 0.0;
+      joins = joins | (enough & some);
     }
     return joins;
   }

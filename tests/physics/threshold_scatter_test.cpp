@@ -109,7 +109,8 @@ struct Particles {
 }  // namespace
 
 TEST_CASE("Gaussian factors have their distribution, mean and deviation", "[physics][random]") {
-  for (const auto& [mean, deviation] : {std::pair{1.0, 0.2}, {3.0, 0.05}}) {
+  for (const std::pair<double, double>& law : {std::pair{1.0, 0.2}, {3.0, 0.05}}) {
+    const double mean = law.first, deviation = law.second;
     const std::vector<double> x = factors(gauss(mean, deviation));
     CHECK(distance(x, [&](double v) { return 0.5 * std::erfc((mean - v) / (std::sqrt(2.0) * deviation)); }) <
           one_percent);
