@@ -96,22 +96,24 @@ struct JH2 : BrittlePlasticity {
   void update(StrengthPoint<T>& point) const {
     elastic_step(point);
     const Strengths<T> both = strengths(point.pressure, rate_over(point, epso));
-    const T before = both.at(point.damage);
+    const T damage = point.damage, before = both.at(damage);
     const T increment = return_at_once(point, before, T(shear));
     add_damage(point, increment, fracture_strain(point.pressure));
-    bulk_up(point, before, both.at(point.damage));
+    bulk_up(point, point.damage > damage, before, both.at(point.damage));
     point.lowest_pressure = -t * (1.0 - point.damage);
   }
 
  private:
-  /// Part of the energy of distortion that the strength can no longer hold becomes pressure.
+  /// Part of the energy of distortion that the strength can no longer hold becomes pressure. Without new
+  /// damage there is none, whatever round-off says: its root would be many times as large.
   template <class T>
-  void bulk_up(StrengthPoint<T>& point, const T& before, const T& after) const {
+  void bulk_up(StrengthPoint<T>& point, core::MaskOf<T> damaged, const T& before, const T& after) const {
     const T elastic = bulk * (point.density * (1 / reference_density) - 1.0);  // K1 mu
     const T lost = (before * before - after * after) * (1 / (6 * shear));
     const T old = elastic + point.bulking_pressure;
     const T bulking = sqrt(old * old + (2 * beta * bulk) * core::max(lost, 0.0)) - elastic;
-    point.bulking_pressure = core::select((elastic > 0.0) & (lost > 0.0), bulking, point.bulking_pressure);
+    point.bulking_pressure =
+        core::select(damaged & (elastic > 0.0) & (lost > 0.0), bulking, point.bulking_pressure);
   }
 };
 
