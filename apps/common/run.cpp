@@ -227,6 +227,22 @@ class Run {
     last_restart_ = path;
   }
 
+  /// What had a defined answer instead of an ordinary one, in particles times steps. Collective.
+  void say_what_was_counted() {
+    const core::MaterialEvents& events = model_.books.events;
+    std::int64_t counts[] = {events.failed, events.negative_volume, events.volume_limited,
+                             events.undefined_root, model_.books.velocity_limited};
+    static constexpr const char* words[] = {
+        "failed", "would have had no volume and kept the old one", "held by Volume min or max",
+        "without a wave speed: the square was negative, or the compression "
+        "beyond the equation's limit",
+        "held by LimitVelocity"};
+    exchange_.sum(std::span<std::int64_t>(counts));
+    for (std::size_t i = 0; i < std::size(counts); ++i) {
+      if (counts[i] > 0) log_->say("counted    {} particle(s) {}", counts[i], words[i]);
+    }
+  }
+
   void conclude(const std::string& status, const std::string& reason, double loop_seconds) {
     io::RunReport report;
     report.status = status;
@@ -250,6 +266,7 @@ class Run {
           totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic,
           totals.removed_internal);
     }
+    say_what_was_counted();
     if (status == "failed") {
       log_->say("FAILED     {}", reason);
       if (!last_restart_.empty()) log_->say("           the last good state is in {}", last_restart_);
