@@ -80,7 +80,7 @@ void for_each_block(const Model& model, F f) {
     for (const Cohort& cohort : brick.cohorts) {
       const BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
       for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-        const int used = static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+        const int used = cohort.used_lanes(b);
         f(cohort.body, pool.layout(), pool.block(cohort.blocks[b]), used);
       }
     }

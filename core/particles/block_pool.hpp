@@ -52,6 +52,11 @@ struct Cohort {
   int body = 0;
   std::uint32_t count = 0;
   std::vector<BlockIndex> blocks;
+
+  /// Lanes of block `b` that hold particles; all but in the last.
+  int used_lanes(std::size_t b) const {
+    return static_cast<int>(std::min<std::size_t>(block_lanes, count - block_lanes * b));
+  }
 };
 
 /// Append one particle, whose columns are given one after the other. Returns its index in the cohort.

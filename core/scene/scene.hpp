@@ -63,4 +63,19 @@ struct Scene {
   Provenance provenance;
 };
 
+/// The bodies that take part, in the order of the input; with them the numbers of their components.
+template <class F>
+void for_each_active_body(const Scene& scene, F f) {
+  for (std::size_t c = 0; c < scene.components.size(); ++c) {
+    for (const BodyInput& body : scene.components[c].bodies) {
+      if (!body.deactivated && !body.for_bool) f(static_cast<int>(c), body);
+    }
+  }
+}
+inline std::vector<const BodyInput*> active_bodies(const Scene& scene) {
+  std::vector<const BodyInput*> bodies;
+  for_each_active_body(scene, [&](int, const BodyInput& b) { bodies.push_back(&b); });
+  return bodies;
+}
+
 }  // namespace mpm::core

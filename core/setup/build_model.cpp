@@ -27,22 +27,6 @@ constexpr std::uint64_t units_in_run = 16;             // of a body, that one ra
 constexpr std::size_t seeds_in_piece = 1 << 16;        // seeds that a rank makes between two sends
 constexpr double exact_integers = 9007199254740992.0;  // identities are kept in doubles, 2^53
 
-/// The bodies of the scene that take part, in the order of the input.
-template <class F>
-void for_each_body(const Scene& scene, F f) {
-  for (std::size_t c = 0; c < scene.components.size(); ++c) {
-    for (const BodyInput& body : scene.components[c].bodies) {
-      if (!body.deactivated && !body.for_bool) f(static_cast<int>(c), body);
-    }
-  }
-}
-
-std::vector<const BodyInput*> inputs_of(const Scene& scene) {
-  std::vector<const BodyInput*> inputs;
-  for_each_body(scene, [&](int, const BodyInput& b) { inputs.push_back(&b); });
-  return inputs;
-}
-
 /// This rank's share of a body's units, in pieces: f(seeds). Every ranks-th run of units is ours.
 template <class F>
 void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
@@ -274,7 +258,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
   model.options.keep_strain =
       solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
   model.grid = std::make_unique<BrickGrid>(geometry_of(*scene));
-  for_each_body(*scene, [&](int component, const BodyInput& input) {
+  for_each_active_body(*scene, [&](int component, const BodyInput& input) {
     Body body;
     body.name = input.name;
     body.component = component;
@@ -289,10 +273,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
                       scene->materials[input.material].name, input.name, input.type));
     }
     body.no_output = input.no_output;
-    if (input.prescribed_velocity) {
-      const auto& v = *input.prescribed_velocity;
-      body.prescribed_velocity = Vec3<double>{v[0], v[1], v[2]};
-    }
+    if (input.prescribed_velocity) { body.prescribed_velocity = to_vec(*input.prescribed_velocity); }
     ColumnSet columns = ColumnSet::mechanics();
     columns.add(body.model->columns(model.options));
     columns.add(output_columns);
@@ -311,7 +292,7 @@ ModelPlan plan_of(const Model& model) {
   ModelPlan plan;
   std::size_t b = 0;
   const int common = ColumnSet::mechanics().size();
-  for_each_body(*model.scene, [&](int, const BodyInput& input) {
+  for_each_active_body(*model.scene, [&](int, const BodyInput& input) {
     const ColumnLayout& layout = model.bodies[b++].pool->layout();
     BodyPlan body;
     body.name = input.name;
@@ -328,7 +309,7 @@ ModelPlan plan_of(const Model& model) {
 }
 
 void discretise(Model& model, Exchange& exchange) {
-  const std::vector<const BodyInput*> inputs = inputs_of(*model.scene);
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
   std::vector<std::unique_ptr<SeedSource>> sources;
   double identities = 0;
   for (const BodyInput* input : inputs) {
@@ -357,8 +338,7 @@ void start_clock(Model& model, Exchange& exchange) {
       fastest = std::max(fastest, batch.critical_speed[i] + std::sqrt(vv));
     }
   });
-  double critical[1] = {
-      std::min(critical_step(*model.grid, fastest), Conduction(model, exchange).critical_step())};
+  double critical[1] = {std::min(critical_step(*model.grid, fastest), conduction_step(model))};
   exchange.minimum(critical);
   model.clock.critical_dt = model.clock.first_critical_dt = critical[0];
   const Totals totals = compute_totals(model, exchange);

@@ -41,6 +41,7 @@ namespace mpm::core {
   r[2].v = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
   r[3].v = __builtin_shufflevector(c, d, 4, 5, 6, 7, 12, 13, 14, 15);
 }
+/// Lanes 0..3 or 4..7.
 [[gnu::always_inline]] inline Lanes<4> half_of(const Lanes<8>& r, int upper) {
   return upper == 0 ? Lanes<4>(__builtin_shufflevector(r.v, r.v, 0, 1, 2, 3))
                     : Lanes<4>(__builtin_shufflevector(r.v, r.v, 4, 5, 6, 7));

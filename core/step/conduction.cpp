@@ -1,7 +1,6 @@
 #include "core/step/conduction.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/threads.hpp"
 
@@ -12,25 +11,23 @@ namespace {
 constexpr int heat_doubles = record_doubles(NodeArray::second);
 constexpr int flux_doubles = record_doubles(NodeArray::first);
 
-/// f(node, S, gradient of S) for the nodes of a lane's cell.
-template <class F>
-void for_each_node(const GridGeometry& g, const BlockPlace& place, int lane, F f) {
-  const double x = place.f[0][lane], y = place.f[1][lane], z = place.f[2][lane];
-  const double wx[2] = {1 - x, x}, wy[2] = {1 - y, y}, wz[2] = {1 - z, z};
-  for (int n = 0; n < 8; ++n) {
-    const int i = n & 1, j = (n >> 1) & 1, k = n >> 2;
-    f(place.node[lane] + corner_node(n), wx[i] * wy[j] * wz[k],
-      Vec3<double>{(2 * i - 1) * g.inverse_cell.x * wy[j] * wz[k],
-                   (2 * j - 1) * g.inverse_cell.y * wx[i] * wz[k],
-                   (2 * k - 1) * g.inverse_cell.z * wx[i] * wy[j]});
-  }
+bool conducts(const Body& body) { return body.model->conductivity() > 0; }
+
+/// k/(rho c) of one particle.
+double diffusivity(const Body& body, const double* block, int lane) {
+  const ColumnLayout& layout = body.pool->layout();
+  return body.model->conductivity() / body.model->specific_heat() *
+         block[layout.offset(Column::volume) + lane] / block[layout.offset(Column::mass) + lane];
 }
+
+/// 1/dt_c of a diffusivity of one.
+double sharpest_curvature(const GridGeometry& g) { return 2 * dot(g.inverse_cell, g.inverse_cell); }
 
 }  // namespace
 
 Conduction::Conduction(Model& model, Exchange& exchange)
     : model_(model), exchange_(exchange), shared_(model.grid->shape()) {
-  any_ = std::ranges::any_of(model.bodies, [](const Body& b) { return b.model->conductivity() > 0; });
+  any_ = std::ranges::any_of(model.bodies, conducts);
   if (!any_) return;
   heat_.resize(static_cast<std::size_t>(omp_get_max_threads()));
   flux_.resize(heat_.size());
@@ -47,12 +44,11 @@ void Conduction::for_each_block(Slot s, F f) const {
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
   for (const Cohort& cohort : brick.cohorts) {
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
-    if (!(body.model->conductivity() > 0)) continue;
+    if (!conducts(body)) continue;
     const ColumnLayout& layout = body.pool->layout();
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       double* block = body.pool->block(cohort.blocks[b]);
-      f(layout, body, block, BlockPlace(frame, layout, block),
-        static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b)));
+      f(layout, body, block, BlockPlace(frame, layout, block), cohort.used_lanes(b));
     }
   }
 }
@@ -69,10 +65,11 @@ void Conduction::map_heat() {
       for (int l = 0; l < used; ++l) {
         const double capacity = c * block[layout.offset(Column::mass) + l];
         const double heat = capacity * block[layout.offset(Column::temperature) + l];
-        for_each_node(grid.geometry(), place, l, [&](int node, double shape, const Vec3<double>&) {
-          to[heat_doubles * node] += shape * capacity;
-          to[heat_doubles * node + 1] += shape * heat;
-        });
+        for_each_corner(place, l, grid.geometry().inverse_cell,
+                        [&](int, int node, double shape, const Vec3<double>&) {
+                          to[heat_doubles * node] += shape * capacity;
+                          to[heat_doubles * node + 1] += shape * heat;
+                        });
       }
     });
   };
@@ -102,17 +99,19 @@ void Conduction::map_flux() {
       for (int l = 0; l < used; ++l) {
         Vec3<double> gradient{};
         double unseen = block[layout.offset(Column::temperature) + l];
-        for_each_node(grid.geometry(), place, l, [&](int node, double shape, const Vec3<double>& g) {
-          gradient = gradient + nodes[node_doubles * node + 1] * g;
-          unseen -= nodes[node_doubles * node + 1] * shape;
-        });
+        for_each_corner(place, l, grid.geometry().inverse_cell,
+                        [&](int, int node, double shape, const Vec3<double>& g) {
+                          gradient = gradient + nodes[node_doubles * node + 1] * g;
+                          unseen -= nodes[node_doubles * node + 1] * shape;
+                        });
         const double heat = body.model->specific_heat() * block[layout.offset(Column::mass) + l] * unseen;
         const Vec3<double> flow =
             (-body.model->conductivity() * block[layout.offset(Column::volume) + l]) * gradient;
-        for_each_node(grid.geometry(), place, l, [&](int node, double shape, const Vec3<double>& g) {
-          to[flux_doubles * node] += dot(flow, g);
-          to[flux_doubles * node + 1] += shape * heat;
-        });
+        for_each_corner(place, l, grid.geometry().inverse_cell,
+                        [&](int, int node, double shape, const Vec3<double>& g) {
+                          to[flux_doubles * node] += dot(flow, g);
+                          to[flux_doubles * node + 1] += shape * heat;
+                        });
       }
     });
   };
@@ -135,17 +134,18 @@ void Conduction::warm(double dt) {
       at[0] = capacity > 0 ? dt * at[0] / capacity : 0;
       at[1] = capacity > 0 ? at[1] / capacity : 0;
     }
-    const Vec3<double>& h = grid.geometry().inverse_cell;
+    const double curvature = sharpest_curvature(grid.geometry());
     for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block,
                           const BlockPlace& place, int used) {
       const double per_volume = body.model->reference_density() * body.model->specific_heat();
       for (int l = 0; l < used; ++l) {
         double rise = 0, unseen = block[layout.offset(Column::temperature) + l];
-        for_each_node(grid.geometry(), place, l, [&](int node, double shape, const Vec3<double>&) {
-          rise += shape * flux[node_doubles * node];
-          unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
-        });
-        rise -= std::min(2 * diffusivity(body, block, l) * dot(h, h) * dt, 1.0) * unseen;
+        for_each_corner(place, l, grid.geometry().inverse_cell,
+                        [&](int, int node, double shape, const Vec3<double>&) {
+                          rise += shape * flux[node_doubles * node];
+                          unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
+                        });
+        rise -= std::min(diffusivity(body, block, l) * curvature * dt, 1.0) * unseen;
         block[layout.offset(Column::temperature) + l] += rise;
         block[layout.offset(Column::internal_energy) + l] += per_volume * rise;
       }
@@ -153,23 +153,16 @@ void Conduction::warm(double dt) {
   });
 }
 
-double Conduction::diffusivity(const Body& body, const double* block, int lane) const {
-  const ColumnLayout& layout = body.pool->layout();
-  return body.model->conductivity() / body.model->specific_heat() *
-         block[layout.offset(Column::volume) + lane] / block[layout.offset(Column::mass) + lane];
-}
-
-double Conduction::critical_step() const {
-  if (!any_) return std::numeric_limits<double>::infinity();
+double conduction_step(const Model& model) {
   double most = 0;
-  for (int s = 0; s < model_.grid->owned(); ++s) {
-    for_each_block(static_cast<Slot>(s), [&](const ColumnLayout&, const Body& body, const double* block,
-                                             const BlockPlace&, int used) {
+  if (std::ranges::any_of(model.bodies, conducts)) {
+    core::for_each_block(model, [&](int number, const ColumnLayout&, const double* block, int used) {
+      const Body& body = model.bodies[static_cast<std::size_t>(number)];
+      if (!conducts(body)) return;
       for (int l = 0; l < used; ++l) most = std::max(most, diffusivity(body, block, l));
     });
   }
-  const Vec3<double>& h = model_.grid->geometry().inverse_cell;
-  return 1 / (2 * most * dot(h, h));
+  return 1 / (most * sharpest_curvature(model.grid->geometry()));
 }
 
 }  // namespace mpm::core

@@ -25,6 +25,9 @@
 
 namespace mpm::core {
 
+/// Largest stable step of this rank's particles as they are; infinity where nothing conducts.
+double conduction_step(const Model& model);
+
 class Conduction {
  public:
   Conduction(Model& model, Exchange& exchange);
@@ -37,17 +40,12 @@ class Conduction {
   void warm(double dt);
   void finish_exchange() { exchange_.end_halo(*model_.grid); }
 
-  /// Largest stable step of this rank's particles as they are; infinity where nothing conducts.
-  double critical_step() const;
-
  private:
-  /// f(layout, body number, block, place, lanes in use) for the blocks of the bodies that conduct.
+  /// f(layout, body, block, place, lanes in use) for the blocks of the bodies that conduct.
   template <class F>
   void for_each_block(Slot s, F f) const;
   /// Capacity and temperature of the brick's nodes, in components 0 and 1.
   void temperatures(Slot s, double* nodes) const;
-  /// k/(rho c) of one particle.
-  double diffusivity(const Body& body, const double* block, int lane) const;
 
   Model& model_;
   Exchange& exchange_;

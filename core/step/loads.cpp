@@ -42,16 +42,6 @@ double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double>& x, V
   return w[0] * w[1] * w[2];
 }
 
-std::vector<const BodyInput*> inputs_of(const Scene& scene) {
-  std::vector<const BodyInput*> inputs;
-  for (const ComponentInput& c : scene.components) {
-    for (const BodyInput& b : c.bodies) {
-      if (!b.deactivated && !b.for_bool) inputs.push_back(&b);
-    }
-  }
-  return inputs;
-}
-
 }  // namespace
 
 Vec3<double> acceleration_of(const BodyInput& input, double time) {
@@ -89,7 +79,7 @@ Loads::Loads(const Model& model) {
   const GridGeometry& geometry = model.grid->geometry();
   for (const Boundary b : geometry.boundary) nonreflecting_ |= b == Boundary::nonreflecting;
   bool acts = nonreflecting_;
-  const std::vector<const BodyInput*> inputs = inputs_of(*model.scene);
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     OfBody& mine = bodies_.emplace_back();
     mine.shear_speed = model.bodies[b].model->initial_shear_speed();
@@ -115,8 +105,7 @@ void Loads::begin_step(Model& model, double time, double dt) {
     const BodyInput& input = *mine.input;
     if (input.constrain_rigid_position) {
       const std::array<double, 3> start = input.prescribed_velocity.value_or(input.initial_velocity);
-      model.bodies[b].prescribed_velocity =
-          Vec3<double>{start[0], start[1], start[2]} + velocity_gained(input, time + dt);
+      model.bodies[b].prescribed_velocity = to_vec(start) + velocity_gained(input, time + dt);
     }
     if (!mine.loaded) continue;
     mine.acceleration = acceleration_of(input, middle);
@@ -127,9 +116,7 @@ void Loads::begin_step(Model& model, double time, double dt) {
       for (int j = 0; j < 3; ++j) {
         s.column[j] = {};
         s.column[j][j] = -factor * load.pressure;
-        if (j == load.normal)
-          s.column[j] =
-              s.column[j] + factor * Vec3<double>{load.traction[0], load.traction[1], load.traction[2]};
+        if (j == load.normal) s.column[j] = s.column[j] + factor * to_vec(load.traction);
       }
     }
   }
@@ -197,23 +184,15 @@ void Loads::for_each_force(const Model& model, Slot slot, int body, const BlockP
         }
       }
     }
-    const double fraction[3] = {place.f[0][l], place.f[1][l], place.f[2][l]};
-    for (int n = 0; n < 8; ++n) {
-      const int bit[3] = {n & 1, (n >> 1) & 1, n >> 2};
-      double w[3], slope[3];
-      for (int a = 0; a < 3; ++a) {
-        w[a] = bit[a] == 1 ? fraction[a] : 1 - fraction[a];
-        slope[a] = (bit[a] == 1 ? 1 : -1) * g.inverse_cell[a];
-      }
-      const double s = w[0] * w[1] * w[2];
-      Vec3<double> force = s * per_shape + (slope[0] * w[1] * w[2]) * per_gradient[0] +
-                           (w[0] * slope[1] * w[2]) * per_gradient[1] +
-                           (w[0] * w[1] * slope[2]) * per_gradient[2];
-      for (int a = 0; a < 3; ++a) {
-        if (side[a] == bit[a]) force = force + s * dashpot[a];
-      }
-      f(place.node[l] + corner_node(n), force);
-    }
+    for_each_corner(place, l, g.inverse_cell,
+                    [&](int corner, int node, double shape_value, const Vec3<double>& slope) {
+                      Vec3<double> force = shape_value * per_shape + slope.x * per_gradient[0] +
+                                           slope.y * per_gradient[1] + slope.z * per_gradient[2];
+                      for (int a = 0; a < 3; ++a) {
+                        if (side[a] == ((corner >> a) & 1)) force = force + shape_value * dashpot[a];
+                      }
+                      f(node, force);
+                    });
   }
 }
 

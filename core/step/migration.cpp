@@ -50,7 +50,7 @@ void reorder(BlockPool& pool, Cohort& cohort, const std::vector<std::uint32_t>& 
   for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
     double* block = pool.block(cohort.blocks[b]);
     const double* source = sorted.data() + b * block_doubles;
-    const auto used = static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+    const int used = cohort.used_lanes(b);
     for (int c = 0; c < layout.columns(); ++c) {
       for (int l = 0; l < block_lanes; ++l)
         block[block_lanes * c + l] = source[block_lanes * c + (l < used ? l : 0)];

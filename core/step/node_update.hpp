@@ -6,8 +6,6 @@
 // rank.
 #pragma once
 
-#include <algorithm>
-
 #include "core/grid/brick_grid.hpp"
 
 namespace mpm::core {
@@ -50,38 +48,6 @@ class SharedNodes {
 /// so every copy of a node adds up the same numbers.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
-
-/// Asks for what sum_contributions will read for a brick, a few records at a time, while another brick is
-/// worked on: neighbours lie far apart in memory, and the hardware does not guess them.
-template <NodeArray of>
-class ContributionsAhead {
- public:
-  /// `slot` may be past the last brick. `calls`: how often next() will be called.
-  ContributionsAhead(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::size_t calls)
-      : shares_(shared.all()) {
-    if (slot >= grid.owned()) {
-      next_ = shares_.size();
-      return;
-    }
-    step_ = shares_.size() / std::max<std::size_t>(calls, 1) + 1;
-    const Brick& brick = grid.brick(slot);
-    for (std::size_t n = 0; n < neighbourhood; ++n) {
-      from_[n] = grid.contributions(of, brick.neighbour[n] == no_slot ? slot : brick.neighbour[n]);
-    }
-  }
-  [[gnu::always_inline]] void next() {
-    const std::size_t last = std::min(next_ + step_, shares_.size());
-    for (; next_ < last; ++next_) {
-      const SharedNodes::Share& s = shares_[next_];
-      __builtin_prefetch(from_[static_cast<std::size_t>(s.neighbour)] + record_doubles(of) * s.node, 0, 2);
-    }
-  }
-
- private:
-  std::span<const SharedNodes::Share> shares_;
-  std::array<const double*, neighbourhood> from_{};
-  std::size_t next_ = 0, step_ = 0;
-};
 
 /// What acts on nodes beside the particles' stress.
 struct NodeForces {

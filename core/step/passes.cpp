@@ -5,51 +5,12 @@
 #include <omp.h>
 
 #include "core/simd/denormals.hpp"
+#include "core/step/ahead.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {
 
 namespace {
-
-Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-/// Asks for the blocks that a pass will come to: those of a cohort, then those of the next one, in the brick
-/// or after it. Into the second-level cache: the first has too few lines under way at a time to hide main
-/// memory.
-class BlocksAhead {
- public:
-  BlocksAhead(const Model& model, Slot slot, std::size_t cohort, std::size_t distance = 4)
-      : model_(model), distance_(distance) {
-    const BrickGrid& grid = *model.grid;
-    const Brick& brick = grid.brick(slot);
-    now_ = &brick.cohorts[cohort];
-    if (cohort + 1 < brick.cohorts.size()) {
-      then_ = &brick.cohorts[cohort + 1];
-    } else if (slot + 1 < grid.owned() && !grid.brick(slot + 1).cohorts.empty()) {
-      then_ = &grid.brick(slot + 1).cohorts.front();
-    }
-  }
-  /// While block `b` is worked on. Inlined without fail: g++ takes a function that only prefetches for one
-  /// that does nothing, and drops the call.
-  [[gnu::always_inline]] void prefetch(std::size_t b, int first_column, int last_column) const {
-    const Cohort* cohort = now_;
-    b += distance_;
-    if (b >= cohort->blocks.size()) {
-      b -= cohort->blocks.size();
-      cohort = then_;
-      if (cohort == nullptr || b >= cohort->blocks.size()) return;
-    }
-    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort->body)].pool;
-    const double* block = pool.block(cohort->blocks[b]);
-    for (int c = first_column; c < last_column; ++c) __builtin_prefetch(block + block_lanes * c, 0, 2);
-  }
-
- private:
-  const Model& model_;
-  const Cohort* now_;
-  const Cohort* then_ = nullptr;
-  std::size_t distance_;
-};
 
 void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block) {
   double* x = block + layout.offset(Column::position_x);
@@ -60,33 +21,6 @@ void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block) 
 /// The first columns that passes read: up to the stress, and up to the mass.
 constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
 constexpr int columns_to_mass = static_cast<int>(Column::mass) + 1;
-
-std::size_t blocks_of(const Brick& brick) {
-  std::size_t n = 0;
-  for (const Cohort& c : brick.cohorts) n += c.blocks.size();
-  return n;
-}
-
-/// Asks for the room into which the next brick's contributions will go, a few lines at a time.
-class RoomAhead {
- public:
-  RoomAhead(double* room, int doubles, std::size_t calls)
-      : next_(room), last_(room == nullptr ? nullptr : room + doubles) {
-    step_ = (doubles / block_lanes + static_cast<int>(calls)) / std::max<int>(static_cast<int>(calls), 1);
-  }
-  [[gnu::always_inline]] void next() {
-    for (int i = 0; i < step_ && next_ < last_; ++i, next_ += block_lanes) __builtin_prefetch(next_, 1, 2);
-  }
-
- private:
-  double* next_;
-  double* last_;
-  int step_;
-};
-
-int used_lanes(const Cohort& cohort, std::size_t b) {
-  return static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
-}
 
 /// For outputs that show it; no law reads it back.
 void keep_sound_speed(Batch& batch) {
@@ -166,7 +100,7 @@ void Passes::map_brick(Slot s, F before) {
         ahead.prefetch(b, 0, columns_to_mass);
       room.next();
       double* block = body.pool->block(cohort.blocks[b]);
-      const int used = used_lanes(cohort, b);
+      const int used = cohort.used_lanes(b);
       if (b + 1 < cohort.blocks.size())
         places[(b + 1) % 2].find(frame, layout, body.pool->block(cohort.blocks[b + 1]));
       const BlockPlace& place = places[b % 2];
@@ -289,7 +223,7 @@ void Passes::kick(Slot s, const Body& body, const BlockPlace& place, double* blo
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       ahead.prefetch(b, 0, columns_to_mass);
       double* block = body.pool->block(cohort.blocks[b]);
-      kick(s, body, BlockPlace(frame, body.pool->layout(), block), block, used_lanes(cohort, b), at);
+      kick(s, body, BlockPlace(frame, body.pool->layout(), block), block, cohort.used_lanes(b), at);
     }
   }
   at.book_work();
@@ -369,7 +303,7 @@ template <bool moves>
           strain<true>(frame, place, layout, at.nodes.data(), body.keeps_velocity() ? 0.0 : dt, block,
                        batch.gradient, block_lanes * b);
           if (body.keeps_velocity()) move_at_own_velocity(layout, dt, block);
-          book_motion(layout, block, used_lanes(cohort, at_block), at);
+          book_motion(layout, block, cohort.used_lanes(at_block), at);
         }
       }
       batch.events = {};
@@ -513,7 +447,7 @@ void Passes::update_velocities_and_move() {
       first_ahead.next();
       second_ahead.next();
       double* block = body.pool->block(cohort.blocks[b]);
-      const int used = used_lanes(cohort, b);
+      const int used = cohort.used_lanes(b);
       const BlockPlace place(frame, layout, block);
       kick(s, body, place, block, used, at);
       std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);

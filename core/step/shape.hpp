@@ -84,6 +84,23 @@ constexpr int corner_node(int n) {
   return (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2));
 }
 
+/// f(corner, node, S, gradient of S) for the corners i + 2 j + 4 k of the cell in which the particle of a
+/// lane lies: for what is too rare to be written in lanes.
+template <class F>
+void for_each_corner(const BlockPlace& place, int lane, const Vec3<double>& inverse_cell, F f) {
+  const double fraction[3] = {place.f[0][lane], place.f[1][lane], place.f[2][lane]};
+  for (int n = 0; n < 8; ++n) {
+    const int bit[3] = {n & 1, (n >> 1) & 1, n >> 2};
+    double w[3], slope[3];
+    for (int a = 0; a < 3; ++a) {
+      w[a] = bit[a] == 1 ? fraction[a] : 1 - fraction[a];
+      slope[a] = (bit[a] == 1 ? 1 : -1) * inverse_cell[a];
+    }
+    f(n, place.node[lane] + corner_node(n), w[0] * w[1] * w[2],
+      Vec3<double>{slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]});
+  }
+}
+
 /// The trilinear fields of one cell, `n` neighbouring components of its node records at once, one per lane,
 /// as polynomials of the fractions x, y, z: c0 + c1 x + (c2 + c3 x) y + (c4 + c5 x + (c6 + c7 x) y) z.
 template <int n>

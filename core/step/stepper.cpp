@@ -94,7 +94,7 @@ void Stepper::agree() {
   // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to
   // stop.
   const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty();
-  double news[4] = {std::min(critical_step(*model_.grid, found.fastest), conduction_.critical_step()),
+  double news[4] = {std::min(critical_step(*model_.grid, found.fastest), conduction_step(model_)),
                     migration_.wants_new_bricks() ? -1.0 : 0.0, trouble ? -1.0 : 0.0,
                     stop_requested_ ? -1.0 : 0.0};
   exchange_.minimum(news);

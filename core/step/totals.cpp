@@ -120,7 +120,7 @@ void over_blocks(const Model& model, const Brick& brick, F f) {
   for (const Cohort& cohort : brick.cohorts) {
     const BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      const int used = static_cast<int>(std::min<std::size_t>(block_lanes, cohort.count - block_lanes * b));
+      const int used = cohort.used_lanes(b);
       f(static_cast<std::size_t>(cohort.body), pool.layout(), pool.block(cohort.blocks[b]), used);
     }
   }

@@ -2,6 +2,8 @@
 // Components refer to the global Cartesian frame. Symmetric tensors hold tensor (not engineering) shear.
 #pragma once
 
+#include <array>
+
 #include "core/simd/lanes.hpp"
 
 namespace mpm::core {
@@ -18,6 +20,8 @@ struct Vec3 {
   bool operator==(const Vec3&) const = default;
 };
 
+inline Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
 /// Component ij is row i, column j; a velocity gradient has xy = d v_x / d y.
 template <class T>
 struct Mat3 {
@@ -28,10 +32,6 @@ struct Mat3 {
             a.yx * b.xy + a.yy * b.yy + a.yz * b.zy, a.yx * b.xz + a.yy * b.yz + a.yz * b.zz,
             a.zx * b.xx + a.zy * b.yx + a.zz * b.zx, a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
             a.zx * b.xz + a.zy * b.yz + a.zz * b.zz};
-  }
-  friend Vec3<T> operator*(const Mat3& a, const Vec3<T>& v) {
-    return {a.xx * v.x + a.xy * v.y + a.xz * v.z, a.yx * v.x + a.yy * v.y + a.yz * v.z,
-            a.zx * v.x + a.zy * v.y + a.zz * v.z};
   }
 };
 

@@ -115,6 +115,15 @@ void check_inside(const Node& node, const core::BodyInput& body, const core::Sce
   }
 }
 
+/// The last of `points`, which `node` has given, must come after the one before.
+template <class Point>
+void check_last_time(const std::vector<Point>& points, const Node& node, const BuildContext& context) {
+  const std::size_t n = points.size();
+  if (n > 1 && points[n - 1].time <= points[n - 2].time)
+    node.complain(context.diagnostics, "time",
+                  fmt::format("the times must increase; the one before is {}", points[n - 2].time));
+}
+
 core::PrescribedAcceleration build_acceleration(const Node& node, const BuildContext& context) {
   core::PrescribedAcceleration load;
   load.linear_amplitude = node.reals("ax", "ay", "az");
@@ -126,10 +135,7 @@ core::PrescribedAcceleration build_acceleration(const Node& node, const BuildCon
   for (const Node& point : node.children("Coefficient")) {
     load.points.push_back(
         {point.real("time"), point.reals("cx", "cy", "cz"), point.reals("crx", "cry", "crz")});
-    const std::size_t n = load.points.size();
-    if (n > 1 && load.points[n - 1].time <= load.points[n - 2].time)
-      point.complain(context.diagnostics, "time",
-                     fmt::format("the times must increase; the one before is {}", load.points[n - 2].time));
+    check_last_time(load.points, point, context);
   }
   return load;
 }
@@ -155,10 +161,7 @@ core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& conte
   load.ramp = node.given_real("ramp");
   for (const Node& point : node.children("Coefficient")) {
     load.points.push_back({point.real("time"), point.real("c")});
-    const std::size_t n = load.points.size();
-    if (n > 1 && load.points[n - 1].time <= load.points[n - 2].time)
-      point.complain(context.diagnostics, "time",
-                     fmt::format("the times must increase; the one before is {}", load.points[n - 2].time));
+    check_last_time(load.points, point, context);
   }
   return load;
 }

@@ -118,7 +118,7 @@ void append_rows(const core::BlockPool& pool, const core::Cohort& cohort, std::v
   rows.resize(at + columns * cohort.count);
   for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
     const double* block = pool.block(cohort.blocks[b]);
-    const std::size_t used = std::min<std::size_t>(core::block_lanes, cohort.count - core::block_lanes * b);
+    const std::size_t used = static_cast<std::size_t>(cohort.used_lanes(b));
     for (std::size_t i = 0; i < used; ++i) {
       for (std::size_t c = 0; c < columns; ++c) rows[at++] = block[core::block_lanes * c + i];
     }

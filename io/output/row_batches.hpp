@@ -41,7 +41,7 @@ void for_each_block(const core::Model& model, const RowBatch& batch, F f) {
     const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       const std::size_t done = core::block_lanes * b;
-      const int used = static_cast<int>(std::min<std::size_t>(core::block_lanes, cohort.count - done));
+      const int used = cohort.used_lanes(b);
       f(static_cast<std::size_t>(cohort.body), pool.layout(), pool.block(cohort.blocks[b]), used,
         part.first + done);
     }

@@ -14,7 +14,7 @@
 #include <string_view>
 
 #include "physics/eos/point.hpp"
-#include "physics/parameter.hpp"
+#include "physics/parameter_rows.hpp"
 
 namespace mpm::physics {
 
@@ -60,13 +60,7 @@ struct HolmquistJohnsonCookBulk {
         positive(&P::p_lock, "PLock", "stress", "pressure where all pores are closed, > PCrush"),
         positive(&P::mu_lock, "MuLock", "1", "compression of the dense material at no pressure"),
         {&P::poisson,
-         {.name = "Poisson",
-          .required = true,
-          .min = -1,
-          .max = 0.5,
-          .min_open = true,
-          .max_open = true,
-          .meaning = "taken for the language's sake: the shear modulus is the strength model's"}},
+         poisson_row("taken for the language's sake: the shear modulus is the strength model's")},
     }};
   }
   std::string fault() const {

@@ -17,13 +17,6 @@ core::Mat3<T> adjugate(const core::Mat3<T>& a) {
           a.yx * a.zy - a.yy * a.zx, a.xy * a.zx - a.xx * a.zy, a.xx * a.yy - a.xy * a.yx};
 }
 
-/// I + k L
-template <class T>
-core::Mat3<T> unit_plus(double k, const core::Mat3<T>& l) {
-  return {1.0 + k * l.xx, k * l.xy, k * l.xz, k * l.yx,      1.0 + k * l.yy,
-          k * l.yz,       k * l.zx, k * l.zy, 1.0 + k * l.zz};
-}
-
 template <class T>
 [[gnu::noinline, gnu::flatten]] void update_deformation_gradient(core::Batch& batch) {
   using core::Column;

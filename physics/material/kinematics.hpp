@@ -37,6 +37,13 @@ core::Sym3<T> accumulate_strain(double* columns, const core::Sym3<T>& increment)
   return {old[0], old[1], old[2], old[3], old[4], old[5]};
 }
 
+/// I + k L
+template <class T>
+core::Mat3<T> unit_plus(double k, const core::Mat3<T>& l) {
+  return {1.0 + k * l.xx, k * l.xy, k * l.xz, k * l.yx,      1.0 + k * l.yy,
+          k * l.yz,       k * l.zx, k * l.zy, 1.0 + k * l.zz};
+}
+
 /// V^{n+1}/V^n. `strain` is the increment, `accumulated` its sum before it (update type 4 only).
 template <class T>
 T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::Sym3<T>& strain,
@@ -45,9 +52,7 @@ T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::S
   switch (update_type) {
     case 1: return 1.0 + cell_strain;
     case 2: return exp(trace(strain));
-    case 3:
-      return determinant(core::Mat3<T>{1.0 + dt * l.xx, dt * l.xy, dt * l.xz, dt * l.yx, 1.0 + dt * l.yy,
-                                       dt * l.yz, dt * l.zx, dt * l.zy, 1.0 + dt * l.zz});
+    case 3: return determinant(unit_plus(dt, l));
     case 4: {
       const core::Sym3<T> old = accumulated, now = accumulated + strain;
       return (1.0 + now.xx) * (1.0 + now.yy) * (1.0 + now.zz) /

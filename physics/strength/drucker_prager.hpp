@@ -93,12 +93,7 @@ struct DruckerPrager : IsotropicElasticity {
               .integer = true,
               .meaning = "cone for phi, c, psi: 1 through the compressive edges of the Mohr-Coulomb pyramid, "
                          "2 through its tensile edges, 3 inscribed (plane strain)"}},
-            {&P::plastic_work_coefficient,
-             {.name = "PlasticWorkCoefficient",
-              .default_value = 0.9,
-              .min = 0,
-              .max = 1,
-              .meaning = "part of the plastic work that becomes heat"}},
+            {&P::plastic_work_coefficient, plastic_work_row},
         }});
   }
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/simd/math.hpp"
-#include "physics/parameter.hpp"
+#include "physics/parameter_rows.hpp"
 #include "physics/strength/point.hpp"
 
 namespace mpm::physics {
@@ -49,23 +49,7 @@ struct IsotropicElasticity {
 
 template <class Law>
 constexpr auto elastic_parameters() {
-  return std::array<Parameter<Law>, 2>{{
-      {&Law::young,
-       {.name = "Young",
-        .required = true,
-        .min = 0,
-        .min_open = true,
-        .dimension = "stress",
-        .meaning = "Young's modulus"}},
-      {&Law::poisson,
-       {.name = "Poisson",
-        .required = true,
-        .min = -1,
-        .max = 0.5,
-        .min_open = true,
-        .max_open = true,
-        .meaning = "Poisson's ratio"}},
-  }};
+  return std::array<Parameter<Law>, 2>{{{&Law::young, young_row}, {&Law::poisson, poisson_row()}}};
 }
 
 }  // namespace mpm::physics

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "core/simd/math.hpp"
-#include "physics/parameter.hpp"
+#include "physics/parameter_rows.hpp"
 #include "physics/strength/point.hpp"
 
 namespace mpm::physics {
@@ -38,14 +38,7 @@ struct MooneyRivlin {
         {&P::a, {.name = "Mr_A2", .required = true, .dimension = "stress", .meaning = "A of the energy"}},
         {&P::b,
          {.name = "Mr_B2", .required = true, .dimension = "stress", .meaning = "B of the energy, > -Mr_A2"}},
-        {&P::poisson,
-         {.name = "Poisson",
-          .required = true,
-          .min = -1,
-          .max = 0.5,
-          .min_open = true,
-          .max_open = true,
-          .meaning = "Poisson's ratio at rest; 0.49 to 0.499 for rubber"}},
+        {&P::poisson, poisson_row("Poisson's ratio at rest; 0.49 to 0.499 for rubber")},
     }};
   }
   std::string fault() const { return a + b > 0 ? "" : "Mr_A2 + Mr_B2, half the shear modulus, must be > 0"; }

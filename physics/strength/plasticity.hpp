@@ -38,21 +38,9 @@ struct MisesPlasticity : IsotropicElasticity {
 
 template <class Law>
 constexpr auto plastic_parameters() {
-  return join(elastic_parameters<Law>(), std::array<Parameter<Law>, 2>{{
-                                             {&Law::yield0,
-                                              {.name = "Yield0",
-                                               .required = true,
-                                               .min = 0,
-                                               .min_open = true,
-                                               .dimension = "stress",
-                                               .meaning = "initial yield stress"}},
-                                             {&Law::plastic_work_coefficient,
-                                              {.name = "PlasticWorkCoefficient",
-                                               .default_value = 0.9,
-                                               .min = 0,
-                                               .max = 1,
-                                               .meaning = "part of the plastic work that becomes heat"}},
-                                         }});
+  return join(elastic_parameters<Law>(),
+              std::array<Parameter<Law>, 2>{
+                  {{&Law::yield0, yield0_row}, {&Law::plastic_work_coefficient, plastic_work_row}}});
 }
 
 }  // namespace mpm::physics

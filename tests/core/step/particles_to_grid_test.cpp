@@ -21,7 +21,7 @@ std::vector<double> mapped(const TransferCase& c) {
   CellSums<what> sums;
   sums.clear();
   for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
-    const int used = static_cast<int>(std::min<std::size_t>(block_lanes, c.cohort.count - block_lanes * b));
+    const int used = c.cohort.used_lanes(b);
     const double* block = c.pool.block(c.cohort.blocks[b]);
     add_block<what>(c.frame(), c.block_place(block), c.pool.layout(), block, used, sums, nodes.data());
   }

@@ -1,0 +1,108 @@
+// What a pass asks memory for before it comes to it. The hardware follows one brick's blocks, but does not
+// guess where the next brick's lie, nor the neighbours' nodes; asked for a few lines at a time while another
+// brick is worked on, all of them are there in time.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "core/model.hpp"
+#include "core/step/node_update.hpp"
+
+namespace mpm::core {
+
+/// In all of a brick's cohorts.
+inline std::size_t blocks_of(const Brick& brick) {
+  std::size_t n = 0;
+  for (const Cohort& c : brick.cohorts) n += c.blocks.size();
+  return n;
+}
+
+/// Asks for the blocks that a pass will come to: those of a cohort, then those of the next one, in the brick
+/// or after it. Into the second-level cache: the first has too few lines under way at a time to hide main
+/// memory.
+class BlocksAhead {
+ public:
+  BlocksAhead(const Model& model, Slot slot, std::size_t cohort, std::size_t distance = 4)
+      : model_(model), distance_(distance) {
+    const BrickGrid& grid = *model.grid;
+    const Brick& brick = grid.brick(slot);
+    now_ = &brick.cohorts[cohort];
+    if (cohort + 1 < brick.cohorts.size()) {
+      then_ = &brick.cohorts[cohort + 1];
+    } else if (slot + 1 < grid.owned() && !grid.brick(slot + 1).cohorts.empty()) {
+      then_ = &grid.brick(slot + 1).cohorts.front();
+    }
+  }
+  /// While block `b` is worked on. Inlined without fail: g++ takes a function that only prefetches for one
+  /// that does nothing, and drops the call.
+  [[gnu::always_inline]] void prefetch(std::size_t b, int first_column, int last_column) const {
+    const Cohort* cohort = now_;
+    b += distance_;
+    if (b >= cohort->blocks.size()) {
+      b -= cohort->blocks.size();
+      cohort = then_;
+      if (cohort == nullptr || b >= cohort->blocks.size()) return;
+    }
+    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort->body)].pool;
+    const double* block = pool.block(cohort->blocks[b]);
+    for (int c = first_column; c < last_column; ++c) __builtin_prefetch(block + block_lanes * c, 0, 2);
+  }
+
+ private:
+  const Model& model_;
+  const Cohort* now_;
+  const Cohort* then_ = nullptr;
+  std::size_t distance_;
+};
+
+/// Asks for the room into which the next brick's contributions will go, a few lines at a time.
+class RoomAhead {
+ public:
+  RoomAhead(double* room, int doubles, std::size_t calls)
+      : next_(room), last_(room == nullptr ? nullptr : room + doubles) {
+    step_ = (doubles / block_lanes + static_cast<int>(calls)) / std::max<int>(static_cast<int>(calls), 1);
+  }
+  [[gnu::always_inline]] void next() {
+    for (int i = 0; i < step_ && next_ < last_; ++i, next_ += block_lanes) __builtin_prefetch(next_, 1, 2);
+  }
+
+ private:
+  double* next_;
+  double* last_;
+  int step_;
+};
+
+/// Asks for what sum_contributions will read for a brick, a few records at a time, while another brick is
+/// worked on: neighbours lie far apart in memory, and the hardware does not guess them.
+template <NodeArray of>
+class ContributionsAhead {
+ public:
+  /// `slot` may be past the last brick. `calls`: how often next() will be called.
+  ContributionsAhead(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::size_t calls)
+      : shares_(shared.all()) {
+    if (slot >= grid.owned()) {
+      next_ = shares_.size();
+      return;
+    }
+    step_ = shares_.size() / std::max<std::size_t>(calls, 1) + 1;
+    const Brick& brick = grid.brick(slot);
+    for (std::size_t n = 0; n < neighbourhood; ++n) {
+      from_[n] = grid.contributions(of, brick.neighbour[n] == no_slot ? slot : brick.neighbour[n]);
+    }
+  }
+  [[gnu::always_inline]] void next() {
+    const std::size_t last = std::min(next_ + step_, shares_.size());
+    for (; next_ < last; ++next_) {
+      const SharedNodes::Share& s = shares_[next_];
+      __builtin_prefetch(from_[static_cast<std::size_t>(s.neighbour)] + record_doubles(of) * s.node, 0, 2);
+    }
+  }
+
+ private:
+  std::span<const SharedNodes::Share> shares_;
+  std::array<const double*, neighbourhood> from_{};
+  std::size_t next_ = 0, step_ = 0;
+};
+
+}  // namespace mpm::core
