@@ -66,12 +66,12 @@ constexpr double gradients = 64;  // of 8 nodes: 2 + 3 + 3
 constexpr double momentum_to_nodes = 3 + 8 * 6;
 constexpr double mass_to_nodes = 8 * 2;
 constexpr double force_to_nodes = 13 + 8 * 18;
-constexpr double vector_from_nodes = 3 * 17;
-constexpr double gradient_from_nodes = 3 * 25 + 9;
+constexpr double vector_from_nodes = 15 + 3 * 15;  // 8 weights, 8 products for each component
+constexpr double gradient_from_nodes = 3 * 31 + 9;
 constexpr double kinematics = 15, deviatoric = 203,
                  pressure_and_energy = 95;  // physics/material, stage by stage
 constexpr double law = kinematics + deviatoric + pressure_and_energy;
-constexpr double critical_speed = 7, bounds = 9;
+constexpr double critical_speed = 9, bounds = 9;
 constexpr double node_operations = 8;  // per record added up; four for the second array
 
 struct Pass {

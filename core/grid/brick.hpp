@@ -92,8 +92,8 @@ struct GridGeometry {
 /// Nodes of one brick's array. Node (i, j, k) counts from the brick's lowest node, -halo <= i < side - halo.
 struct NodeBlockShape {
   int halo = 0;
-  int side() const { return brick_cells + 1 + 2 * halo; }
-  int nodes() const { return side() * side() * side(); }
+  constexpr int side() const { return brick_cells + 1 + 2 * halo; }
+  constexpr int nodes() const { return side() * side() * side(); }
   int index(int i, int j, int k) const { return (i + halo) + side() * ((j + halo) + side() * (k + halo)); }
 };
 

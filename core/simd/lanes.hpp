@@ -188,6 +188,10 @@ inline unsigned bits(LaneMask<L> m) {
 #if defined(__AVX__)
   if constexpr (L == 4)
     return static_cast<unsigned>(__builtin_ia32_movmskpd256(reinterpret_cast<detail::Vector<4>::real>(m.v)));
+  if constexpr (L == 8) {
+    return bits(LaneMask<4>{__builtin_shufflevector(m.v, m.v, 0, 1, 2, 3)}) |
+           bits(LaneMask<4>{__builtin_shufflevector(m.v, m.v, 4, 5, 6, 7)}) << 4;
+  }
 #endif
 #if defined(__SSE2__)
   if constexpr (L == 2)
@@ -207,10 +211,17 @@ inline bool all(LaneMask<L> m) {
 }
 template <int L>
 inline Lanes<L> min(Lanes<L> a, Lanes<L> b) {
+#if defined(__AVX512F__) && !defined(__clang__)
+  // g++ turns a comparison with a constant around, and then finds no instruction for it.
+  if constexpr (L == 8) return __builtin_ia32_minpd512_mask(a.v, b.v, a.v, -1, 4);
+#endif
   return a.v < b.v ? a.v : b.v;
 }
 template <int L>
 inline Lanes<L> max(Lanes<L> a, Lanes<L> b) {
+#if defined(__AVX512F__) && !defined(__clang__)
+  if constexpr (L == 8) return __builtin_ia32_maxpd512_mask(a.v, b.v, a.v, -1, 4);
+#endif
   return a.v > b.v ? a.v : b.v;
 }
 template <int L>

@@ -47,21 +47,4 @@ namespace mpm::core {
                     : Lanes<4>(__builtin_shufflevector(r.v, r.v, 4, 5, 6, 7));
 }
 
-/// Eight rows of four to four columns of eight: the inverse of transpose_half and its pairs.
-[[gnu::always_inline]] inline void transpose_rows(const Lanes<4> rows[8], Lanes<8> columns[4]) {
-  using V = Lanes<8>::vector;
-  const auto join = [&](int a, int b) {
-    return __builtin_shufflevector(rows[a].v, rows[b].v, 0, 1, 2, 3, 4, 5, 6, 7);
-  };
-  const V r04 = join(0, 4), r15 = join(1, 5), r26 = join(2, 6), r37 = join(3, 7);
-  const V x01 = __builtin_shufflevector(r04, r15, 0, 8, 2, 10, 4, 12, 6, 14);  // x0 x1 z0 z1 x4 x5 z4 z5
-  const V y01 = __builtin_shufflevector(r04, r15, 1, 9, 3, 11, 5, 13, 7, 15);
-  const V x23 = __builtin_shufflevector(r26, r37, 0, 8, 2, 10, 4, 12, 6, 14);
-  const V y23 = __builtin_shufflevector(r26, r37, 1, 9, 3, 11, 5, 13, 7, 15);
-  columns[0].v = __builtin_shufflevector(x01, x23, 0, 1, 8, 9, 4, 5, 12, 13);
-  columns[1].v = __builtin_shufflevector(y01, y23, 0, 1, 8, 9, 4, 5, 12, 13);
-  columns[2].v = __builtin_shufflevector(x01, x23, 2, 3, 10, 11, 6, 7, 14, 15);
-  columns[3].v = __builtin_shufflevector(y01, y23, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
 }  // namespace mpm::core

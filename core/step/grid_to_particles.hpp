@@ -6,24 +6,29 @@
 #pragma once
 
 #include "core/particles/columns.hpp"
-#include "core/simd/transpose.hpp"
 #include "core/step/shape.hpp"
 
 namespace mpm::core {
 
 namespace detail {
-/// The values of three neighbouring components at the block's particles, from `nodes` on.
+/// Three neighbouring node components, from `nodes` on, at the block's particles.
 struct AtParticles {
-  Lanes<8> value[4];
-  AtParticles(const BlockPlace& place, const double* nodes) {
-    Lanes<4> row[block_lanes];
-    for (int i = 0; i < block_lanes;) {
-      const CellFields<4> cell(place.node[i], nodes);
-      do {
-        row[i] = cell.value(place.f[0][i], place.f[1][i], place.f[2][i]);
-      } while (++i < block_lanes && place.node[i] == cell.node);
-    }
-    transpose_rows(row, value);
+  using R = Lanes<8>;
+  R value[3];
+  AtParticles(const BlockPlace& place, const double* nodes) : value{0.0, 0.0, 0.0} {
+    const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
+    const R one(1.0), xy = x * y, low = one - z;
+    const R face[4] = {one - x - y + xy, x - xy, y - xy, xy};
+    R weight[8];
+    for (int i = 0; i < 4; ++i) weight[i] = face[i] * low, weight[4 + i] = face[i] * z;
+    for_each_cell(place, [&](int node, auto here) {
+      const double* lowest = nodes + node_doubles * node;
+      for (int i = 0; i < 3; ++i) {
+        R sum = weight[0] * R(lowest[i]);
+        for (int n = 1; n < 8; ++n) sum += weight[n] * R(lowest[node_doubles * corner_node(n) + i]);
+        value[i] = select(here, sum, value[i]);
+      }
+    });
   }
 };
 }  // namespace detail
@@ -49,56 +54,53 @@ inline void move_with_grid(const BlockPlace& place, const ColumnLayout& layout, 
 }
 
 /// Gradient of node components 4..6 at the block's particles into rows 0..8 (order of Mat3), columns `at` ..
-/// `at` + 7; where it moves, also x += dt sum S v from components 0..2.
-template <bool moves, class Rows>
-inline void strain(const BrickFrame& frame, const BlockPlace& place, const ColumnLayout& layout,
-                   const double* nodes, double dt, double* block, Rows& rows, int at) {
+/// `at` + 7.
+template <class Rows>
+inline void velocity_gradient(const BrickFrame& frame, const BlockPlace& place, const double* nodes,
+                              Rows& rows, int at) {
   using R = Lanes<8>;
-  R a[block_lanes], b[block_lanes];  // value 0..3 and d/dx of 4..7; d/dy and d/dz of 4..7
-  for (int i = 0; i < block_lanes;) {
-    const CellFields<8> cell(place.node[i], nodes);
-    const auto& c = cell.c;
-    do {
-      const R x(place.f[0][i]), y(place.f[1][i]), z(place.f[2][i]);
-      const R front = c[2] + x * c[3], back = c[6] + x * c[7];
-      const R dx = c[1] + y * c[3] + z * (c[5] + y * c[7]);
-      const R dy = front + z * back;
-      const R dz = c[4] + x * c[5] + y * back;
-      const R value = c[0] + x * c[1] + y * front + z * dz;
-      a[i] = __builtin_shufflevector(value.v, dx.v, 0, 1, 2, 3, 12, 13, 14, 15);
-      b[i] = __builtin_shufflevector(dy.v, dz.v, 4, 5, 6, 7, 12, 13, 14, 15);
-    } while (++i < block_lanes && place.node[i] == cell.node);
-  }
-  transpose(a);
-  transpose(b);
-  for (int i = 0; i < 3; ++i) {
-    store(rows[3 * i] + at, a[4 + i] * R(frame.inverse_cell.x));
-    store(rows[3 * i + 1] + at, b[i] * R(frame.inverse_cell.y));
-    store(rows[3 * i + 2] + at, b[4 + i] * R(frame.inverse_cell.z));
-    if constexpr (moves) {
-      double* to = block + layout.offset(next(Column::position_x, i));
-      store(to, load<R>(to) + R(dt) * a[i]);
+  const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
+  R gradient[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  for_each_cell(place, [&](int node, auto here) {
+    const double* lowest = nodes + node_doubles * node + 4;
+    for (int i = 0; i < 3; ++i) {
+      const auto v = [&](int n) { return R(lowest[node_doubles * corner_node(n) + i]); };
+      // Differences along x on the four edges, and the values at x; then the same with these along y and z.
+      R d[4], u[4];
+      for (int e = 0; e < 4; ++e) {
+        d[e] = v(2 * e + 1) - v(2 * e);
+        u[e] = v(2 * e) + x * d[e];
+      }
+      const R lower = u[1] - u[0], upper = u[3] - u[2];
+      const R d_lower = d[0] + y * (d[1] - d[0]), d_upper = d[2] + y * (d[3] - d[2]);
+      R* const g = gradient + 3 * i;
+      g[0] = select(here, d_lower + z * (d_upper - d_lower), g[0]);
+      g[1] = select(here, lower + z * (upper - lower), g[1]);
+      g[2] = select(here, (u[2] + y * upper) - (u[0] + y * lower), g[2]);
     }
+  });
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) store(rows[3 * i + j] + at, gradient[3 * i + j] * R(frame.inverse_cell[j]));
   }
 }
 
 /// Volumetric strain of the cells that hold the block's particles: dt times the mean of div v over each cell,
-/// which for trilinear functions is its value at the centre; of node components 4..6.
+/// from the mean differences along its edges; of node components 4..6.
 template <class Row>
 inline void cell_strain(const BrickFrame& frame, const BlockPlace& place, const double* nodes, double dt,
                         Row& row, int at) {
-  for (int i = 0; i < block_lanes;) {
-    const CellFields<4> cell(place.node[i], nodes + 4);
-    const auto& c = cell.c;
-    const Lanes<4> half(0.5), quarter(0.25);
-    const Lanes<4> dx = c[1] + half * (c[3] + c[5]) + quarter * c[7],
-                   dy = c[2] + half * (c[3] + c[6]) + quarter * c[7],
-                   dz = c[4] + half * (c[5] + c[6]) + quarter * c[7];
-    const double divergence =
-        dx[0] * frame.inverse_cell.x + dy[1] * frame.inverse_cell.y + dz[2] * frame.inverse_cell.z;
-    do row[at + i] = divergence * dt;
-    while (++i < block_lanes && place.node[i] == cell.node);
-  }
+  for_each_cell(place, [&](int node, auto here) {
+    double divergence = 0;
+    for (int a = 0; a < 3; ++a) {
+      double difference = 0;
+      for (int n = 0; n < 8; ++n) {
+        const double v = nodes[node_doubles * (node + corner_node(n)) + 4 + a];
+        difference += (n >> a & 1) != 0 ? v : -v;
+      }
+      divergence += 0.25 * frame.inverse_cell[a] * difference;
+    }
+    store(row + at, select(here, Lanes<8>(divergence * dt), load<Lanes<8>>(row + at)));
+  });
 }
 
 /// Bits of the lanes that are no longer in the brick (or nowhere: not-a-number counts as outside).

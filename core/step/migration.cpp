@@ -41,20 +41,21 @@ void reorder(BlockPool& pool, Cohort& cohort, const std::vector<std::uint32_t>& 
   const ColumnLayout& layout = pool.layout();
   const auto block_doubles = static_cast<std::size_t>(layout.block_doubles());
   sorted.resize(cohort.blocks.size() * block_doubles);
-  for (std::size_t p = 0; p < order.size(); ++p) {
-    const double* from = pool.block(cohort.blocks[order[p] / block_lanes]) + order[p] % block_lanes;
-    double* to = sorted.data() + p / block_lanes * block_doubles + p % block_lanes;
-    for (int c = 0; c < layout.columns(); ++c) to[block_lanes * c] = from[block_lanes * c];
+  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+    const double* from[block_lanes];  // lanes out of use hold what the first lane holds
+    const int used = cohort.used_lanes(b);
+    for (int l = 0; l < block_lanes; ++l) {
+      const std::uint32_t p = order[block_lanes * b + static_cast<std::size_t>(l < used ? l : 0)];
+      from[l] = pool.block(cohort.blocks[p / block_lanes]) + p % block_lanes;
+    }
+    double* to = sorted.data() + b * block_doubles;
+    for (int c = 0; c < layout.columns(); ++c) {
+      for (int l = 0; l < block_lanes; ++l) to[block_lanes * c + l] = from[l][block_lanes * c];
+    }
   }
   std::sort(cohort.blocks.begin(), cohort.blocks.end());  // what is read next lies next in memory
   for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-    double* block = pool.block(cohort.blocks[b]);
-    const double* source = sorted.data() + b * block_doubles;
-    const int used = cohort.used_lanes(b);
-    for (int c = 0; c < layout.columns(); ++c) {
-      for (int l = 0; l < block_lanes; ++l)
-        block[block_lanes * c + l] = source[block_lanes * c + (l < used ? l : 0)];
-    }
+    std::copy_n(sorted.data() + b * block_doubles, block_doubles, pool.block(cohort.blocks[b]));
   }
 }
 
@@ -224,26 +225,20 @@ void insert_travellers(Model& model, const Travellers& travellers) {
 }
 
 void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort) {
-  constexpr int cells = brick_cells * brick_cells * brick_cells;
-  const ColumnLayout& layout = pool.layout();
-  const BrickFrame frame(grid.geometry(), NodeBlockShape{}, brick);
+  constexpr NodeBlockShape shape{};  // of the least halo: the lowest nodes of cells are in the order of cells
+  const BrickFrame frame(grid.geometry(), shape, brick);
   thread_local std::vector<std::uint8_t> cell;
-  cell.resize(cohort.count);
-  std::array<std::uint32_t, cells + 1> start{};
+  cell.resize(block_lanes * cohort.blocks.size());
+  std::array<std::uint32_t, shape.nodes() + 1> start{};
   for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-    const double* block = pool.block(cohort.blocks[b]);
-    for (int l = 0; l < block_lanes && block_lanes * b + static_cast<std::size_t>(l) < cohort.count; ++l) {
-      const auto at = [&](Column c) { return block + layout.offset(c) + l; };
-      const int node =
-          locate<double>(frame, at(Column::position_x), at(Column::position_y), at(Column::position_z))
-              .node[0];
-      const int i = node % frame.side, j = node / frame.side % frame.side,
-                k = node / (frame.side * frame.side);
-      const auto c = static_cast<std::uint8_t>(i + brick_cells * (j + brick_cells * k));
-      cell[block_lanes * b + static_cast<std::size_t>(l)] = c;
-      ++start[c + 1u];
+    const BlockPlace place(frame, pool.layout(), pool.block(cohort.blocks[b]));
+    const int used = cohort.used_lanes(b);
+    for (int l = 0; l < block_lanes; ++l) {
+      cell[block_lanes * b + static_cast<std::size_t>(l)] = static_cast<std::uint8_t>(place.node[l]);
+      if (l < used) ++start[static_cast<std::size_t>(place.node[l]) + 1];
     }
   }
+  cell.resize(cohort.count);
   if (std::is_sorted(cell.begin(), cell.end())) return;
   std::partial_sum(start.begin(), start.end(), start.begin());
   thread_local std::vector<std::uint32_t> order;

@@ -230,30 +230,38 @@ void Passes::kick(Slot s, const Body& body, const BlockPlace& place, double* blo
 }
 
 namespace {
-/// Largest of v(block, lane) over the lanes in use.
-template <class F>
-double largest(const Batch& batch, F v) {
-  Real most(0.0);
-  for (int b = 0; b < batch.blocks; ++b) {
-    const int used = std::min(block_lanes, batch.particles - block_lanes * b);
-    for (int l = 0; l < block_lanes; l += real_width) {
-      const Real value = v(b, l);
-      if (l + real_width <= used) {
-        most = max(value, most);
-      } else {
-        double each[real_width];
-        store(each, value);
-        for (int i = 0; l + i < used; ++i) most = max(Real(each[i]), most);
-      }
-    }
-  }
-  return reduce_max(most);
+/// Largest of `most` and the first `used` lanes.
+double largest(Real value, int used, double most) {
+  double each[real_width];
+  store(each, value);
+  for (int i = 0; i < std::min(used, real_width); ++i) most = std::max(most, each[i]);
+  return most;
 }
 
-Real speed(const ColumnLayout& layout, const double* block, int lane) {
-  const auto v = [&](Column c) { return load<Real>(block + layout.offset(c) + lane); };
-  const Real x = v(Column::velocity_x), y = v(Column::velocity_y), z = v(Column::velocity_z);
-  return sqrt(x * x + y * y + z * z);
+/// The squares of a block's speeds, from a lane on.
+Real squared_speed(const ColumnLayout& layout, const double* block, int lane) {
+  const double* v = block + layout.offset(Column::velocity_x) + lane;
+  const Real x = load<Real>(v), y = load<Real>(v + block_lanes), z = load<Real>(v + 2 * block_lanes);
+  return x * x + y * y + z * z;
+}
+
+double fastest_wave(const Batch& batch) {
+  double most = 0;
+  for (int i = 0; i < batch.particles; i += real_width)
+    most = largest(load<Real>(batch.critical_speed + i), batch.particles - i, most);
+  return most;
+}
+
+/// The largest of `most` and of the particles' wave speeds plus their own. A root is taken only where the sum
+/// may exceed what has been found: the square of the difference tells, with room for its rounding.
+double fastest_particle(const Batch& batch, double most) {
+  for (int i = 0; i < batch.particles; i += real_width) {
+    const Real wave = load<Real>(batch.critical_speed + i), room = Real(most) - wave;
+    const Real v2 = squared_speed(*batch.layout, batch.block[i / block_lanes], i % block_lanes);
+    if (any((room < Real(0.0)) | (v2 > Real(1 - 1e-12) * room * room)))
+      most = largest(wave + sqrt(v2), batch.particles - i, most);
+  }
+  return most;
 }
 }  // namespace
 
@@ -296,26 +304,17 @@ template <bool moves>
         if (by_cells) {
           cell_strain(frame, place, at.nodes.data(), dt, batch.cell_volumetric_strain, block_lanes * b);
         }
-        if constexpr (!moves) {
-          strain<false>(frame, place, layout, at.nodes.data(), dt, block, batch.gradient, block_lanes * b);
-        } else {
-          std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
-          strain<true>(frame, place, layout, at.nodes.data(), body.keeps_velocity() ? 0.0 : dt, block,
-                       batch.gradient, block_lanes * b);
-          if (body.keeps_velocity()) move_at_own_velocity(layout, dt, block);
-          book_motion(layout, block, cohort.used_lanes(at_block), at);
-        }
+        velocity_gradient(frame, place, at.nodes.data(), batch.gradient, block_lanes * b);
+        if constexpr (moves) { move(body, place, block, cohort.used_lanes(at_block), at); }
       }
       batch.events = {};
       body.model->update(batch, model_.options);
       at.found.events += batch.events;
       keep_sound_speed(batch);
-      fastest = std::max(fastest, largest(batch, [&](int b, int l) {
-                           const Real critical = load<Real>(batch.critical_speed + block_lanes * b + l);
-                           return velocities == Velocities::of_next_step
-                                      ? critical + speed(layout, batch.block[b], l)
-                                      : critical;
-                         }));
+      if (velocities == Velocities::of_next_step)
+        at.found.fastest = fastest_particle(batch, at.found.fastest);
+      else
+        fastest = std::max(fastest, fastest_wave(batch));
       if constexpr (moves) {
         for (int b = 0; b < batch.blocks; ++b) {
           note_leavers(s, c, first + static_cast<std::size_t>(b), frame, layout, batch.block[b],
@@ -325,16 +324,24 @@ template <bool moves>
     }
   }
   at.book_work();
-  if (velocities == Velocities::of_next_step)
-    at.found.fastest = std::max(at.found.fastest, fastest);
+  if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = fastest;
+}
+
+/// x += dt v, of the grid or, where a body keeps its velocity, its own; and the work of gravity and damping.
+void Passes::move(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
+  const ColumnLayout& layout = body.pool->layout();
+  const bool books = forces_.damping != 0 || forces_.gravity != Vec3<double>{};
+  if (books) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
+  if (body.keeps_velocity())
+    move_at_own_velocity(layout, dt, block);
   else
-    critical_[static_cast<std::size_t>(s)] = fastest;
+    move_with_grid(place, layout, at.nodes.data(), dt, block);
+  if (books) book_motion(layout, block, used, at);
 }
 
 /// The work of gravity and damping in the motion that a block has just made from at.before.
 void Passes::book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const {
   const Vec3<double> g = forces_.gravity;
-  if (g.x == 0 && g.y == 0 && g.z == 0 && forces_.damping == 0) return;
   const double* m = block + layout.offset(Column::mass);
   const double* x = block + layout.offset(Column::position_x);
   const double* v = block + layout.offset(Column::velocity_x);
@@ -435,8 +442,7 @@ void Passes::update_velocities_and_move() {
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
   ContributionsAhead<NodeArray::first> first_ahead(grid, shared_, s + 1, blocks_of(brick));
   ContributionsAhead<NodeArray::second> second_ahead(grid, shared_, s + 1, blocks_of(brick));
-  double fastest = 0;
-  Batch& batch = at.batch;
+  double fastest_square = 0;
   for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
     const Cohort& cohort = brick.cohorts[c];
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
@@ -450,21 +456,14 @@ void Passes::update_velocities_and_move() {
       const int used = cohort.used_lanes(b);
       const BlockPlace place(frame, layout, block);
       kick(s, body, place, block, used, at);
-      std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.before);
-      if (body.keeps_velocity()) {
-        move_at_own_velocity(layout, dt, block);
-      } else {
-        move_with_grid(place, layout, at.nodes.data(), dt, block);
-      }
-      book_motion(layout, block, used, at);
-      batch.blocks = 1;
-      batch.particles = used;
-      fastest = std::max(fastest, largest(batch, [&](int, int l) { return speed(layout, block, l); }));
+      move(body, place, block, used, at);
+      for (int l = 0; l < used; l += real_width)
+        fastest_square = largest(squared_speed(layout, block, l), used - l, fastest_square);
       note_leavers(s, c, b, frame, layout, block, used);
     }
   }
   at.book_work();
-  return fastest;
+  return std::sqrt(fastest_square);
 }
 
 void Passes::update_all() {

@@ -97,6 +97,7 @@ class Passes {
   enum class Velocities { of_last_step, of_next_step };
   template <bool moves>
   void stress_of_brick(Slot s, Velocities velocities, Workplace& at);
+  void move(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
   void book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const;
   void note_leavers(Slot s, std::size_t cohort, std::size_t b, const BrickFrame& frame,
                     const ColumnLayout& layout, const double* block, int used);

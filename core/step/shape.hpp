@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/grid/brick.hpp"
 #include "core/particles/columns.hpp"
@@ -101,28 +102,20 @@ void for_each_corner(const BlockPlace& place, int lane, const Vec3<double>& inve
   }
 }
 
-/// The trilinear fields of one cell, `n` neighbouring components of its node records at once, one per lane,
-/// as polynomials of the fractions x, y, z: c0 + c1 x + (c2 + c3 x) y + (c4 + c5 x + (c6 + c7 x) y) z.
-template <int n>
-struct CellFields {
-  using Components = Lanes<n>;
-  Components c[8];
-  int node;
-
-  /// `nodes`: the first of the components at the brick's first node; `cell`: the cell's lowest node.
-  CellFields(int cell, const double* nodes) : node(cell) {
-    const double* lowest = nodes + node_doubles * cell;
-    for (int i = 0; i < 8; ++i) c[i] = load<Components>(lowest + node_doubles * corner_node(i));
-    for (int bit = 1; bit < 8; bit *= 2) {
-      for (int i = 0; i < 8; ++i) {
-        if (i & bit) c[i] -= c[i - bit];
-      }
-    }
+/// f(lowest node, lanes) for each cell in which particles of the block lie, with the lanes that do.
+template <class F>
+inline void for_each_cell(const BlockPlace& place, F f) {
+  using Mask = LaneMask<block_lanes>;
+  typedef int Nodes __attribute__((vector_size(block_lanes * sizeof(int))));
+  Nodes nodes;
+  std::memcpy(&nodes, place.node, sizeof nodes);
+  const auto wide = __builtin_convertvector(nodes, Mask::vector);
+  for (unsigned left = (1u << block_lanes) - 1; left != 0;) {
+    const int node = place.node[__builtin_ctz(left)];
+    const Mask here{wide == std::int64_t{node}};
+    left &= ~bits(here);
+    f(node, here);
   }
-  Components value(double x, double y, double z) const {
-    const Components X(x), Y(y), Z(z);
-    return c[0] + X * c[1] + Y * (c[2] + X * c[3]) + Z * (c[4] + X * c[5] + Y * (c[6] + X * c[7]));
-  }
-};
+}
 
 }  // namespace mpm::core

@@ -83,22 +83,6 @@ TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
           }
         });
     CHECK(worst < 20 * tolerance);  // coordinates reach 20
-    worst = 0;
-    TransferCase again(brick, 150, 11);
-    Gradients unused;
-    over(
-        again,
-        [&](double* block) {
-          strain<true>(again.frame(), again.block_place(block), again.pool.layout(), nodes.data(), dt, block,
-                       unused.row, 0);
-        },
-        [&](const std::vector<double>& p, const double* block, int lane) {
-          for (int a = 0; a < 3; ++a) {
-            const double x = p[static_cast<std::size_t>(a)] + dt * interpolated(c, nodes, p, a);
-            worst = std::max(worst, std::abs(block[block_lanes * a + lane] - x));
-          }
-        });
-    CHECK(worst < 20 * tolerance);
   }
 }
 
@@ -111,8 +95,7 @@ TEST_CASE("Velocity gradients are a plain loop's") {
     over(
         c,
         [&](double* block) {
-          strain<false>(c.frame(), c.block_place(block), c.pool.layout(), nodes.data(), 0, block, second.row,
-                        0);
+          velocity_gradient(c.frame(), c.block_place(block), nodes.data(), second.row, 0);
         },
         [&](const std::vector<double>& p, const double*, int lane) {
           double l[9] = {};
@@ -153,8 +136,7 @@ TEST_CASE(
     over(
         c,
         [&](double* block) {
-          mpm::core::strain<false>(c.frame(), c.block_place(block), c.pool.layout(), nodes.data(), 0, block,
-                                   g.row, 0);
+          velocity_gradient(c.frame(), c.block_place(block), nodes.data(), g.row, 0);
           cell_strain(c.frame(), c.block_place(block), nodes.data(), 0.01, strain, 0);
           add_velocity_increment(c.block_place(block), c.pool.layout(), nodes.data(), block);
         },
