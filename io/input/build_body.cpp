@@ -194,6 +194,21 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
     body.fixed_layers.push_back(build_fixed_layer(layer, context));
 }
 
+/// Where the velocity is given, what would change it has nothing to act on.
+void check_held(const core::BodyInput& body, const Node& node, const BuildContext& context) {
+  const auto refuse = [&](std::string_view element, const std::string& why) {
+    for (const Node& load : node.children(element)) load.complain(context.diagnostics, why);
+  };
+  if (body.prescribed_velocity && !body.constrain_rigid_position) {
+    for (const char* element : {"PrescribedAcceleration", "HarmExcit"})
+      refuse(element,
+             "has no effect beside PrescribedVelocity: give ConstrainRigidPosition value=\"1\" to add it to "
+             "that velocity, or InitialVelocity in its place");
+  }
+  if (body.prescribed_velocity || body.constrain_rigid_position)
+    refuse("Traction", "has no effect on a body whose velocity is prescribed or held");
+}
+
 core::BodyInput build_body(const Node& node, const core::Scene& scene, const BuildContext& context) {
   core::BodyInput body;
   body.name = node.word("name");
@@ -211,6 +226,7 @@ core::BodyInput build_body(const Node& node, const core::Scene& scene, const Bui
   if (const std::optional<Node> geometry = node.child("Geometry"))
     body.geometry = build_geometry(*geometry, context);
   build_loads(body, node, context);
+  check_held(body, node, context);
   check_inside(node, body, scene, context);
   return body;
 }

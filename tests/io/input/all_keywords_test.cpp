@@ -153,15 +153,16 @@ std::string bodies() {
                                   "<Element element_id='1' id1='1' id2='2' id3='1' id4='2' id5='1' id6='2' "
                                   "id7='1' id8='2'/></Geometry>");
   text += body("BlockForFEM", block, "<LocalBoundaryCond FixedDirection='3' Normal='0' Min='0' Max='1'/>");
+  text += body("Block", block,
+               "<InitialVelocity vx='0' vy='0' vz='0'/><PrescribedVelocity vx='0' vy='0' vz='0'/>"
+               "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'>"
+               "<Coefficient time='0' cx='1' cy='0' cz='0' crx='0' cry='0' crz='0'/></PrescribedAcceleration>"
+               "<ConstrainRigidPosition value='1'/><AdaptiveSplit value='0.5'/><CountFragDp value='1'/>"
+               "<BodyContrl Deactive='0' NoOutput='1'/>");
   text += body(
       "Block", block,
-      "<InitialVelocity vx='0' vy='0' vz='0'/><PrescribedVelocity vx='0' vy='0' vz='0'/>"
-      "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'>"
-      "<Coefficient time='0' cx='1' cy='0' cz='0' crx='0' cry='0' crz='0'/></PrescribedAcceleration>"
       "<Traction pressure='1' tx='1' ty='2' tz='3' normal='0' xmin='0' xmax='1' ymin='0' ymax='1' zmin='0' "
-      "zmax='1' ramp='0.5'><Coefficient time='0' c='1'/><Coefficient time='1' c='2'/></Traction>"
-      "<ConstrainRigidPosition value='1'/><AdaptiveSplit value='0.5'/><CountFragDp value='1'/>"
-      "<BodyContrl Deactive='0' NoOutput='1'/>");
+      "zmax='1' ramp='0.5'><Coefficient time='0' c='1'/><Coefficient time='1' c='2'/></Traction>");
   text += body("Block", block,
                "<HarmExcit><A x='0' y='0' z='1'/><Omega x='1' y='1' z='1'/><Theta x='0' y='0' z='0'/>"
                "<EndTime x='1' y='1' z='1'/></HarmExcit>");
@@ -282,7 +283,7 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   CHECK(io::to_text(io::parse_scene(echo, "all.xmp", core::Catalogue{}, options)) == echo);
 
   CHECK(scene.materials.size() == 26);
-  CHECK(scene.components[0].bodies.size() == 21);
+  CHECK(scene.components[0].bodies.size() == 22);
   CHECK(std::get<core::BoolGeometry>(scene.components[0].bodies[2].geometry).subtrahend_body == 1);
   CHECK(scene.detonations.size() == 2);
   CHECK(scene.grid.axes[0].segments.size() == 2);

@@ -292,6 +292,14 @@ TEST_CASE("known, but not implemented yet") {
        "<Traction ramp='0'/><InitialVelocity",
        {"line 14: <Traction ramp=\"0\">: expected a number greater than 0",
         "line 14: <Traction>: needs a pressure, or tx, ty, tz and normal"}},
+      {"<InitialVelocity",
+       "<PrescribedVelocity vx='0' vy='0' vz='1'/><HarmExcit><A x='0' y='0' z='1'/><Omega x='1' y='1' z='1'/>"
+       "<Theta x='0' y='0' z='0'/><EndTime x='1' y='1' z='1'/></HarmExcit><Traction pressure='1'/>"
+       "<InitialVelocity",
+       {"line 14: <HarmExcit>: has no effect beside PrescribedVelocity: give ConstrainRigidPosition "
+        "value=\"1\" "
+        "to add it to that velocity, or InitialVelocity in its place",
+        "line 14: <Traction>: has no effect on a body whose velocity is prescribed or held"}},
   });
 }
 
