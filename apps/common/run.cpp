@@ -230,12 +230,16 @@ class Run {
   /// What had a defined answer instead of an ordinary one, in particles times steps. Collective.
   void say_what_was_counted() {
     const core::MaterialEvents& events = model_.books.events;
-    std::int64_t counts[] = {events.failed, events.negative_volume, events.volume_limited,
-                             events.undefined_root, model_.books.velocity_limited};
+    std::int64_t counts[] = {events.failed,         events.negative_volume, events.volume_limited,
+                             events.undefined_root, events.unresolved,      model_.books.velocity_limited};
     static constexpr const char* words[] = {
-        "failed", "would have had no volume and kept the old one", "held by Volume min or max",
+        "failed",
+        "would have had no volume and kept the old one",
+        "held by Volume min or max",
         "without a wave speed: the square was negative, or the compression "
         "beyond the equation's limit",
+        "strained too far in one step for their law to end on its yield surface: take a smaller TimeStep "
+        "factor",
         "held by LimitVelocity"};
     exchange_.sum(std::span<std::int64_t>(counts));
     for (std::size_t i = 0; i < std::size(counts); ++i) {

@@ -22,6 +22,7 @@ struct MaterialEvents {
   long volume_limited = 0;   ///< volumes held by Volume min/max
   long not_finite = 0;       ///< stress, energy or volume that is no number
   long undefined_root = 0;   ///< squares of the sound speed below zero, and the like
+  long unresolved = 0;       ///< steps too large for a strength law to end on its yield surface
   MaterialEvents& operator+=(const MaterialEvents& o) {
     failed += o.failed;
     negative_energy += o.negative_energy;
@@ -29,6 +30,7 @@ struct MaterialEvents {
     volume_limited += o.volume_limited;
     not_finite += o.not_finite;
     undefined_root += o.undefined_root;
+    unresolved += o.unresolved;
     return *this;
   }
 };

@@ -41,7 +41,8 @@ constexpr EventName event_names[] = {{"events_failed", &core::MaterialEvents::fa
                                      {"events_negative_volume", &core::MaterialEvents::negative_volume},
                                      {"events_volume_limited", &core::MaterialEvents::volume_limited},
                                      {"events_not_finite", &core::MaterialEvents::not_finite},
-                                     {"events_undefined_root", &core::MaterialEvents::undefined_root}};
+                                     {"events_undefined_root", &core::MaterialEvents::undefined_root},
+                                     {"events_unresolved", &core::MaterialEvents::unresolved}};
 
 struct TextName {
   const char* name;

@@ -99,6 +99,10 @@ template <class T, class Law>
     const core::Sym3<T> before = point.s;
     history.load(block, point);
     law.update(point);
+    if constexpr (requires { requires Law::may_not_resolve; }) {
+      const core::MaskOf<T> unresolved = point.unresolved > 0.5;
+      if (core::any(unresolved)) batch.events.unresolved += count<T>(unresolved, row, batch.particles);
+    }
     if (failed_at >= 0) {
       hold_failed(point, history, block, rules, core::MaskOf<T>(core::load<T>(block + failed_at) > 0.5));
     }

@@ -12,7 +12,7 @@
 // of the matrix. With Gauss_sn, a standard deviation, the initial f of each particle is drawn from its
 // identity: normal with mean Gauss_f0 (f0 where that is absent), cut to [0, ff). The pressure is the law's
 // own: no EquationOfState. Limit: steps of more than some 5 % of strain, or first voids that nucleate under a
-// tension of more than some 15 M, may leave Phi > 0 and no deviator for that step. Shown by
+// tension of more than some 15 M, may end inside the surface, without deviator; they are counted. Shown by
 // tests/physics/gurson_test.cpp.
 #pragma once
 
@@ -31,7 +31,7 @@ struct Gurson : MisesPlasticity {
   /// history_0: plastic strain of the matrix.
   static constexpr std::array state{core::Column::effective_plastic_strain, core::Column::porosity,
                                     core::Column::history_0, core::Column::damage};
-  static constexpr bool sets_pressure = true;
+  static constexpr bool sets_pressure = true, may_not_resolve = true;
 
   static constexpr double not_given = -1;
   double q1 = 0, q2 = 0;
@@ -180,6 +180,7 @@ struct Gurson : MisesPlasticity {
     point.porosity = end.f;
     point.yield_stress = end.matrix;
     point.plastic_work = end.work;
+    point.unresolved = end.unresolved;
     const T void_part = end.f * (1 / ff), strain_part = point.effective_plastic_strain * (1 / epmax);
     const T tepla = void_part * void_part + (epmax > 0 ? strain_part * strain_part : T(0.0));
     point.damage = core::max(point.damage, core::min(tepla, 1.0));
@@ -193,7 +194,7 @@ struct Gurson : MisesPlasticity {
   };
   template <class T>
   struct Reached {
-    T shrink, mean, shear_strain, matrix_strain, f, matrix, work, phi;
+    T shrink, mean, shear_strain, matrix_strain, f, matrix, work, phi, unresolved = 0.0;
   };
 
   template <class T>
@@ -328,6 +329,7 @@ struct Gurson : MisesPlasticity {
     // takes the bracket's inner end.
     const core::MaskOf<T> steep = plastic & (abs(end.phi) > 1e4 * tolerance);
     if (core::any(steep)) end = choose<T>(steep, reach(step, high, dt), end);
+    end.unresolved = select(steep & (abs(end.phi) > 1e6 * tolerance), 1.0, T(0.0));
     return where_plastic(plastic, end, step);
   }
   static constexpr double tolerance = 1e-13;  ///< of Phi
@@ -335,14 +337,15 @@ struct Gurson : MisesPlasticity {
   /// Lanes that do not flow keep what they have, to the last bit.
   template <class T>
   static Reached<T> where_plastic(core::MaskOf<T> plastic, const Reached<T>& end, const Step<T>& step) {
-    return choose<T>(plastic, end, {T(0.0), step.mean, T(0.0), T(0.0), step.f, step.matrix, T(0.0), end.phi});
+    return choose<T>(plastic, end,
+                     {T(0.0), step.mean, T(0.0), T(0.0), step.f, step.matrix, T(0.0), end.phi, T(0.0)});
   }
   template <class T>
   static Reached<T> choose(core::MaskOf<T> first, const Reached<T>& a, const Reached<T>& b) {
     const auto pick = [&](T Reached<T>::*member) -> T { return core::select(first, a.*member, b.*member); };
     return {pick(&Reached<T>::shrink),        pick(&Reached<T>::mean), pick(&Reached<T>::shear_strain),
             pick(&Reached<T>::matrix_strain), pick(&Reached<T>::f),    pick(&Reached<T>::matrix),
-            pick(&Reached<T>::work),          pick(&Reached<T>::phi)};
+            pick(&Reached<T>::work),          pick(&Reached<T>::phi),  pick(&Reached<T>::unresolved)};
   }
 };
 

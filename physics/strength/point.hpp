@@ -28,11 +28,12 @@ struct StrengthPoint {
   T deviate = 0.0;  ///< standard normal, the particle's own; to `place` of laws that scatter
 
   // --- results beside the stress; laws that have none leave them ----------------------------------------
-  T shear_modulus = 0.0;    ///< for the wave speed
-  T bulk_modulus = 0.0;     ///< likewise; read from laws with `sets_pressure`
-  T viscosity = 0.0;        ///< shear viscosity reached, s = 2 viscosity D', for the critical step
-  T yield_stress = 0.0;     ///< for output
-  T plastic_work = 0.0;     ///< of this step, per current volume: what heats
+  T shear_modulus = 0.0;  ///< for the wave speed
+  T bulk_modulus = 0.0;   ///< likewise; read from laws with `sets_pressure`
+  T viscosity = 0.0;      ///< shear viscosity reached, s = 2 viscosity D', for the critical step
+  T yield_stress = 0.0;   ///< for output
+  T plastic_work = 0.0;   ///< of this step, per current volume: what heats
+  T unresolved = 0.0;     ///< read from laws with `may_not_resolve`: 1 where the step was too large for them
   T lowest_pressure = 0.0;  ///< read from laws with tension_rules(): the pressure is held at or above it
 
   // --- state: only the columns that the law names in `state` are loaded and stored -----------------------

@@ -128,6 +128,31 @@ TEST_CASE("voids grow at constant triaxiality as the rate equations say, with fi
   }
 }
 
+TEST_CASE("a step that ends inside the surface is counted, and no other", "[physics][gurson]") {
+  const auto material =
+      make(porous({{"f0", 0.001}, {"TangMod", 1e9}, {"fN", 0.04}, {"sN", 0.01}, {"eN", 0.02}}));
+  int lost = 0;
+  for (const double strain : {1e-3, 3e-3, 1e-2, 0.03, 0.1, 0.2, 0.4}) {
+    for (const double lateral : {-0.45, -0.3, 0.0, 0.5, 0.9}) {
+      for (const double sign : {1.0, -1.0}) {
+        PointDriver point(*material, with_yield());
+        for (int step = 0; step < 5; ++step) {
+          const double before = point.value(Column::history_0), l = sign * strain;
+          point.step({l, 0, 0, 0, l * lateral, 0, 0, 0, l * lateral}, 1);
+          INFO("strain " << l << " lateral " << lateral << " step " << step << " Phi " << surface(point));
+          const bool flowed = point.value(Column::history_0) > before;
+          const bool off = flowed && std::abs(surface(point)) > 1e-7;
+          CHECK((point.events().unresolved > 0) == off);
+          if (strain <= 3e-3) CHECK_FALSE(off);
+          lost += off ? 1 : 0;
+          if (off) break;
+        }
+      }
+    }
+  }
+  CHECK(lost > 0);
+}
+
 TEST_CASE("voids nucleate by the normal distribution of the matrix strain", "[physics][gurson]") {
   // In shear no void grows: f is the integral of A (3.42).
   const double fn = 0.04, sn = 0.05, en = 0.1;
