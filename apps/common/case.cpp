@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "io/input/echo.hpp"
 #include "io/input/reader.hpp"
 #include "io/output/file.hpp"
 #include "io/output/variables.hpp"
@@ -62,6 +63,43 @@ Case from_input(const std::string& job, const parallel::Communicator& world) {
   return parsed(bytes, parallel::broadcast(world, path));
 }
 
+/// What made the particles of a restart file is in them: another input that says otherwise asks for something
+/// that would not happen. Throws InputErrors.
+void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
+  std::vector<core::Diagnostic> complaints;
+  const auto complain = [&](const core::SourceLocation& at, const char* element, const std::string& name) {
+    complaints.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
+                          "differs from the input of the restart file, where the particles have it from; -rt "
+                          "may change Grid, Solution, Output and Deactive: restore it"});
+  };
+  for (std::size_t c = 0; c < now.components.size(); ++c) {
+    for (std::size_t b = 0; b < now.components[c].bodies.size(); ++b) {
+      const core::BodyInput& body = now.components[c].bodies[b];
+      for (const core::ComponentInput& component : old.components) {
+        for (const core::BodyInput& before : component.bodies) {
+          if (before.name != body.name || body.deactivated) continue;
+          // Its loads, its outputs and its material's parameters hold from here on; these do not.
+          core::Scene then = now;
+          core::BodyInput& same = then.components[c].bodies[b];
+          same.type = before.type;
+          same.geometry = before.geometry;
+          same.density = before.density;
+          same.initial_velocity = before.initial_velocity;
+          same.work_plane = before.work_plane;
+          if (io::to_text(then) != io::to_text(now)) complain(body.source, "Body", body.name);
+        }
+      }
+    }
+  }
+  core::Scene then = now;
+  then.detonations = old.detonations;
+  if (io::to_text(then) != io::to_text(now))
+    complain(now.detonations.empty() ? core::SourceLocation{now.provenance.path, 0}
+                                     : now.detonations.front().source,
+             "Detonation", "");
+  if (!complaints.empty()) throw core::InputErrors(complaints);
+}
+
 }  // namespace
 
 Case load_case(const RunOptions& options, const parallel::Communicator& world) {
@@ -76,6 +114,11 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world) {
   Case c;
   if (options.restart_input) {
     c = from_input(*options.restart_input, world);
+    parallel::on_root_then_all<io::FileError>(world, [&] {
+      const io::RestartScene before = io::read_restart_scene(restart);
+      refuse_what_is_over(
+          io::parse_scene(before.text, before.path, physics::catalogue(), {.check_files = false}), *c.scene);
+    });
   } else {
     std::string path;
     const std::string bytes = parallel::on_root_then_all<io::FileError>(world, [&] {

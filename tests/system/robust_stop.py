@@ -200,6 +200,21 @@ class Restart(Case):
         self.assertEqual({name: after[name] for name in before}, before)
         self.assertEqual(_mpm.table(self.out / "longer.sta")["time"][-1], END / 8)
 
+    def test_other_input_that_asks_for_what_is_over(self):
+        """What made the particles cannot change any more: a body's place or speed, where explosives are lit."""
+        left, right = _mpm.BOUNCING
+        lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="0"/></Detonation></PeneBlast>'
+        for text, complaints in [
+                (bounce(end=END / 8, bodies=[left, right.replace('vx="-3"', 'vx="-2"')]), ['<Body name="right">']),
+                (bounce(end=END / 8, bodies=[left.replace('lx="6"', 'lx="5"'), right]), ['<Body name="left">']),
+                (bounce(end=END / 8).replace("</PeneBlast>", lit), ["<Detonation>"])]:
+            other = self.write(text, "other.xmp")
+            for ranks in (1, 2):
+                outcome = self.run_in("over", [self.files[0], "-rt", other], code=INPUT_ERROR, ranks=ranks)
+                for words in complaints:
+                    self.assertEqual(outcome.complaint.count(words + ": differs from the input"), 1, outcome)
+        self.assertFalse((self.folder / "over").exists())
+
     def test_a_body_that_is_taken_out(self):
         """-rt with Deactive="1": the body is gone, and the books say what it took along."""
         left, right = _mpm.BOUNCING
