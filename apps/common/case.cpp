@@ -63,40 +63,46 @@ Case from_input(const std::string& job, const parallel::Communicator& world) {
   return parsed(bytes, parallel::broadcast(world, path));
 }
 
+const core::BodyInput* find_body(const core::Scene& scene, const std::string& name) {
+  for (const core::ComponentInput& component : scene.components) {
+    for (const core::BodyInput& body : component.bodies) {
+      if (body.name == name) return &body;
+    }
+  }
+  return nullptr;
+}
+
 /// What made the particles of a restart file is in them: another input that says otherwise asks for something
 /// that would not happen. Throws InputErrors.
 void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
   std::vector<core::Diagnostic> complaints;
-  const auto complain = [&](const core::SourceLocation& at, const char* element, const std::string& name) {
+  core::Scene then = now;
+  const std::string text = io::to_text(now);
+  const auto compare = [&](const core::SourceLocation& at, const char* element, const std::string& name) {
+    if (io::to_text(then) == text) return;
     complaints.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
                           "differs from the input of the restart file, where the particles have it from; -rt "
                           "may change Grid, Solution, Output and Deactive: restore it"});
   };
-  for (std::size_t c = 0; c < now.components.size(); ++c) {
-    for (std::size_t b = 0; b < now.components[c].bodies.size(); ++b) {
-      const core::BodyInput& body = now.components[c].bodies[b];
-      for (const core::ComponentInput& component : old.components) {
-        for (const core::BodyInput& before : component.bodies) {
-          if (before.name != body.name || body.deactivated) continue;
-          // Its loads, its outputs and its material's parameters hold from here on; these do not.
-          core::Scene then = now;
-          core::BodyInput& same = then.components[c].bodies[b];
-          same.type = before.type;
-          same.geometry = before.geometry;
-          same.density = before.density;
-          same.initial_velocity = before.initial_velocity;
-          same.work_plane = before.work_plane;
-          if (io::to_text(then) != io::to_text(now)) complain(body.source, "Body", body.name);
-        }
-      }
+  for (core::ComponentInput& component : then.components) {
+    for (core::BodyInput& body : component.bodies) {
+      const core::BodyInput* before = find_body(old, body.name);
+      if (before == nullptr || body.deactivated) continue;
+      // Its loads, its outputs and its material's parameters hold from here on; these do not.
+      const core::BodyInput stated = body;
+      body.type = before->type;
+      body.geometry = before->geometry;
+      body.density = before->density;
+      body.initial_velocity = before->initial_velocity;
+      body.work_plane = before->work_plane;
+      compare(stated.source, "Body", stated.name);
+      body = stated;
     }
   }
-  core::Scene then = now;
   then.detonations = old.detonations;
-  if (io::to_text(then) != io::to_text(now))
-    complain(now.detonations.empty() ? core::SourceLocation{now.provenance.path, 0}
-                                     : now.detonations.front().source,
-             "Detonation", "");
+  compare(
+      now.detonations.empty() ? core::SourceLocation{now.provenance.path, 0} : now.detonations.front().source,
+      "Detonation", "");
   if (!complaints.empty()) throw core::InputErrors(complaints);
 }
 

@@ -180,7 +180,8 @@ struct Gurson : MisesPlasticity {
     point.porosity = end.f;
     point.yield_stress = end.matrix;
     point.plastic_work = end.work;
-    point.unresolved = end.unresolved;
+    point.unresolved =
+        core::select((end.shrink > 0.0) & (core::abs(end.phi) > 1e6 * tolerance), T(1.0), T(0.0));
     const T void_part = end.f * (1 / ff), strain_part = point.effective_plastic_strain * (1 / epmax);
     const T tepla = void_part * void_part + (epmax > 0 ? strain_part * strain_part : T(0.0));
     point.damage = core::max(point.damage, core::min(tepla, 1.0));
@@ -194,7 +195,7 @@ struct Gurson : MisesPlasticity {
   };
   template <class T>
   struct Reached {
-    T shrink, mean, shear_strain, matrix_strain, f, matrix, work, phi, unresolved = 0.0;
+    T shrink, mean, shear_strain, matrix_strain, f, matrix, work, phi;
   };
 
   template <class T>
@@ -329,7 +330,6 @@ struct Gurson : MisesPlasticity {
     // takes the bracket's inner end.
     const core::MaskOf<T> steep = plastic & (abs(end.phi) > 1e4 * tolerance);
     if (core::any(steep)) end = choose<T>(steep, reach(step, high, dt), end);
-    end.unresolved = select(steep & (abs(end.phi) > 1e6 * tolerance), 1.0, T(0.0));
     return where_plastic(plastic, end, step);
   }
   static constexpr double tolerance = 1e-13;  ///< of Phi
@@ -337,15 +337,14 @@ struct Gurson : MisesPlasticity {
   /// Lanes that do not flow keep what they have, to the last bit.
   template <class T>
   static Reached<T> where_plastic(core::MaskOf<T> plastic, const Reached<T>& end, const Step<T>& step) {
-    return choose<T>(plastic, end,
-                     {T(0.0), step.mean, T(0.0), T(0.0), step.f, step.matrix, T(0.0), end.phi, T(0.0)});
+    return choose<T>(plastic, end, {T(0.0), step.mean, T(0.0), T(0.0), step.f, step.matrix, T(0.0), end.phi});
   }
   template <class T>
   static Reached<T> choose(core::MaskOf<T> first, const Reached<T>& a, const Reached<T>& b) {
     const auto pick = [&](T Reached<T>::*member) -> T { return core::select(first, a.*member, b.*member); };
     return {pick(&Reached<T>::shrink),        pick(&Reached<T>::mean), pick(&Reached<T>::shear_strain),
             pick(&Reached<T>::matrix_strain), pick(&Reached<T>::f),    pick(&Reached<T>::matrix),
-            pick(&Reached<T>::work),          pick(&Reached<T>::phi),  pick(&Reached<T>::unresolved)};
+            pick(&Reached<T>::work),          pick(&Reached<T>::phi)};
   }
 };
 
