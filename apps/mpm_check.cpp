@@ -45,12 +45,9 @@ double make_everything(const core::Scene& scene) {
   double count = 0;
   std::vector<core::Diagnostic> wrong;
   collect(wrong, [&] { physics::make_materials(scene); });
-  for (const core::ComponentInput& component : scene.components) {
-    for (const core::BodyInput& body : component.bodies) {
-      if (body.deactivated || body.for_bool) continue;
-      collect(wrong, [&] { count += core::make_seed_source(scene, body)->expected_particles(); });
-    }
-  }
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    collect(wrong, [&] { count += core::make_seed_source(scene, body)->expected_particles(); });
+  });
   if (!wrong.empty()) throw core::InputErrors(std::move(wrong));
   return count;
 }

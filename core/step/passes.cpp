@@ -317,8 +317,8 @@ template <bool moves>
         fastest = std::max(fastest, fastest_wave(batch));
       if constexpr (moves) {
         for (int b = 0; b < batch.blocks; ++b) {
-          note_leavers(s, c, first + static_cast<std::size_t>(b), frame, layout, batch.block[b],
-                       std::min(block_lanes, batch.particles - block_lanes * b));
+          const std::size_t at_block = first + static_cast<std::size_t>(b);
+          note_leavers(s, c, at_block, frame, layout, batch.block[b], cohort.used_lanes(at_block));
         }
       }
     }
