@@ -104,12 +104,13 @@ struct BarRun {
     }
     return bytes;
   }
-  /// Nodes of the bricks in use, both arrays.
+  /// Nodes of the bricks in use: both arrays, and the motion that MUSL keeps.
   double brick_bytes() const { return static_cast<double>(model.grid->owned()) * node_bytes_per_brick(); }
   double node_bytes_per_brick() const {
-    const double doubles =
-        core::record_doubles(core::NodeArray::first) + core::record_doubles(core::NodeArray::second);
-    return doubles * sizeof(double) * model.grid->shape().nodes();
+    const int doubles = core::record_doubles(core::NodeArray::first) +
+                        core::record_doubles(core::NodeArray::second) +
+                        (scene->solution.scheme == core::Scheme::musl ? core::motion_width : 0);
+    return static_cast<double>(doubles) * sizeof(double) * model.grid->shape().nodes();
   }
 
  private:

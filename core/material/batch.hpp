@@ -37,6 +37,20 @@ struct MaterialEvents {
 
 struct GridGeometry;
 
+/// Memory that will be wanted soon, asked for a few lines at a time: the processor has only so many requests
+/// under way, and what asks for more at once waits.
+struct LinesAhead {
+  const double* next = nullptr;
+  const double* last = nullptr;
+  /// Inlined without fail: g++ takes a function that only prefetches for one that does nothing, and drops the
+  /// call.
+  [[gnu::always_inline]] void ask(int lines) {
+    for (int i = 0; i < lines && next < last; ++i, next += block_lanes) __builtin_prefetch(next, 0, 2);
+  }
+};
+/// What a material's update asks for of each of the batch's `ahead`.
+inline constexpr int lines_asked_by_materials = 16;
+
 struct Batch {
   // --- set by the caller ---
   const ColumnLayout* layout = nullptr;
@@ -51,6 +65,9 @@ struct Batch {
   alignas(64) Row gradient[9];
   /// Volumetric strain increment of the particle's cell; read for volume update 1 only.
   alignas(64) Row cell_volumetric_strain;
+
+  /// What the caller wants next; the stages ask for it between their blocks.
+  LinesAhead ahead[batch_blocks] = {};
 
   // --- passed between the stages of the material update ---
   alignas(64) Row volumetric_strain;  ///< trace of the strain increment

@@ -8,11 +8,11 @@
 namespace mpm::core {
 
 namespace {
-constexpr std::size_t max_slabs = std::size_t{1} << 20;  // 2^32 blocks
+constexpr std::size_t max_slabs = std::size_t{1} << 17;  // 2^32 blocks
 }
 
 BlockPool::BlockPool(const ColumnLayout& layout) : layout_(layout) {
-  // Pointers only: 1 Mi slabs of 4096 blocks cover every 32-bit number; pages come when they are touched.
+  // Pointers only: 128 Ki slabs of 32768 blocks cover every 32-bit number; pages come when they are touched.
   slabs_.reserve(max_slabs);
 }
 
@@ -24,10 +24,10 @@ BlockIndex BlockPool::allocate() {
     free_.pop_back();
   } else {
     if (next_ % slab_blocks == 0) {
+      constexpr std::size_t page = std::size_t{1} << 21;
       const std::size_t bytes =
           sizeof(double) * slab_blocks * static_cast<std::size_t>(layout_.block_doubles());
-      constexpr std::size_t alignment = std::size_t{1} << 21;  // a huge page
-      void* p = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+      void* p = std::aligned_alloc(page, bytes);
       if (p == nullptr) throw std::bad_alloc();
       madvise(p, bytes, MADV_HUGEPAGE);  // a hint: fewer address translations in the passes over particles
       slabs_.emplace_back(static_cast<double*>(p));

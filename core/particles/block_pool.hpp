@@ -31,7 +31,7 @@ class BlockPool {
   std::size_t blocks_in_use() const { return next_ - free_.size(); }
 
  private:
-  static constexpr BlockIndex slab_blocks = 4096;
+  static constexpr BlockIndex slab_blocks = 32768;  // their columns fill whole huge pages: one each
   struct Free {
     void operator()(double* p) const { std::free(p); }
   };

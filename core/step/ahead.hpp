@@ -18,13 +18,27 @@ inline std::size_t blocks_of(const Brick& brick) {
   return n;
 }
 
+/// Asks for what says where the coming bricks' particles lie: a chain of three, so three bricks ahead.
+inline void ask_for_coming_bricks(const BrickGrid& grid, Slot now) {
+  const auto line = [](const void* at, std::size_t n) {
+    __builtin_prefetch(static_cast<const char*>(at) + 64 * n, 0, 3);
+  };
+  const Slot last = grid.owned() - 1;
+  for (std::size_t n = 0; n < 3; ++n) line(&grid.brick(std::min(now + 3, last)), n);
+  const std::vector<Cohort>& then = grid.brick(std::min(now + 2, last)).cohorts;
+  line(then.data(), 0);
+  const std::vector<Cohort>& next = grid.brick(std::min(now + 1, last)).cohorts;
+  if (next.empty()) return;
+  const std::vector<BlockIndex>& blocks = next.front().blocks;
+  for (std::size_t b = 0; b < blocks.size(); b += 16) line(blocks.data() + b, 0);
+}
+
 /// Asks for the blocks that a pass will come to: those of a cohort, then those of the next one, in the brick
 /// or after it. Into the second-level cache: the first has too few lines under way at a time to hide main
 /// memory.
 class BlocksAhead {
  public:
-  BlocksAhead(const Model& model, Slot slot, std::size_t cohort, std::size_t distance = 4)
-      : model_(model), distance_(distance) {
+  BlocksAhead(const Model& model, Slot slot, std::size_t cohort) : model_(model) {
     const BrickGrid& grid = *model.grid;
     const Brick& brick = grid.brick(slot);
     now_ = &brick.cohorts[cohort];
@@ -34,26 +48,27 @@ class BlocksAhead {
       then_ = &grid.brick(slot + 1).cohorts.front();
     }
   }
-  /// While block `b` is worked on. Inlined without fail: g++ takes a function that only prefetches for one
-  /// that does nothing, and drops the call.
-  [[gnu::always_inline]] void prefetch(std::size_t b, int first_column, int last_column) const {
+  /// The lines of the block to ask for while block `b` is worked on; none where there is no such block.
+  [[gnu::always_inline]] LinesAhead lines(std::size_t b) const {
     const Cohort* cohort = now_;
-    b += distance_;
+    b += distance;
     if (b >= cohort->blocks.size()) {
       b -= cohort->blocks.size();
       cohort = then_;
-      if (cohort == nullptr || b >= cohort->blocks.size()) return;
+      if (cohort == nullptr || b >= cohort->blocks.size()) return {};
     }
     const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort->body)].pool;
     const double* block = pool.block(cohort->blocks[b]);
-    for (int c = first_column; c < last_column; ++c) __builtin_prefetch(block + block_lanes * c, 0, 2);
+    return {block, block + pool.layout().block_doubles()};
   }
+  /// The first columns of that block at once.
+  [[gnu::always_inline]] void prefetch(std::size_t b, int columns) const { lines(b).ask(columns); }
 
  private:
+  static constexpr std::size_t distance = 8;  // further ahead than main memory is far, and still in the cache
   const Model& model_;
   const Cohort* now_;
   const Cohort* then_ = nullptr;
-  std::size_t distance_;
 };
 
 /// Asks for the room into which the next brick's contributions will go, a few lines at a time.

@@ -110,6 +110,13 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   });
 }
 
+void keep_motion(int nodes, const double* record, double* motion) {
+  for (int n = 0; n < nodes; ++n) store(motion + motion_width * n, load<Half>(record + node_doubles * n));
+}
+void recall_motion(int nodes, const double* motion, double* record) {
+  for (int n = 0; n < nodes; ++n) store(record + node_doubles * n, load<Half>(motion + motion_width * n));
+}
+
 namespace {
 /// Components 4..6 obey the walls. A node that a rigid wall has stopped (component 0..2 is zero) strains
 /// nobody either: moving for the strain alone, it would do work on the particles out of nothing.

@@ -83,6 +83,11 @@ class BoundaryFaces {
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
                   int nodes, double* record);
 
+/// A node's motion as MUSL keeps it from one pass to the next: components 0..3 of the updated record.
+inline constexpr int motion_width = 4;
+void keep_motion(int nodes, const double* record, double* motion);
+void recall_motion(int nodes, const double* motion, double* record);
+
 /// Components 4..6 become the velocity of `momenta` (0..2 of each record) over the masses in component 3 of
 /// `record`: USF's velocity at the start of the step (momenta = record), MUSL's re-mapped one.
 void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,

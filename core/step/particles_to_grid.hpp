@@ -1,7 +1,7 @@
 // Particles to grid (thesis 2-31, 2-32, 2-38): what one block of particles adds to its brick's nodes.
 //
-// The eight nodes of a cell ride in the lanes of one vector; a particle adds itself to seven of them
-// (momentum, mass, force), and only when the cell changes are they turned into node records and written.
+// The eight nodes of a cell ride in the lanes of one vector; a particle adds itself to ten of them (momentum,
+// mass, V sigma), and only when the cell changes are they turned into node records and written.
 // Particles are kept in approximate cell order, so that is once in about eight. Oracle:
 // tests/support/reference_stepper.
 #pragma once
@@ -34,21 +34,26 @@ using Nodes = Lanes<8>;
 inline Nodes sign_x() { return Nodes::vector{-1, 1, -1, 1, -1, 1, -1, 1}; }
 inline Nodes sign_y() { return Nodes::vector{-1, -1, 1, 1, -1, -1, 1, 1}; }
 inline Nodes sign_z() { return Nodes::vector{-1, -1, -1, -1, 1, 1, 1, 1}; }
+
+/// Both nodes of an edge along an axis get the sum of the two.
+inline Nodes along_x(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 1, 0, 3, 2, 5, 4, 7, 6); }
+inline Nodes along_y(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 2, 3, 0, 1, 6, 7, 4, 5); }
+inline Nodes along_z(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7, 0, 1, 2, 3); }
 }  // namespace detail
 
-/// Sums over the particles of one cell, node i + 2 j + 4 k in lane i + 2 j + 4 k. The force on a node is the
-/// sum of V sigma times the gradient, whose component along an axis is a sign over the cell's edge times the
-/// weights along the other two: the sums leave the former out, and a flush puts it in for all particles at
-/// once.
+/// Sums over the particles of one cell, node i + 2 j + 4 k in lane i + 2 j + 4 k. The force on a node is
+/// minus the sum of V sigma times the weight's gradient. Its component along an axis is a sign over the
+/// cell's edge times the weights along the other two axes, and these are what the weights of the edge's two
+/// nodes add up to. So V sigma is summed with the weights themselves, and a flush makes forces of the sums.
 template <Mapped what>
 struct CellSums {
   detail::Nodes px, py, pz, m;
-  detail::Nodes xx, yx, zx, xy, yy, zy, xz, yz, zz;  ///< V sigma_ij times the weights without axis j
+  detail::Nodes xx, yy, zz, xy, yz, xz;  ///< V sigma times the weights
   int node = -1;
 
   void clear() {
     px = py = pz = m = detail::Nodes(0.0);
-    xx = yx = zx = xy = yy = zy = xz = yz = zz = detail::Nodes(0.0);
+    xx = yy = zz = xy = yz = xz = detail::Nodes(0.0);
   }
 
   [[gnu::always_inline]] void flush(const BrickFrame& frame, double* contributions) {
@@ -56,12 +61,12 @@ struct CellSums {
     if (node < 0) return;
     N r[8] = {px, py, pz, m, N(0.0), N(0.0), N(0.0), N(0.0)};
     if constexpr (maps_force(what)) {
-      const N gx = detail::sign_x() * N(-frame.inverse_cell.x),
-              gy = detail::sign_y() * N(-frame.inverse_cell.y),
-              gz = detail::sign_z() * N(-frame.inverse_cell.z);
-      r[4] = gx * xx + gy * xy + gz * xz;
-      r[5] = gx * yx + gy * yy + gz * yz;
-      r[6] = gx * zx + gy * zy + gz * zz;
+      using namespace detail;
+      const N gx = sign_x() * N(-frame.inverse_cell.x), gy = sign_y() * N(-frame.inverse_cell.y),
+              gz = sign_z() * N(-frame.inverse_cell.z);
+      r[4] = gx * along_x(xx) + gy * along_y(xy) + gz * along_z(xz);
+      r[5] = gx * along_x(xy) + gy * along_y(yy) + gz * along_z(yz);
+      r[6] = gx * along_x(xz) + gy * along_y(yz) + gz * along_z(zz);
     }
     constexpr int width = record_doubles(array_of(what));
     using Record = Lanes<width>;
@@ -117,26 +122,20 @@ template <Mapped what>
     }
     const N wx = one_x + sign_x * N(place.f[0][i]), wy = one_y + sign_y * N(place.f[1][i]),
             wz = one_z + sign_z * N(place.f[2][i]);
-    const N wxy = wx * wy;
+    const N w = wx * wy * wz;
     if constexpr (maps_momentum(what)) {
-      const N w = wxy * wz;
       if constexpr (maps_mass(what)) sums.m += w * N(q[0][i]);
       sums.px += w * N(q[1][i]);
       sums.py += w * N(q[2][i]);
       sums.pz += w * N(q[3][i]);
     }
     if constexpr (maps_force(what)) {
-      const N wyz = wy * wz, wxz = wx * wz;
-      const N sxx(q[4][i]), syy(q[5][i]), szz(q[6][i]), sxy(q[7][i]), syz(q[8][i]), sxz(q[9][i]);
-      sums.xx += wyz * sxx;
-      sums.yx += wyz * sxy;
-      sums.zx += wyz * sxz;
-      sums.xy += wxz * sxy;
-      sums.yy += wxz * syy;
-      sums.zy += wxz * syz;
-      sums.xz += wxy * sxz;
-      sums.yz += wxy * syz;
-      sums.zz += wxy * szz;
+      sums.xx += w * N(q[4][i]);
+      sums.yy += w * N(q[5][i]);
+      sums.zz += w * N(q[6][i]);
+      sums.xy += w * N(q[7][i]);
+      sums.yz += w * N(q[8][i]);
+      sums.xz += w * N(q[9][i]);
     }
   }
   running = sums;

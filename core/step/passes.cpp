@@ -68,7 +68,10 @@ void Passes::for_bricks(int first, int last, F f) {
   const auto threads = static_cast<int>(workplaces_.size());
   for_each_by_threads(
       first, last, std::max((last - first) / (4 * threads), 1),
-      [&](int s) { f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]); },
+      [&](int s) {
+        ask_for_coming_bricks(*model_.grid, static_cast<Slot>(s));
+        f(static_cast<Slot>(s), workplaces_[static_cast<std::size_t>(omp_get_thread_num())]);
+      },
       threads);
 }
 
@@ -95,9 +98,9 @@ void Passes::map_brick(Slot s, F before) {
     BlockPlace places[2];
     if (!cohort.blocks.empty()) places[0].find(frame, layout, body.pool->block(cohort.blocks[0]));
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      if constexpr (what == Mapped::momentum_mass_force) ahead.prefetch(b, 0, columns_to_stress);
+      if constexpr (what == Mapped::momentum_mass_force) ahead.prefetch(b, columns_to_stress);
       if constexpr (what == Mapped::momentum_mass || what == Mapped::momentum)
-        ahead.prefetch(b, 0, columns_to_mass);
+        ahead.prefetch(b, columns_to_mass);
       room.next();
       double* block = body.pool->block(cohort.blocks[b]);
       const int used = cohort.used_lanes(b);
@@ -221,7 +224,7 @@ void Passes::kick(Slot s, const Body& body, const BlockPlace& place, double* blo
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     const BlocksAhead ahead(model_, s, c);
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      ahead.prefetch(b, 0, columns_to_mass);
+      ahead.prefetch(b, columns_to_mass);
       double* block = body.pool->block(cohort.blocks[b]);
       kick(s, body, BlockPlace(frame, body.pool->layout(), block), block, cohort.used_lanes(b), at);
     }
@@ -265,8 +268,9 @@ double fastest_particle(const Batch& batch, double most) {
 }
 }  // namespace
 
-template <bool moves>
-[[gnu::noinline]] void Passes::stress_of_brick(Slot s, Velocities velocities, Workplace& at) {
+template <bool moves, class F>
+[[gnu::noinline]] void Passes::stress_of_brick(Slot s, Velocities velocities, Workplace& at,
+                                               F ask_for_nodes) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
@@ -276,15 +280,14 @@ template <bool moves>
   batch.cell_size = grid.geometry().smallest_cell();
   const bool by_cells = model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
   double fastest = 0;
-  ContributionsAhead<NodeArray::first> first_ahead(grid, shared_, s + 1, moves ? blocks_of(brick) : 0);
-  ContributionsAhead<NodeArray::second> second_ahead(grid, shared_, s + 1, blocks_of(brick));
   for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
     const Cohort& cohort = brick.cohorts[c];
-    const BlocksAhead ahead(model_, s, c, 12);
+    const BlocksAhead ahead(model_, s, c);
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     BlockPool& pool = *body.pool;
     const ColumnLayout& layout = pool.layout();
     batch.layout = &layout;
+    const int lines_first = std::max(layout.columns() - lines_asked_by_materials, 0);
     for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
       batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
       batch.particles =
@@ -296,9 +299,9 @@ template <bool moves>
       }
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
-        ahead.prefetch(at_block, 0, layout.columns());
-        if constexpr (moves) first_ahead.next();
-        second_ahead.next();
+        batch.ahead[b] = ahead.lines(at_block);
+        batch.ahead[b].ask(lines_first);
+        ask_for_nodes();
         double* block = batch.block[b];
         const BlockPlace& place = at.places[b];
         if (by_cells) {
@@ -379,13 +382,27 @@ void Passes::note_leavers(Slot s, std::size_t cohort, std::size_t b, const Brick
 // --- what the schemes are made of
 // ---------------------------------------------------------------------------
 
+double* Passes::motion(Slot s) {
+  return motion_.data() + static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(s);
+}
+
+/// The next brick's motion, asked for while this brick's blocks are worked on.
+RoomAhead Passes::motion_ahead(Slot s) {
+  const BrickGrid& grid = *model_.grid;
+  return {s + 1 < grid.owned() ? motion(s + 1) : nullptr, motion_doubles(), blocks_of(grid.brick(s))};
+}
+
 void Passes::update_velocities_and_map_back() {
+  const BrickGrid& grid = *model_.grid;
+  motion_.resize(static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(grid.owned()));
   map_bricks<Mapped::momentum>([&](Slot s, Workplace& at) {
     move_nodes(s, at);
-    ContributionsAhead<NodeArray::first> ahead(*model_.grid, shared_, s + 1,
-                                               blocks_of(model_.grid->brick(s)));
+    keep_motion(shared_.nodes(), at.nodes.data(), motion(s));
+    ContributionsAhead<NodeArray::first> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    RoomAhead room = motion_ahead(s);
     map_brick<Mapped::momentum>(s, [&](const Body& body, const BlockPlace& place, double* block, int used) {
-      ahead.next();
+      nodes.next();
+      room.next();
       kick(s, body, place, block, used, at);
     });
     at.book_work();
@@ -396,13 +413,16 @@ void Passes::update_stress_and_move() {
   const BrickGrid& grid = *model_.grid;
   leavers_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Workplace& at) {
-    // The nodes' motion is computed again: that costs less than keeping it in memory from one pass to the
-    // next.
-    move_nodes(s, at);
+    recall_motion(shared_.nodes(), motion(s), at.nodes.data());
     sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
     second_velocities(0, at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
                       shared_.nodes(), at.nodes.data());
-    stress_of_brick<true>(s, Velocities::of_next_step, at);
+    ContributionsAhead<NodeArray::second> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    RoomAhead room = motion_ahead(s);
+    stress_of_brick<true>(s, Velocities::of_next_step, at, [&] {
+      nodes.next();
+      room.next();
+    });
   });
 }
 
@@ -414,7 +434,8 @@ void Passes::update_stress_and_map_forces() {
     second_velocities(grid.geometry().mass_cutoff, at.nodes.data(),
                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                       at.nodes.data());
-    stress_of_brick<false>(s, Velocities::of_last_step, at);
+    ContributionsAhead<NodeArray::second> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    stress_of_brick<false>(s, Velocities::of_last_step, at, [&] { nodes.next(); });
     map_brick<Mapped::force>(s, as_they_are);
   });
 }
@@ -449,7 +470,7 @@ void Passes::update_velocities_and_move() {
     const ColumnLayout& layout = body.pool->layout();
     const BlocksAhead ahead(model_, s, c);
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      ahead.prefetch(b, 0, columns_to_mass);
+      ahead.prefetch(b, columns_to_mass);
       first_ahead.next();
       second_ahead.next();
       double* block = body.pool->block(cohort.blocks[b]);
@@ -475,7 +496,8 @@ void Passes::update_all() {
     regularised_velocities(dt * forces_.gravity,
                            BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                            at.nodes.data());
-    stress_of_brick<true>(s, Velocities::of_next_step, at);
+    ContributionsAhead<NodeArray::first> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    stress_of_brick<true>(s, Velocities::of_next_step, at, [&] { nodes.next(); });
   });
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/model.hpp"
+#include "core/step/ahead.hpp"
 #include "core/step/exchange.hpp"
 #include "core/step/grid_to_particles.hpp"
 #include "core/step/loads.hpp"
@@ -95,8 +96,12 @@ class Passes {
   int number_of(const Body& body) const { return static_cast<int>(&body - model_.bodies.data()); }
   /// Whether the particles' velocities are already those with which the next step begins.
   enum class Velocities { of_last_step, of_next_step };
-  template <bool moves>
-  void stress_of_brick(Slot s, Velocities velocities, Workplace& at);
+  /// ask_for_nodes() is called once per block, to bring what the next brick's nodes are made of.
+  template <bool moves, class F>
+  void stress_of_brick(Slot s, Velocities velocities, Workplace& at, F ask_for_nodes);
+  int motion_doubles() const { return motion_width * shared_.nodes(); }
+  double* motion(Slot s);
+  RoomAhead motion_ahead(Slot s);
   void move(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
   void book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const;
   void note_leavers(Slot s, std::size_t cohort, std::size_t b, const BrickFrame& frame,
@@ -112,7 +117,9 @@ class Passes {
   double erosion_volume_;
   std::vector<Workplace> workplaces_;
   std::vector<std::vector<Leaver>> leavers_;  ///< by slot
-  std::vector<double> critical_;              ///< by slot; USF: largest critical speed of the stress pass
+  /// By slot; MUSL: the nodes' motion, kept between the passes that move them and the particles on them.
+  AlignedDoubles motion_;
+  std::vector<double> critical_;  ///< by slot; USF: largest critical speed of the stress pass
 };
 
 }  // namespace mpm::core

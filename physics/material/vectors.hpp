@@ -5,11 +5,16 @@
 
 namespace mpm::physics {
 
+/// Lines of each of the batch's `ahead` that the stages of the update ask for, in proportion to their work.
+inline constexpr int lines_of_kinematics = 1, lines_of_strength = 8, lines_of_pressure = 7;
+static_assert(lines_of_kinematics + lines_of_strength + lines_of_pressure == core::lines_asked_by_materials);
+
 /// f(block, row): `block + layout.offset(column)` is where the vector's values of a column lie, `row` its
-/// place in the rows of the batch.
-template <class T, class F>
-inline void for_each_vector(const core::Batch& batch, F f) {
+/// place in the rows of the batch. Each block first asks for `lines` of its `ahead`.
+template <class T, int lines = 0, class B, class F>
+inline void for_each_vector(B& batch, F f) {
   for (int b = 0; b < batch.blocks; ++b) {
+    if constexpr (lines > 0) batch.ahead[b].ask(lines);
     for (int lane = 0; lane < core::block_lanes; lane += core::LaneTraits<T>::width) {
       f(batch.block[b] + lane, core::block_lanes * b + lane);
     }

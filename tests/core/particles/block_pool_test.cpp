@@ -97,7 +97,7 @@ TEST_CASE(
   BlockPool pool(layout_with(Column::damage));
   std::vector<BlockIndex> blocks;
   std::vector<const double*> addresses;
-  for (int i = 0; i < 9000; ++i) {  // more than two slabs
+  for (int i = 0; i < 70000; ++i) {  // more than two slabs
     blocks.push_back(pool.allocate());
     addresses.push_back(pool.block(blocks.back()));
     pool.block(blocks.back())[0] = i;
