@@ -24,7 +24,7 @@ namespace {
 constexpr std::int64_t most_cells = std::int64_t{brick_cells}
                                     << 20;             // brick coordinates have 21 bits, one of them spare
 constexpr std::uint64_t units_in_run = 16;             // of a body, that one rank makes in one go
-constexpr std::size_t seeds_in_piece = 1 << 16;        // seeds that a rank makes between two sends
+constexpr std::size_t seeds_in_piece = 1 << 14;        // seeds that a rank makes between two sends
 constexpr double exact_integers = 9007199254740992.0;  // identities are kept in doubles, 2^53
 
 /// This rank's share of a body's units, in pieces: f(seeds). Every ranks-th run of units is ours.

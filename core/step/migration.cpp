@@ -136,6 +136,7 @@ void Migration::collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& h
 
 void Migration::merge(Harvest& h) {
   Books& books = model_.books;
+  if (travellers_.size() == 0) std::swap(travellers_, h.travellers);  // mostly all there are
   for (std::size_t i = 0; i < h.travellers.size(); ++i) {
     const Travellers::Head& head = h.travellers.heads[i];
     travellers_.add(head.to, head.body, &h.travellers.columns[h.travellers.offsets[i]],
@@ -189,6 +190,9 @@ void Migration::deliver(bool claim) {
   }
   exchange_.migrate(*model_.grid, travellers_, columns_of_);
   insert_travellers(model_, travellers_);
+  // Where a lattice moves with one velocity, whole layers cross at once: too rare to keep room for.
+  constexpr std::size_t kept = std::size_t{1} << 18;  // doubles
+  if (travellers_.columns.capacity() > kept) travellers_ = {};
 }
 
 void insert_travellers(Model& model, const Travellers& travellers) {
