@@ -1,6 +1,6 @@
-// What a pass asks memory for before it comes to it. The hardware follows one brick's blocks, but does not
-// guess where the next brick's lie, nor the neighbours' nodes; asked for a few lines at a time while another
-// brick is worked on, all of them are there in time.
+// What a pass asks memory for before it comes to it. The hardware does not guess which columns of the next
+// blocks are wanted, where the next brick's blocks lie, nor the neighbours' nodes; left to it, a pass takes
+// twice as long. Asked for a few lines at a time while something else is worked on, all are there in time.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,8 @@ inline std::size_t blocks_of(const Brick& brick) {
   return n;
 }
 
-/// Asks for what says where the coming bricks' particles lie: a chain of three, so three bricks ahead.
+/// Asks for what says where the coming bricks' particles lie. One leads to the next: a brick to its cohorts,
+/// these to the numbers of their blocks. So each is asked for one brick later than what leads to it.
 inline void ask_for_coming_bricks(const BrickGrid& grid, Slot now) {
   const auto line = [](const void* at, std::size_t n) {
     __builtin_prefetch(static_cast<const char*>(at) + 64 * n, 0, 3);
@@ -71,7 +72,8 @@ class BlocksAhead {
   const Cohort* then_ = nullptr;
 };
 
-/// Asks for the room into which the next brick's contributions will go, a few lines at a time.
+/// Asks for what a pass keeps of the next brick's nodes, above all the room into which its contributions will
+/// go, a few lines at a time.
 class RoomAhead {
  public:
   RoomAhead(double* room, int doubles, std::size_t calls)
