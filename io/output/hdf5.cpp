@@ -4,20 +4,21 @@
 
 #include <fmt/format.h>
 
+#include "io/output/hdf5_driver.hpp"
 #include "parallel/communicator.hpp"
 
 namespace mpm::io::hdf5 {
 
 namespace {
 
-/// Once per process: no printing of errors, no clean-up at exit (a file that could not be written would fail
-/// again).
+/// Once per process: no printing of errors, no clean-up at exit (MPI_Finalize has done it).
 void prepare() {
   [[maybe_unused]] static const bool done = [] {
     H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     return true;
   }();
+  failure().clear();
 }
 
 herr_t keep_innermost(unsigned n, const H5E_error2_t* error, void* text) {
@@ -29,6 +30,7 @@ herr_t keep_innermost(unsigned n, const H5E_error2_t* error, void* text) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
   H5Eclear2(H5E_DEFAULT);
+  if (!failure().empty()) throw FileError(failure());
   throw FileError(fmt::format("cannot {}: {}", doing, reason.empty() ? "HDF5 gives no reason" : reason));
 }
 
@@ -40,6 +42,7 @@ Handle access_properties() {
   // Locks fail on some parallel file systems, and would keep viewers from reading a file that is being
   // written.
   check(H5Pset_file_locking(list, false, true), "switch off file locks");
+  check(H5Pset_driver(list, driver(), nullptr), "choose the driver for files");
   return list;
 }
 
@@ -143,7 +146,7 @@ void Handle::close(const std::string& doing) {
 }
 
 void check(herr_t status, const std::string& doing) {
-  if (status < 0) fail(doing);
+  if (status < 0 || !failure().empty()) fail(doing);
 }
 
 Handle open_file(const std::string& path, Access access) {

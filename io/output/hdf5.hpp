@@ -1,9 +1,10 @@
 // Thin owners over HDF5's C interface: handles that close themselves, attributes, rows of datasets. Every
-// return code is checked; a failure is a FileError with the library's innermost message.
+// return code is checked; a failure is a FileError with the system's reason or the library's innermost
+// message.
 //
-// A disk that fills up inside HDF5 cannot be survived: the library keeps what it could not write and fails at
-// every later call. So space is reserved (File::reserve) before HDF5 is let at a file, and structure is made
-// by one rank alone, data by all into space that is there already.
+// A write that fails inside HDF5 spoils the file. So space is reserved (File::reserve) before HDF5 is let at
+// it, and structure is made by one rank alone, data by all into space that is there already. What fails even
+// so (a device, a limit lowered meanwhile) is remembered by the driver and reported here.
 #pragma once
 
 #include <cstdint>
