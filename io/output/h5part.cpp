@@ -7,7 +7,7 @@
 
 #include "io/output/file.hpp"
 #include "io/output/hdf5.hpp"
-#include "io/output/row_batches.hpp"
+#include "io/output/shared_rows.hpp"
 
 namespace mpm::io {
 
@@ -71,8 +71,8 @@ std::vector<BodyFacts> facts_of_all(const core::Model& model) {
 
 template <class T>
 void fill(const core::Model& model, const RowBatch& batch, const Field& field,
-          const std::vector<BodyFacts>& facts, std::vector<std::byte>& memory) {
-  T* out = reinterpret_cast<T*>(memory.data());
+          const std::vector<BodyFacts>& facts, std::byte* memory) {
+  T* out = reinterpret_cast<T*>(memory);
   for_each_block(model, batch,
                  [&](std::size_t body, const core::ColumnLayout& layout, const double* block, int used,
                      std::size_t first) {
@@ -87,8 +87,7 @@ void fill(const core::Model& model, const RowBatch& batch, const Field& field,
 }
 
 void fill(const core::Model& model, const RowBatch& batch, const Field& field, bool double_precision,
-          const std::vector<BodyFacts>& facts, std::vector<std::byte>& memory) {
-  memory.resize(batch.particles * types_of(field.kind, double_precision).bytes);
+          const std::vector<BodyFacts>& facts, std::byte* memory) {
   switch (field.kind) {
     case Kind::identity: fill<std::int64_t>(model, batch, field, facts, memory); break;
     case Kind::integer: fill<std::int32_t>(model, batch, field, facts, memory); break;
@@ -187,21 +186,16 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
 
 void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchange,
                                 const std::vector<RowBatch>& batches) {
-  hdf5::Handle file = hdf5::open_file_together(settings_.path, exchange);
-  {
-    const std::vector<BodyFacts> facts = facts_of_all(model);
-    const hdf5::Handle group = hdf5::open_group(file, work);
-    std::vector<std::byte> memory;
-    for (const Field& field : fields_) {
-      const hdf5::Handle dataset = hdf5::open_dataset(group, field.name);
-      for (const RowBatch& batch : batches) {
-        fill(model, batch, field, settings_.double_precision, facts, memory);
-        hdf5::write_rows(dataset, types_of(field.kind, settings_.double_precision).memory, batch.rows,
-                         memory.data(), exchange.size() > 1);
-      }
-    }
+  const std::vector<BodyFacts> facts = facts_of_all(model);
+  std::vector<SharedRows> datasets;
+  for (const Field& field : fields_) {
+    const Types types = types_of(field.kind, settings_.double_precision);
+    datasets.push_back({std::string(work) + "/" + field.name, types.memory, types.bytes, batches,
+                        [&](const RowBatch& batch, std::byte* memory) {
+                          fill(model, batch, field, settings_.double_precision, facts, memory);
+                        }});
   }
-  file.close("write '" + settings_.path + "'");
+  write_together(settings_.path, datasets, exchange);
 }
 
 void H5PartWriter::name_step() {
@@ -229,11 +223,7 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
   together(exchange, [&] {
     if (exchange.rank() == 0) add_step(model.clock, particles);
   });
-  std::string complaint;
-  try {
-    write_fields(model, exchange, batches);
-  } catch (const FileError& e) { complaint = e.what(); }
-  agree(exchange, complaint);
+  write_fields(model, exchange, batches);
   together(exchange, [&] {
     if (exchange.rank() == 0) name_step();
   });

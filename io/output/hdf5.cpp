@@ -295,11 +295,11 @@ bool has_attribute(hid_t object, const std::string& name) {
 }
 
 void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values,
-                bool together) {
+                bool together, const std::string& doing) {
   const auto [file, memory] = select(dataset, stretches);
   const Handle transfer = properties(H5P_DATASET_XFER);
   if (together) check(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE), "choose collective transfer");
-  check(H5Dwrite(dataset, memory_type, memory, file, transfer, values), "write rows of a dataset");
+  check(H5Dwrite(dataset, memory_type, memory, file, transfer, values), doing);
 }
 
 void read_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, void* values) {

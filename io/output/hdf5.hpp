@@ -91,9 +91,9 @@ struct Rows {
   hsize_t count = 0;
 };
 /// The rows of all stretches, which ascend and do not overlap, between `dataset` and memory where they follow
-/// each other. Writing in a file that all ranks opened together is collective.
+/// each other. Writing in a file that all ranks opened together is collective; `doing` is for its error.
 void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values,
-                bool together);
+                bool together, const std::string& doing);
 void read_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, void* values);
 
 }  // namespace mpm::io::hdf5

@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
 #include "io/output/file.hpp"
-#include "io/output/hdf5.hpp"
-#include "io/output/row_batches.hpp"
+#include "io/output/shared_rows.hpp"
 #include "io/restart/contents.hpp"
 #include "io/restart/files.hpp"
 #include "io/restart/restart.hpp"
@@ -24,46 +23,34 @@ std::vector<Extent> make_room(const std::string& part, const RestartContents& co
   return rows;
 }
 
-void fill(const core::Model& model, const RowBatch& batch, int columns, std::vector<double>& rows) {
-  rows.resize(batch.particles * static_cast<std::size_t>(columns));
+void fill(const core::Model& model, const RowBatch& batch, int columns, double* rows) {
   for_each_block(
       model, batch,
       [&](std::size_t, const core::ColumnLayout&, const double* block, int used, std::size_t first) {
-        double* row = rows.data() + first * static_cast<std::size_t>(columns);
+        double* row = rows + first * static_cast<std::size_t>(columns);
         for (int i = 0; i < used; ++i) {
           for (int c = 0; c < columns; ++c) *row++ = block[core::block_lanes * c + i];
         }
       });
 }
 
-void write_rows_of(std::size_t body, const std::vector<RowBatch>& batches, hid_t file,
-                   const core::Model& model, core::Exchange& exchange) {
-  const int columns = model.bodies[body].pool->layout().columns();
-  const hdf5::Handle dataset = hdf5::open_dataset(file, rows_name(body));
-  std::vector<double> rows;
-  for (const RowBatch& batch : batches) {
-    fill(model, batch, columns, rows);
-    hdf5::write_rows(dataset, H5T_NATIVE_DOUBLE, batch.rows, rows.data(), exchange.size() > 1);
-  }
-}
-
 void write_all_rows(const std::string& part, const ParticleOrder& order, const core::Model& model,
                     core::Exchange& exchange) {
-  std::vector<std::vector<RowBatch>> batches;  // of each body
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    std::vector<std::int64_t> first_row(model.bodies.size(), left_out);
+  const std::size_t bodies = model.bodies.size();
+  std::vector<std::vector<RowBatch>> batches(bodies);
+  std::vector<SharedRows> datasets;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    const core::ColumnLayout& layout = model.bodies[b].pool->layout();
+    const auto bytes = static_cast<std::size_t>(layout.bytes_per_particle());
+    std::vector<std::int64_t> first_row(bodies, left_out);
     first_row[b] = 0;
-    const std::size_t most =
-        bytes_at_once / static_cast<std::size_t>(model.bodies[b].pool->layout().bytes_per_particle());
-    batches.push_back(cut_into_batches(model, order, first_row, most, exchange));
+    batches[b] = cut_into_batches(model, order, first_row, bytes_at_once / bytes, exchange);
+    datasets.push_back({rows_name(b), H5T_NATIVE_DOUBLE, bytes, batches[b],
+                        [&model, columns = layout.columns()](const RowBatch& batch, std::byte* memory) {
+                          fill(model, batch, columns, reinterpret_cast<double*>(memory));
+                        }});
   }
-  std::string complaint;
-  try {
-    hdf5::Handle file = hdf5::open_file_together(part, exchange);
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) write_rows_of(b, batches[b], file, model, exchange);
-    file.close("write '" + part + "'");
-  } catch (const FileError& e) { complaint = e.what(); }
-  agree(exchange, complaint);
+  write_together(part, datasets, exchange);
   together(exchange, [&] { File(part, File::Mode::read).sync(); });
 }
 

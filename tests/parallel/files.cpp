@@ -1,6 +1,7 @@
 // Files that all ranks write and read together: the same contents on any number of ranks, and errors that all
 // ranks report alike.
 #include <bit>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "io/output/hdf5.hpp"
 #include "io/output/history_file.hpp"
 #include "io/output/particle_order.hpp"
+#include "io/output/shared_rows.hpp"
 #include "io/output/status_file.hpp"
 #include "io/output/vtu.hpp"
 #include "io/restart/restart.hpp"
@@ -237,6 +239,60 @@ TEST_CASE("A full disk is the same error on every rank, and the last good file s
     CHECK_THAT(common_error([&] { vtu.write(model, exchange); }),
                Catch::Contains("_" + std::to_string(world().size() - 1) + ".vtu': File too large"));
   }
+}
+
+TEST_CASE("A write by all ranks together that fails, wherever it does, is an error on every rank") {
+  parallel::MpiExchange exchange(world());
+  const SharedFolder folder("parallel_rows", exchange);
+  const std::string path = folder / "a.h5";
+  constexpr hsize_t rows_per_rank = 4000;
+  const auto rank = static_cast<hsize_t>(world().rank());
+  const hsize_t all = rows_per_rank * static_cast<hsize_t>(world().size());
+  std::vector<io::RowBatch> batches;
+  for (const hsize_t half : {hsize_t{0}, rows_per_rank / 2})
+    batches.push_back({{{rank * rows_per_rank + half, rows_per_rank / 2}}, {}, rows_per_rank / 2});
+  const io::SharedRows rows{"rows", H5T_NATIVE_DOUBLE, sizeof(double), batches,
+                            [](const io::RowBatch& batch, std::byte* memory) {
+                              for (std::size_t i = 0; i < batch.particles; ++i) {
+                                const double value = static_cast<double>(batch.rows[0].first + i);
+                                std::memcpy(memory + i * sizeof value, &value, sizeof value);
+                              }
+                            }};
+  const auto write = [&] { io::write_together(path, std::span(&rows, 1), exchange); };
+  const auto make = [&] {
+    io::together(exchange, [&] {
+      if (rank != 0) return;
+      io::hdf5::Handle file = io::hdf5::create_file(path);
+      io::hdf5::create_dataset(file, "rows", H5T_IEEE_F64LE, std::span(&all, 1));
+      file.close("write '" + path + "'");
+    });
+  };
+  for (std::size_t room = 3000; room < sizeof(double) * all; room += 15000) {
+    CAPTURE(room);
+    make();
+    {
+      const SmallDisk disk(room);
+      CHECK_THAT(common_error(write), Catch::StartsWith("cannot write '" + path + "'"));
+    }
+    CHECK(H5Fget_obj_count(hid_t{H5F_OBJ_ALL}, H5F_OBJ_ALL) == 0);
+  }
+  make();
+  if (world().size() > 1) {
+    // As if something else were in the file.
+    io::SharedRows other = rows;
+    other.fill = [&, calls = 0](const io::RowBatch& batch, std::byte* memory) mutable {
+      rows.fill(batch, memory);
+      if (calls++ == 0 && rank == 1) memory[77] ^= std::byte{1};
+    };
+    CHECK_THAT(common_error([&] { io::write_together(path, std::span(&other, 1), exchange); }),
+               Catch::Contains("'rows' does not read back the same"));
+  }
+  write();
+  io::together(exchange, [&] {
+    const io::hdf5::Handle file = io::hdf5::open_file(path, io::hdf5::Access::read);
+    const std::vector<double> found = io::hdf5::read_all_double(file, "rows");
+    for (std::size_t i = 0; i < all; ++i) REQUIRE(found.at(i) == static_cast<double>(i));
+  });
 }
 
 TEST_CASE("A damaged or missing restart file is the same error on every rank") {
