@@ -163,7 +163,7 @@ class Killed(Files):
         case = self.write(_mpm.bounce(END, restarts_every(1e-9)))
         moments = random.Random(1)
         rounds = kills = 0
-        while kills < 10 and rounds < 30:
+        while (kills < 10 or not _mpm.restarts(self.out)) and rounds < 30:  # a kill may come before the first file
             rounds += 1
             there = _mpm.restarts(self.out)
             process = _mpm.start([self.out / "case.pe" if there else case, "--output-dir", self.out])
@@ -175,9 +175,11 @@ class Killed(Files):
             self.assertIn(outcome.code, (DONE, -signal.SIGKILL), outcome)
             if there:
                 self.assertGreater(len(_mpm.restarts(self.out)), 0)
-            if outcome.code == DONE and kills < 10:
+            if outcome.code == DONE:
+                if kills >= 10:
+                    break
                 shutil.rmtree(self.out)  # and once more from the start
-        self.assertEqual(kills, 10, "the run is too short to be killed")
+        self.assertGreaterEqual(kills, 10, "the run is too short to be killed")
         self.go_on()
         self.assertEqual([name for name in _mpm.names(self.out) if ".part" in name], [], "what the killed runs left")
 
