@@ -221,10 +221,12 @@ class Run {
   }
 
   void save() {
+    const double before = clock_.seconds();
     const std::string path = io::write_restart(options_.output_dir, case_.scene->provenance.job_name, model_,
                                                {case_.bytes, outputs_->tracked(), {}}, exchange_);
     log_->say("restart    {} at step {}, time {:.6g}", path, model_.clock.step, model_.clock.time);
     last_restart_ = path;
+    save_seconds_ += clock_.seconds() - before;
   }
 
   /// What had a defined answer instead of an ordinary one, in particles times steps. Collective.
@@ -255,7 +257,7 @@ class Run {
     report.seconds_total = clock_.seconds();
     report.seconds_setup = setup_seconds_;
     report.seconds_loop = loop_seconds;
-    report.seconds_output = outputs_->seconds();
+    report.output = exchange_.spread(outputs_->seconds() + save_seconds_);
     for (const core::Phase& p : stepper_->phases())
       report.phases.emplace_back(p.name, exchange_.spread(p.seconds));
     report.particle_steps = exchange_.spread(particle_steps_).mean * exchange_.size();
@@ -303,6 +305,7 @@ class Run {
   Interval restart_;
   std::string last_restart_;
   double setup_seconds_ = 0;
+  double save_seconds_ = 0;
   double particle_steps_ = 0;
 };
 

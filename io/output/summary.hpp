@@ -21,8 +21,8 @@ struct RunReport {
   double seconds_total = 0;
   double seconds_setup = 0;
   double seconds_loop = 0;
-  double seconds_output = 0;
-  /// Per phase of the step, in its order: over the ranks.
+  core::Exchange::Spread output;  ///< seconds of tables, pictures and restart files, over the ranks
+  /// Per phase of the step, in its order: likewise.
   std::vector<std::pair<std::string, core::Exchange::Spread>> phases;
   /// Sum over the steps of this run of the particles in each.
   double particle_steps = 0;
