@@ -29,26 +29,16 @@ struct Settings {
   bool materials = false;
 };
 
-/// Does, and adds what is thrown to the complaints.
-template <class F>
-void collect(std::vector<core::Diagnostic>& complaints, F f) {
-  try {
-    f();
-  } catch (const core::InputErrors& errors) {
-    complaints.insert(complaints.end(), errors.diagnostics().begin(), errors.diagnostics().end());
-  }
-}
-
 /// Makes every material and the sources of all particles, whose files it reads to their ends: the number of
 /// particles, an estimate. Throws every complaint about what the laws, shapes and files forbid together.
 double make_everything(const core::Scene& scene) {
   double count = 0;
-  std::vector<core::Diagnostic> wrong;
-  collect(wrong, [&] { physics::make_materials(scene); });
+  core::Complaints wrong;
+  wrong.collect([&] { physics::make_materials(scene); });
   core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
-    collect(wrong, [&] { count += core::make_seed_source(scene, body)->expected_particles(); });
+    wrong.collect([&] { count += core::make_seed_source(scene, body)->expected_particles(); });
   });
-  if (!wrong.empty()) throw core::InputErrors(std::move(wrong));
+  wrong.raise_if_any();
   return count;
 }
 

@@ -29,8 +29,8 @@ class Checks {
   void require(bool holds, std::string_view element, std::string_view attribute, double value,
                std::string_view what) {
     if (holds) return;
-    errors_.push_back({body_.source.file, body_.source.line, std::string(element), std::string(attribute),
-                       fmt::format("{}", value), fmt::format("body `{}`: expected {}", body_.name, what)});
+    errors_.add({body_.source.file, body_.source.line, std::string(element), std::string(attribute),
+                 fmt::format("{}", value), fmt::format("body `{}`: expected {}", body_.name, what)});
   }
   void positive(std::string_view attribute, double value) {
     require(std::isfinite(value) && value > 0, "Geometry", attribute, value, "a number above 0");
@@ -43,13 +43,11 @@ class Checks {
     require(std::isfinite(outer) && inner >= 0 && inner <= outer, "Geometry", inner_name, inner,
             "0 <= inner radius <= outer radius");
   }
-  void throw_any() {
-    if (!errors_.empty()) throw InputErrors(std::move(errors_));
-  }
+  void raise_if_any() { errors_.raise_if_any(); }
 
  private:
   const BodyInput& body_;
-  std::vector<Diagnostic> errors_;
+  Complaints errors_;
 };
 
 void check(Checks& checks, const PointGeometry& points) {
@@ -104,7 +102,7 @@ void check(const BodyInput& body) {
     checks.require(std::isfinite(body.density) && body.density > 0, "Body", "density", body.density,
                    "a number above 0");
   std::visit([&](const auto& geometry) { check(checks, geometry); }, body.geometry);
-  checks.throw_any();
+  checks.raise_if_any();
 }
 
 /// Makes a source from the alternative that a body holds.

@@ -42,4 +42,26 @@ class InputErrors : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
+/// What several checks complain about, to be thrown together.
+class Complaints {
+ public:
+  /// Run f(); what it throws as InputErrors is kept.
+  template <class F>
+  void collect(F f) {
+    try {
+      f();
+    } catch (const InputErrors& errors) {
+      found_.insert(found_.end(), errors.diagnostics().begin(), errors.diagnostics().end());
+    }
+  }
+  void add(Diagnostic diagnostic) { found_.push_back(std::move(diagnostic)); }
+  /// Throws InputErrors if there are any.
+  void raise_if_any() {
+    if (!found_.empty()) throw InputErrors(std::move(found_));
+  }
+
+ private:
+  std::vector<Diagnostic> found_;
+};
+
 }  // namespace mpm::core

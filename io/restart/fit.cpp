@@ -33,13 +33,13 @@ class Fitting {
     for (std::size_t b = 0; b < filled.size(); ++b) {
       if (!filled[b]) fit.new_bodies.push_back(b);
     }
-    if (!wrong_.empty()) throw core::InputErrors(std::move(wrong_));
+    wrong_.raise_if_any();
     return fit;
   }
 
  private:
   void complain(const core::SourceLocation& where, const std::string& name, std::string message) {
-    wrong_.push_back({where.file, where.line, "Body", "name", name, std::move(message)});
+    wrong_.add({where.file, where.line, "Body", "name", name, std::move(message)});
   }
 
   std::optional<Fit::Body> place(const BodyRecord& record) {
@@ -131,7 +131,7 @@ class Fitting {
   const RestartContents& contents_;
   const core::Model& model_;
   std::vector<std::string>& notices_;
-  std::vector<core::Diagnostic> wrong_;
+  core::Complaints wrong_;
 };
 
 }  // namespace

@@ -148,15 +148,10 @@ std::unique_ptr<core::ConstitutiveModel> make_material(const core::MaterialInput
 
 std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene) {
   std::vector<std::unique_ptr<core::ConstitutiveModel>> materials;
-  std::vector<core::Diagnostic> wrong;
-  for (const core::MaterialInput& input : scene.materials) {
-    try {
-      materials.push_back(make_material(input, scene.detonations));
-    } catch (const core::InputErrors& errors) {
-      wrong.insert(wrong.end(), errors.diagnostics().begin(), errors.diagnostics().end());
-    }
-  }
-  if (!wrong.empty()) throw core::InputErrors(std::move(wrong));
+  core::Complaints wrong;
+  for (const core::MaterialInput& input : scene.materials)
+    wrong.collect([&] { materials.push_back(make_material(input, scene.detonations)); });
+  wrong.raise_if_any();
   return materials;
 }
 
