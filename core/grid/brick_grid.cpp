@@ -2,24 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
-#include <new>
-
-#include <sys/mman.h>
 
 namespace mpm::core {
 
 void AlignedDoubles::resize(std::size_t n) {
   if (n > capacity_) {
-    const std::size_t wanted = (n + n / 8) * sizeof(double);  // bricks come one by one; do not move for each
-    // Whole huge pages, but not for what fills a small part of one.
-    constexpr std::size_t page = 4096, huge_page = std::size_t{1} << 21;
-    const std::size_t alignment = wanted < huge_page ? page : huge_page;
-    const std::size_t bytes = (wanted + alignment - 1) / alignment * alignment;
     data_.reset();
-    data_.reset(static_cast<double*>(std::aligned_alloc(alignment, bytes)));
-    if (!data_) throw std::bad_alloc();
-    if (alignment == huge_page) madvise(data_.get(), bytes, MADV_HUGEPAGE);
-    capacity_ = bytes / sizeof(double);
+    capacity_ = n + n / 8;  // bricks come one by one; do not move for each
+    data_ = allocate_pages(capacity_);
   }
   size_ = n;
 }

@@ -6,12 +6,12 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "core/grid/brick.hpp"
+#include "core/pages.hpp"
 #include "core/particles/block_pool.hpp"
 
 namespace mpm::core {
@@ -19,7 +19,7 @@ namespace mpm::core {
 using Slot = std::int32_t;
 inline constexpr Slot no_slot = -1;
 
-/// 64-byte aligned doubles that may grow; contents are undefined after a resize.
+/// Doubles from the start of a page on that may grow; contents are undefined after a resize.
 class AlignedDoubles {
  public:
   void resize(std::size_t n);
@@ -29,10 +29,7 @@ class AlignedDoubles {
   std::size_t bytes() const { return capacity_ * sizeof(double); }
 
  private:
-  struct Free {
-    void operator()(double* p) const { std::free(p); }
-  };
-  std::unique_ptr<double[], Free> data_;
+  Pages data_;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };

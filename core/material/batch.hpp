@@ -44,8 +44,10 @@ struct LinesAhead {
   const double* last = nullptr;
   /// Inlined without fail: g++ takes a function that only prefetches for one that does nothing, and drops the
   /// call.
+  template <bool to_write = false>
   [[gnu::always_inline]] void ask(int lines) {
-    for (int i = 0; i < lines && next < last; ++i, next += block_lanes) __builtin_prefetch(next, 0, 2);
+    for (int i = 0; i < lines && next < last; ++i, next += block_lanes)
+      __builtin_prefetch(next, to_write ? 1 : 0, 2);
   }
 };
 /// What a material's update asks for of each of the batch's `ahead`.

@@ -1,9 +1,6 @@
 #include "core/particles/block_pool.hpp"
 
 #include <cstring>
-#include <new>
-
-#include <sys/mman.h>
 
 namespace mpm::core {
 
@@ -24,13 +21,8 @@ BlockIndex BlockPool::allocate() {
     free_.pop_back();
   } else {
     if (next_ % slab_blocks == 0) {
-      constexpr std::size_t page = std::size_t{1} << 21;
-      const std::size_t bytes =
-          sizeof(double) * slab_blocks * static_cast<std::size_t>(layout_.block_doubles());
-      void* p = std::aligned_alloc(page, bytes);
-      if (p == nullptr) throw std::bad_alloc();
-      madvise(p, bytes, MADV_HUGEPAGE);  // a hint: fewer address translations in the passes over particles
-      slabs_.emplace_back(static_cast<double*>(p));
+      std::size_t doubles = slab_blocks * static_cast<std::size_t>(layout_.block_doubles());
+      slabs_.push_back(allocate_pages(doubles));
     }
     i = next_++;
   }

@@ -3,11 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <mutex>
 #include <vector>
 
+#include "core/pages.hpp"
 #include "core/particles/columns.hpp"
 
 namespace mpm::core {
@@ -32,16 +31,13 @@ class BlockPool {
 
  private:
   static constexpr BlockIndex slab_blocks = 32768;  // their columns fill whole huge pages: one each
-  struct Free {
-    void operator()(double* p) const { std::free(p); }
-  };
   std::size_t slab_offset(BlockIndex i) const {
     return static_cast<std::size_t>(i % slab_blocks) * static_cast<std::size_t>(layout_.block_doubles());
   }
 
   ColumnLayout layout_;
   // Reserved up front, so that block() may run while another thread allocates.
-  std::vector<std::unique_ptr<double[], Free>> slabs_;
+  std::vector<Pages> slabs_;
   std::vector<BlockIndex> free_;
   BlockIndex next_ = 0;
   std::mutex mutex_;

@@ -76,18 +76,15 @@ class BlocksAhead {
 /// go, a few lines at a time.
 class RoomAhead {
  public:
+  /// `calls`: how often next() will be called.
   RoomAhead(double* room, int doubles, std::size_t calls)
-      : next_(room), last_(room == nullptr ? nullptr : room + doubles) {
-    step_ = (doubles / block_lanes + static_cast<int>(calls)) / std::max<int>(static_cast<int>(calls), 1);
-  }
-  [[gnu::always_inline]] void next() {
-    for (int i = 0; i < step_ && next_ < last_; ++i, next_ += block_lanes) __builtin_prefetch(next_, 1, 2);
-  }
+      : room_{room, room == nullptr ? nullptr : room + doubles},
+        lines_((doubles / block_lanes + static_cast<int>(calls)) / std::max(static_cast<int>(calls), 1)) {}
+  [[gnu::always_inline]] void next() { room_.ask<true>(lines_); }
 
  private:
-  double* next_;
-  double* last_;
-  int step_;
+  LinesAhead room_;
+  int lines_;
 };
 
 /// Asks for what sum_contributions will read for a brick, a few records at a time, while another brick is

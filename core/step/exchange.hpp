@@ -29,7 +29,11 @@ struct Travellers {
     columns.insert(columns.end(), first, first + n);
   }
   std::size_t size() const { return heads.size(); }
+  /// Keeps the room of a usual step. Where a lattice moves with one velocity, whole layers cross at once: too
+  /// rare to keep room for.
   void clear() {
+    constexpr std::size_t kept = std::size_t{1} << 18;
+    if (columns.capacity() > kept) *this = {};
     heads.clear();
     offsets.clear();
     columns.clear();

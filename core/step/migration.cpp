@@ -167,7 +167,6 @@ void Migration::merge(Harvest& h) {
 }
 
 void Migration::collect(std::vector<std::vector<Leaver>>& leavers) {
-  travellers_.clear();
   wanted_.clear();
   left_now_ = 0;
   first_left_ = complaint_ = {};
@@ -190,9 +189,7 @@ void Migration::deliver(bool claim) {
   }
   exchange_.migrate(*model_.grid, travellers_, columns_of_);
   insert_travellers(model_, travellers_);
-  // Where a lattice moves with one velocity, whole layers cross at once: too rare to keep room for.
-  constexpr std::size_t kept = std::size_t{1} << 18;  // doubles
-  if (travellers_.columns.capacity() > kept) travellers_ = {};
+  travellers_.clear();
 }
 
 void insert_travellers(Model& model, const Travellers& travellers) {

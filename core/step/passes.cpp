@@ -6,6 +6,7 @@
 
 #include "core/simd/denormals.hpp"
 #include "core/step/ahead.hpp"
+#include "core/step/speeds.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {
@@ -162,48 +163,6 @@ void Passes::move_nodes(Slot s, Workplace& at) {
 
 // --- particles --------------------------------------------------------------------------------------------
 
-void Passes::hold_velocities(const Body& body, double* block, int used, Workplace& at) {
-  const ColumnLayout& layout = body.pool->layout();
-  for (int i = 0; i < used; ++i) {
-    double* lane = block + i;
-    double* v[3];
-    for (int a = 0; a < 3; ++a) v[a] = lane + layout.offset(next(Column::velocity_x, a));
-    if (body.prescribed_velocity) {
-      // What holds the velocity gives momentum m (v_p - v) at velocity v_p.
-      const Vec3<double>& p = *body.prescribed_velocity;
-      const double m = lane[layout.offset(Column::mass)];
-      at.work += m * ((p.x - *v[0]) * p.x + (p.y - *v[1]) * p.y + (p.z - *v[2]) * p.z);
-      for (int a = 0; a < 3; ++a) *v[a] = p[a];
-    } else {
-      const double speed = std::sqrt(*v[0] * *v[0] + *v[1] * *v[1] + *v[2] * *v[2]);
-      if (speed > velocity_limit_) {
-        at.work +=
-            0.5 * lane[layout.offset(Column::mass)] * (velocity_limit_ * velocity_limit_ - speed * speed);
-        for (int a = 0; a < 3; ++a) *v[a] *= velocity_limit_ / speed;
-        ++at.found.limited;
-      }
-    }
-  }
-}
-
-void Passes::fly_on(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
-  const ColumnLayout& layout = body.pool->layout();
-  const Vec3<double> pull = forces_.gravity + loads_.acceleration(number_of(body));
-  double* velocity = block + layout.offset(Column::velocity_x);
-  std::copy_n(velocity, 3 * block_lanes, at.before);
-  add_velocity_increment(place, layout, at.nodes.data(), block);
-  for (int i = 0; i < used; ++i) {
-    // As with a prescribed velocity: what turns the grid's answer into free flight does work on it.
-    const double m = block[layout.offset(Column::mass) + i];
-    for (int a = 0; a < 3; ++a) {
-      double& v = velocity[block_lanes * a + i];
-      const double free = at.before[block_lanes * a + i] + dt * pull[a];
-      at.work += m * (free - v) * free;
-      v = free;
-    }
-  }
-}
-
 /// v += dv; the work of loads belongs to the velocities from before it.
 void Passes::kick(Slot s, const Body& body, const BlockPlace& place, double* block, int used, Workplace& at) {
   if (const int number = number_of(body); loads_.act(*model_.grid, s, number))
@@ -231,42 +190,6 @@ void Passes::kick(Slot s, const Body& body, const BlockPlace& place, double* blo
   }
   at.book_work();
 }
-
-namespace {
-/// Largest of `most` and the first `used` lanes.
-double largest(Real value, int used, double most) {
-  double each[real_width];
-  store(each, value);
-  for (int i = 0; i < std::min(used, real_width); ++i) most = std::max(most, each[i]);
-  return most;
-}
-
-/// The squares of a block's speeds, from a lane on.
-Real squared_speed(const ColumnLayout& layout, const double* block, int lane) {
-  const double* v = block + layout.offset(Column::velocity_x) + lane;
-  const Real x = load<Real>(v), y = load<Real>(v + block_lanes), z = load<Real>(v + 2 * block_lanes);
-  return x * x + y * y + z * z;
-}
-
-double fastest_wave(const Batch& batch) {
-  double most = 0;
-  for (int i = 0; i < batch.particles; i += real_width)
-    most = largest(load<Real>(batch.critical_speed + i), batch.particles - i, most);
-  return most;
-}
-
-/// The largest of `most` and of the particles' wave speeds plus their own. A root is taken only where the sum
-/// may exceed what has been found: the square of the difference tells, with room for its rounding.
-double fastest_particle(const Batch& batch, double most) {
-  for (int i = 0; i < batch.particles; i += real_width) {
-    const Real wave = load<Real>(batch.critical_speed + i), room = Real(most) - wave;
-    const Real v2 = squared_speed(*batch.layout, batch.block[i / block_lanes], i % block_lanes);
-    if (any((room < Real(0.0)) | (v2 > Real(1 - 1e-12) * room * room)))
-      most = largest(wave + sqrt(v2), batch.particles - i, most);
-  }
-  return most;
-}
-}  // namespace
 
 template <bool moves, class F>
 [[gnu::noinline]] void Passes::stress_of_brick(Slot s, Velocities velocities, Workplace& at,
@@ -342,20 +265,6 @@ void Passes::move(const Body& body, const BlockPlace& place, double* block, int 
   if (books) book_motion(layout, block, used, at);
 }
 
-/// The work of gravity and damping in the motion that a block has just made from at.before.
-void Passes::book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const {
-  const Vec3<double> g = forces_.gravity;
-  const double* m = block + layout.offset(Column::mass);
-  const double* x = block + layout.offset(Column::position_x);
-  const double* v = block + layout.offset(Column::velocity_x);
-  for (int i = 0; i < used; ++i) {
-    for (int a = 0; a < 3; ++a) {
-      const int at_a = block_lanes * a + i;
-      at.work += m[i] * (g[a] - forces_.damping * v[at_a]) * (x[at_a] - at.before[at_a]);
-    }
-  }
-}
-
 void Passes::note_leavers(Slot s, std::size_t cohort, std::size_t b, const BrickFrame& frame,
                           const ColumnLayout& layout, const double* block, int used) {
   std::vector<Leaver>& leavers = leavers_[static_cast<std::size_t>(s)];
@@ -379,14 +288,19 @@ void Passes::note_leavers(Slot s, std::size_t cohort, std::size_t b, const Brick
   for (; outside != 0; outside &= outside - 1) note(__builtin_ctz(outside), false);
 }
 
-// --- what the schemes are made of
-// ---------------------------------------------------------------------------
+// --- what the schemes are made of -------------------------------------------------------------------------
 
 double* Passes::motion(Slot s) {
   return motion_.data() + static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(s);
 }
 
-/// The next brick's motion, asked for while this brick's blocks are worked on.
+/// What the next brick's nodes are made of, asked for while this brick's blocks are worked on.
+template <NodeArray of>
+[[gnu::always_inline]] inline ContributionsAhead<of> Passes::nodes_ahead(Slot s) const {
+  const BrickGrid& grid = *model_.grid;
+  return {grid, shared_, s + 1, blocks_of(grid.brick(s))};
+}
+
 RoomAhead Passes::motion_ahead(Slot s) {
   const BrickGrid& grid = *model_.grid;
   return {s + 1 < grid.owned() ? motion(s + 1) : nullptr, motion_doubles(), blocks_of(grid.brick(s))};
@@ -398,7 +312,7 @@ void Passes::update_velocities_and_map_back() {
   map_bricks<Mapped::momentum>([&](Slot s, Workplace& at) {
     move_nodes(s, at);
     keep_motion(shared_.nodes(), at.nodes.data(), motion(s));
-    ContributionsAhead<NodeArray::first> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    auto nodes = nodes_ahead<NodeArray::first>(s);
     RoomAhead room = motion_ahead(s);
     map_brick<Mapped::momentum>(s, [&](const Body& body, const BlockPlace& place, double* block, int used) {
       nodes.next();
@@ -417,7 +331,7 @@ void Passes::update_stress_and_move() {
     sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
     second_velocities(0, at.sums.data(), BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord),
                       shared_.nodes(), at.nodes.data());
-    ContributionsAhead<NodeArray::second> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    auto nodes = nodes_ahead<NodeArray::second>(s);
     RoomAhead room = motion_ahead(s);
     stress_of_brick<true>(s, Velocities::of_next_step, at, [&] {
       nodes.next();
@@ -434,7 +348,7 @@ void Passes::update_stress_and_map_forces() {
     second_velocities(grid.geometry().mass_cutoff, at.nodes.data(),
                       BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                       at.nodes.data());
-    ContributionsAhead<NodeArray::second> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    auto nodes = nodes_ahead<NodeArray::second>(s);
     stress_of_brick<false>(s, Velocities::of_last_step, at, [&] { nodes.next(); });
     map_brick<Mapped::force>(s, as_they_are);
   });
@@ -461,8 +375,8 @@ void Passes::update_velocities_and_move() {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
-  ContributionsAhead<NodeArray::first> first_ahead(grid, shared_, s + 1, blocks_of(brick));
-  ContributionsAhead<NodeArray::second> second_ahead(grid, shared_, s + 1, blocks_of(brick));
+  auto first_ahead = nodes_ahead<NodeArray::first>(s);
+  auto second_ahead = nodes_ahead<NodeArray::second>(s);
   double fastest_square = 0;
   for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
     const Cohort& cohort = brick.cohorts[c];
@@ -496,7 +410,7 @@ void Passes::update_all() {
     regularised_velocities(dt * forces_.gravity,
                            BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(s).coord), shared_.nodes(),
                            at.nodes.data());
-    ContributionsAhead<NodeArray::first> nodes(grid, shared_, s + 1, blocks_of(grid.brick(s)));
+    auto nodes = nodes_ahead<NodeArray::first>(s);
     stress_of_brick<true>(s, Velocities::of_next_step, at, [&] { nodes.next(); });
   });
 }

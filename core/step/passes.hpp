@@ -101,6 +101,8 @@ class Passes {
   void stress_of_brick(Slot s, Velocities velocities, Workplace& at, F ask_for_nodes);
   int motion_doubles() const { return motion_width * shared_.nodes(); }
   double* motion(Slot s);
+  template <NodeArray of>
+  ContributionsAhead<of> nodes_ahead(Slot s) const;
   RoomAhead motion_ahead(Slot s);
   void move(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
   void book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const;

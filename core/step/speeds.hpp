@@ -1,0 +1,46 @@
+// The largest speeds of a batch or block, which bound the time step.
+#pragma once
+
+#include <algorithm>
+
+#include "core/material/batch.hpp"
+#include "core/simd/lanes.hpp"
+
+namespace mpm::core {
+
+/// Largest of `most` and the first `used` lanes.
+inline double largest(Real value, int used, double most) {
+  double each[real_width];
+  store(each, value);
+  for (int i = 0; i < std::min(used, real_width); ++i) most = std::max(most, each[i]);
+  return most;
+}
+
+/// The squares of a block's speeds, from a lane on.
+inline Real squared_speed(const ColumnLayout& layout, const double* block, int lane) {
+  const double* v = block + layout.offset(Column::velocity_x) + lane;
+  const Real x = load<Real>(v), y = load<Real>(v + block_lanes), z = load<Real>(v + 2 * block_lanes);
+  return x * x + y * y + z * z;
+}
+
+/// The largest wave speed of the batch.
+inline double fastest_wave(const Batch& batch) {
+  double most = 0;
+  for (int i = 0; i < batch.particles; i += real_width)
+    most = largest(load<Real>(batch.critical_speed + i), batch.particles - i, most);
+  return most;
+}
+
+/// The largest of `most` and of the particles' wave speeds plus their own. A root is taken only where the sum
+/// may exceed what has been found: the square of the difference tells, with room for its rounding.
+inline double fastest_particle(const Batch& batch, double most) {
+  for (int i = 0; i < batch.particles; i += real_width) {
+    const Real wave = load<Real>(batch.critical_speed + i), room = Real(most) - wave;
+    const Real v2 = squared_speed(*batch.layout, batch.block[i / block_lanes], i % block_lanes);
+    if (any((room < Real(0.0)) | (v2 > Real(1 - 1e-12) * room * room)))
+      most = largest(wave + sqrt(v2), batch.particles - i, most);
+  }
+  return most;
+}
+
+}  // namespace mpm::core
