@@ -6,7 +6,7 @@
 
 namespace mpm::core {
 
-Pages allocate_pages(std::size_t& doubles) {
+Pages allocate_pages(std::size_t doubles) {
   constexpr std::size_t page = 4096, huge_page = std::size_t{1} << 21;
   const std::size_t wanted = doubles * sizeof(double);
   const std::size_t alignment = wanted < huge_page ? page : huge_page;
@@ -14,8 +14,7 @@ Pages allocate_pages(std::size_t& doubles) {
   Pages pages(static_cast<double*>(std::aligned_alloc(alignment, bytes)));
   if (!pages) throw std::bad_alloc();
   if (alignment == huge_page)
-    madvise(pages.get(), bytes, MADV_HUGEPAGE);  // a hint; whether it is taken or not
-  doubles = bytes / sizeof(double);
+    madvise(pages.get(), bytes, MADV_HUGEPAGE);  // a wish; where it is refused, all works as well
   return pages;
 }
 

@@ -12,9 +12,8 @@ struct FreePages {
 };
 using Pages = std::unique_ptr<double[], FreePages>;
 
-/// Room for at least `doubles`, which becomes the number that there is room for. Huge pages where it fills
-/// one: the passes over bricks touch more memory than small pages' addresses are kept for. Not initialised.
-/// Throws std::bad_alloc.
-Pages allocate_pages(std::size_t& doubles);
+/// Room for at least so many. Huge pages where it fills one: the passes over bricks touch more memory than
+/// small pages' addresses are kept for. Not initialised. Throws std::bad_alloc.
+Pages allocate_pages(std::size_t doubles);
 
 }  // namespace mpm::core

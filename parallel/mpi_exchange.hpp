@@ -69,8 +69,6 @@ class MpiExchange final : public core::Exchange {
   /// Collective.
   Spread spread(double mine) override;
 
-  /// For libraries that communicate by themselves; see communicator.hpp.
-  const Communicator& communicator() const { return comm_; }
   /// Who owns what; the same on every rank.
   const Directory& directory() const { return directory_; }
 

@@ -7,9 +7,11 @@ namespace mpm::core {
 
 void AlignedDoubles::resize(std::size_t n) {
   if (n > capacity_) {
+    const std::size_t wanted = n + n / 8;  // bricks come one by one; do not move for each
     data_.reset();
-    capacity_ = n + n / 8;  // bricks come one by one; do not move for each
-    data_ = allocate_pages(capacity_);
+    capacity_ = 0;
+    data_ = allocate_pages(wanted);
+    capacity_ = wanted;
   }
   size_ = n;
 }

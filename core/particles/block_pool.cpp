@@ -21,8 +21,7 @@ BlockIndex BlockPool::allocate() {
     free_.pop_back();
   } else {
     if (next_ % slab_blocks == 0) {
-      std::size_t doubles = slab_blocks * static_cast<std::size_t>(layout_.block_doubles());
-      slabs_.push_back(allocate_pages(doubles));
+      slabs_.push_back(allocate_pages(slab_blocks * static_cast<std::size_t>(layout_.block_doubles())));
     }
     i = next_++;
   }

@@ -32,7 +32,7 @@ struct Travellers {
   /// Keeps the room of a usual step. Where a lattice moves with one velocity, whole layers cross at once: too
   /// rare to keep room for.
   void clear() {
-    constexpr std::size_t kept = std::size_t{1} << 18;
+    constexpr std::size_t kept = std::size_t{1} << 18;  // doubles
     if (columns.capacity() > kept) *this = {};
     heads.clear();
     offsets.clear();

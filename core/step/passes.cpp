@@ -1,5 +1,6 @@
 #include "core/step/passes.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <omp.h>
@@ -301,6 +302,7 @@ template <NodeArray of>
   return {grid, shared_, s + 1, blocks_of(grid.brick(s))};
 }
 
+/// Likewise what is kept of their motion.
 RoomAhead Passes::motion_ahead(Slot s) {
   const BrickGrid& grid = *model_.grid;
   return {s + 1 < grid.owned() ? motion(s + 1) : nullptr, motion_doubles(), blocks_of(grid.brick(s))};
@@ -393,7 +395,7 @@ void Passes::update_velocities_and_move() {
       kick(s, body, place, block, used, at);
       move(body, place, block, used, at);
       for (int l = 0; l < used; l += real_width)
-        fastest_square = largest(squared_speed(layout, block, l), used - l, fastest_square);
+        fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
       note_leavers(s, c, b, frame, layout, block, used);
     }
   }

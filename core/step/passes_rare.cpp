@@ -1,5 +1,6 @@
-// What few bodies need in a pass: velocities that something else than the grid decides, and the work that
-// this and gravity do.
+// The rarer parts of the passes: velocities that something else than the grid decides, and the work that
+// these, gravity and damping do.
+#include <algorithm>
 #include <cmath>
 
 #include "core/step/passes.hpp"

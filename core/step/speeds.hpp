@@ -9,7 +9,7 @@
 namespace mpm::core {
 
 /// Largest of `most` and the first `used` lanes.
-inline double largest(Real value, int used, double most) {
+inline double largest_lane(Real value, int used, double most) {
   double each[real_width];
   store(each, value);
   for (int i = 0; i < std::min(used, real_width); ++i) most = std::max(most, each[i]);
@@ -27,7 +27,7 @@ inline Real squared_speed(const ColumnLayout& layout, const double* block, int l
 inline double fastest_wave(const Batch& batch) {
   double most = 0;
   for (int i = 0; i < batch.particles; i += real_width)
-    most = largest(load<Real>(batch.critical_speed + i), batch.particles - i, most);
+    most = largest_lane(load<Real>(batch.critical_speed + i), batch.particles - i, most);
   return most;
 }
 
@@ -38,7 +38,7 @@ inline double fastest_particle(const Batch& batch, double most) {
     const Real wave = load<Real>(batch.critical_speed + i), room = Real(most) - wave;
     const Real v2 = squared_speed(*batch.layout, batch.block[i / block_lanes], i % block_lanes);
     if (any((room < Real(0.0)) | (v2 > Real(1 - 1e-12) * room * room)))
-      most = largest(wave + sqrt(v2), batch.particles - i, most);
+      most = largest_lane(wave + sqrt(v2), batch.particles - i, most);
   }
   return most;
 }

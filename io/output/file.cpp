@@ -20,6 +20,7 @@ int flags_of(File::Mode mode) {
     case File::Mode::write_anew: return O_WRONLY | O_CREAT | O_TRUNC;
     case File::Mode::append: return O_WRONLY | O_CREAT | O_APPEND;
     case File::Mode::change: return O_RDWR;
+    case File::Mode::fill: return O_WRONLY;
   }
   return O_RDONLY;
 }

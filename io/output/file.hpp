@@ -13,10 +13,17 @@
 
 namespace mpm::io {
 
+/// Bytes [offset, offset + size) of a file.
+struct Extent {
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;
+};
+
 /// An open file. Every failure is a FileError.
 class File {
  public:
-  enum class Mode { read, write_anew, append, change };
+  /// `fill` writes into what is there and never reads: what other machines write beside it is left alone.
+  enum class Mode { read, write_anew, append, change, fill };
   File(const std::string& path, Mode mode);
   ~File();
   File(const File&) = delete;
@@ -24,6 +31,9 @@ class File {
 
   void write(std::string_view bytes);
   void write_at(std::string_view bytes, std::uint64_t offset);
+  void write_at(std::span<const std::byte> bytes, std::uint64_t offset) {
+    write_at({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, offset);
+  }
   /// Exactly as many bytes as `into` holds; fewer in the file are an error.
   void read_at(std::span<std::byte> into, std::uint64_t offset) const;
   std::uint64_t size() const;

@@ -44,19 +44,19 @@ std::vector<Field> fields_for(const std::vector<Variable>& variables) {
   return fields;
 }
 
-struct Types {
-  hid_t file, memory;
+struct Type {
+  hid_t id;
   std::size_t bytes;
 };
 
-Types types_of(Kind kind, bool double_precision) {
+Type type_of(Kind kind, bool double_precision) {
   switch (kind) {
-    case Kind::identity: return {H5T_STD_I64LE, H5T_NATIVE_INT64, 8};
-    case Kind::integer: return {H5T_STD_I32LE, H5T_NATIVE_INT32, 4};
+    case Kind::identity: return {H5T_STD_I64LE, 8};
+    case Kind::integer: return {H5T_STD_I32LE, 4};
     case Kind::real: break;
   }
-  if (double_precision) return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 8};
-  return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, 4};
+  if (double_precision) return {H5T_IEEE_F64LE, 8};
+  return {H5T_IEEE_F32LE, 4};
 }
 
 std::string group_name(int n) { return fmt::format("Step#{}", n); }
@@ -162,7 +162,7 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
   std::uint64_t need = bytes_per_group;
   for (const Field& f : fields_) {
     need += bytes_per_field +
-            static_cast<std::uint64_t>(particles) * types_of(f.kind, settings_.double_precision).bytes;
+            static_cast<std::uint64_t>(particles) * type_of(f.kind, settings_.double_precision).bytes;
   }
   {
     File space(settings_.path, File::Mode::change);
@@ -177,7 +177,7 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
     hdf5::write_attribute(group, "step", clock.step);
     const auto rows = static_cast<hsize_t>(particles);
     for (const Field& f : fields_) {
-      hdf5::create_dataset(group, f.name, types_of(f.kind, settings_.double_precision).file,
+      hdf5::create_dataset(group, f.name, type_of(f.kind, settings_.double_precision).id,
                            std::span(&rows, 1));
     }
   }
@@ -189,8 +189,8 @@ void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchan
   const std::vector<BodyFacts> facts = facts_of_all(model);
   std::vector<SharedRows> datasets;
   for (const Field& field : fields_) {
-    const Types types = types_of(field.kind, settings_.double_precision);
-    datasets.push_back({std::string(work) + "/" + field.name, types.memory, types.bytes, batches,
+    datasets.push_back({std::string(work) + "/" + field.name,
+                        type_of(field.kind, settings_.double_precision).bytes, batches,
                         [&](const RowBatch& batch, std::byte* memory) {
                           fill(model, batch, field, settings_.double_precision, facts, memory);
                         }});
@@ -217,8 +217,7 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
     first_row[b] = particles;
     particles += order.particles[b];
   }
-  const std::vector<RowBatch> batches =
-      cut_into_batches(model, order, first_row, particles_at_once, exchange);
+  const std::vector<RowBatch> batches = cut_into_batches(model, order, first_row, particles_at_once);
 
   together(exchange, [&] {
     if (exchange.rank() == 0) add_step(model.clock, particles);

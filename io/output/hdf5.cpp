@@ -1,25 +1,10 @@
 #include "io/output/hdf5.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
-
-#include "io/output/hdf5_driver.hpp"
-#include "parallel/communicator.hpp"
 
 namespace mpm::io::hdf5 {
 
 namespace {
-
-/// Once per process: no printing of errors, no clean-up at exit (MPI_Finalize has done it).
-void prepare() {
-  [[maybe_unused]] static const bool done = [] {
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    return true;
-  }();
-  failure().clear();
-}
 
 herr_t keep_innermost(unsigned n, const H5E_error2_t* error, void* text) {
   if (n == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
@@ -30,19 +15,18 @@ herr_t keep_innermost(unsigned n, const H5E_error2_t* error, void* text) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
   H5Eclear2(H5E_DEFAULT);
-  if (!failure().empty()) throw FileError(failure());
   throw FileError(fmt::format("cannot {}: {}", doing, reason.empty() ? "HDF5 gives no reason" : reason));
 }
 
 Handle properties(hid_t cls) { return Handle(H5Pcreate(cls), H5Pclose, "make a property list"); }
 
-Handle access_properties() {
-  prepare();
+Handle access_properties(Failure& failure) {
+  [[maybe_unused]] static const herr_t silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   Handle list = properties(H5P_FILE_ACCESS);
   // Locks fail on some parallel file systems, and would keep viewers from reading a file that is being
   // written.
   check(H5Pset_file_locking(list, false, true), "switch off file locks");
-  check(H5Pset_driver(list, driver(), nullptr), "choose the driver for files");
+  use_driver(list, failure);
   return list;
 }
 
@@ -103,27 +87,11 @@ Handle text_type(std::size_t length) {
   return type;
 }
 
-/// File and memory selections for rows of a dataset of one or two dimensions.
-std::pair<Handle, Handle> select(hid_t dataset, std::span<const Rows> stretches) {
-  Handle file(H5Dget_space(dataset), H5Sclose, "get a dataspace");
-  const std::vector<hsize_t> shape = shape_of(dataset);
-  check(H5Sselect_none(file), "select rows");
-  std::array<hsize_t, 2> extent{0, shape.size() > 1 ? shape[1] : 1};
-  for (const Rows& r : stretches) {
-    const std::array<hsize_t, 2> start{r.first, 0};
-    const std::array<hsize_t, 2> count{r.count, extent[1]};
-    check(H5Sselect_hyperslab(file, H5S_SELECT_OR, start.data(), nullptr, count.data(), nullptr),
-          "select rows");
-    extent[0] += r.count;
-  }
-  Handle memory = simple_space(std::span<const hsize_t>(extent.data(), shape.size()));
-  if (extent[0] == 0) check(H5Sselect_none(memory), "select rows");
-  return {std::move(file), std::move(memory)};
-}
-
 }  // namespace
 
-Handle::Handle(hid_t id, Close closer, const std::string& doing) : id_(id), close_(closer) {
+Handle::Handle(hid_t id, Close closer, const std::string& doing, Failure failure)
+    : id_(id), close_(closer), failure_(std::move(failure)) {
+  if (id < 0 && failure_ && !failure_->empty()) throw FileError(*failure_);
   if (id < 0) fail(doing);
 }
 
@@ -132,6 +100,7 @@ Handle& Handle::operator=(Handle&& other) noexcept {
     reset();
     id_ = std::exchange(other.id_, -1);
     close_ = other.close_;
+    failure_ = std::move(other.failure_);
   }
   return *this;
 }
@@ -142,21 +111,26 @@ void Handle::reset() noexcept {
 }
 
 void Handle::close(const std::string& doing) {
-  if (id_ >= 0) check(close_(std::exchange(id_, -1)), doing);
+  if (id_ < 0) return;
+  const herr_t status = close_(std::exchange(id_, -1));
+  if (failure_ && !failure_->empty()) throw FileError(*failure_);
+  check(status, doing);
 }
 
 void check(herr_t status, const std::string& doing) {
-  if (status < 0 || !failure().empty()) fail(doing);
+  if (status < 0) fail(doing);
 }
 
 Handle open_file(const std::string& path, Access access) {
-  const Handle list = access_properties();
+  Failure failure = std::make_shared<std::string>();
+  const Handle list = access_properties(failure);
   const unsigned flags = access == Access::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR;
-  return Handle(H5Fopen(path.c_str(), flags, list), H5Fclose, "open '" + path + "'");
+  return Handle(H5Fopen(path.c_str(), flags, list), H5Fclose, "open '" + path + "'", failure);
 }
 
 Handle create_file(const std::string& path, hsize_t user_block, bool links) {
-  const Handle list = access_properties();
+  Failure failure = std::make_shared<std::string>();
+  const Handle list = access_properties(failure);
   const Handle creation = properties(H5P_FILE_CREATE);
   check(H5Pset_userblock(creation, user_block), "set the user block");
   if (links) {
@@ -165,16 +139,8 @@ Handle create_file(const std::string& path, hsize_t user_block, bool links) {
     check(H5Pset_sym_k(creation, tree, half_node), "make room for links");
     check(H5Pset_local_heap_size_hint(creation, bytes_of_names), "make room for names");
   }
-  return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, list), H5Fclose, "create '" + path + "'");
-}
-
-Handle open_file_together(const std::string& path, core::Exchange& exchange) {
-  if (exchange.size() == 1) return open_file(path, Access::change);
-  const Handle list = access_properties();
-  check(H5Pset_fapl_mpio(list, parallel::communicator_of(exchange), MPI_INFO_NULL),
-        "choose MPI for '" + path + "'");
-  check(H5Pset_all_coll_metadata_ops(list, true), "choose collective access");
-  return Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, list), H5Fclose, "open '" + path + "'");
+  return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, list), H5Fclose, "create '" + path + "'",
+                failure);
 }
 
 Handle create_group(hid_t parent, const std::string& name) {
@@ -216,6 +182,14 @@ std::vector<hsize_t> shape_of(hid_t dataset) {
   std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
   check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "get a dataset's shape");
   return shape;
+}
+
+Extent extent_of(hid_t dataset) {
+  const hsize_t size = H5Dget_storage_size(dataset);
+  if (size == 0) return {};
+  const haddr_t offset = H5Dget_offset(dataset);
+  if (offset == HADDR_UNDEF) fail("find the place of a dataset");
+  return {offset, size};
 }
 
 bool has_link(hid_t parent, const std::string& name) {
@@ -292,19 +266,6 @@ bool has_attribute(hid_t object, const std::string& name) {
   const htri_t found = H5Aexists(object, name.c_str());
   if (found < 0) fail("look for attribute '" + name + "'");
   return found > 0;
-}
-
-void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values,
-                bool together, const std::string& doing) {
-  const auto [file, memory] = select(dataset, stretches);
-  const Handle transfer = properties(H5P_DATASET_XFER);
-  if (together) check(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE), "choose collective transfer");
-  check(H5Dwrite(dataset, memory_type, memory, file, transfer, values), doing);
-}
-
-void read_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, void* values) {
-  const auto [file, memory] = select(dataset, stretches);
-  check(H5Dread(dataset, memory_type, memory, file, H5P_DEFAULT, values), "read rows of a dataset");
 }
 
 }  // namespace mpm::io::hdf5

@@ -1,10 +1,10 @@
-// Thin owners over HDF5's C interface: handles that close themselves, attributes, rows of datasets. Every
-// return code is checked; a failure is a FileError with the system's reason or the library's innermost
-// message.
+// Thin owners over HDF5's C interface: handles that close themselves, attributes, datasets. On this rank
+// alone. Every return code is checked; a failure is a FileError with the system's reason or the library's
+// innermost message. What the library could not write is reported when the file is closed (hdf5_driver.hpp).
 //
-// A write that fails inside HDF5 spoils the file. So space is reserved (File::reserve) before HDF5 is let at
-// it, and structure is made by one rank alone, data by all into space that is there already. What fails even
-// so (a device, a limit lowered meanwhile) is remembered by the driver and reported here.
+// A file is spoilt by a write that fails. So space is reserved (File::reserve) before HDF5 is let at it. HDF5
+// makes the structure and says where values lie; the particles' rows are written there by all ranks without
+// it (shared_rows.hpp).
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 #include <hdf5.h>
 
-#include "core/step/exchange.hpp"
-#include "io/output/file_error.hpp"
+#include "io/output/file.hpp"
+#include "io/output/hdf5_driver.hpp"
 #include "io/output/provenance.hpp"
 
 namespace mpm::io::hdf5 {
@@ -25,31 +25,31 @@ class Handle {
  public:
   using Close = herr_t (*)(hid_t);
   /// Throws if `id` is not valid; `doing` is what was tried: "open dataset 'x'".
-  Handle(hid_t id, Close closer, const std::string& doing);
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  /// `failure`: of a file.
+  Handle(hid_t id, Close closer, const std::string& doing, Failure failure = nullptr);
+  Handle(Handle&& other) noexcept
+      : id_(std::exchange(other.id_, -1)), close_(other.close_), failure_(std::move(other.failure_)) {}
   Handle& operator=(Handle&& other) noexcept;
   ~Handle() { reset(); }
 
   operator hid_t() const { return id_; }
-  /// Closing a file writes what is left, and may fail.
+  /// Closing a file writes what is left. Throws what has failed since it was opened.
   void close(const std::string& doing);
 
  private:
   void reset() noexcept;
   hid_t id_ = -1;
   Close close_ = nullptr;
+  Failure failure_;
 };
 
 void check(herr_t status, const std::string& doing);
 
 enum class Access { read, change };
-/// On this rank alone.
 Handle open_file(const std::string& path, Access access);
 /// A new file. With `links` there is room in the root group for about a thousand links, so that one more
-/// changes few places of the file and needs no new one. On this rank alone.
+/// changes few places of the file and needs no new one.
 Handle create_file(const std::string& path, hsize_t user_block = 0, bool links = false);
-/// By all ranks together, for change. Collective.
-Handle open_file_together(const std::string& path, core::Exchange& exchange);
 
 /// The links in the group are kept in its own header.
 Handle create_group(hid_t parent, const std::string& name);
@@ -61,6 +61,8 @@ Handle open_group(hid_t parent, const std::string& name);
 Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::span<const hsize_t> shape);
 Handle open_dataset(hid_t parent, const std::string& name);
 std::vector<hsize_t> shape_of(hid_t dataset);
+/// Where a contiguous dataset's values lie in the file.
+Extent extent_of(hid_t dataset);
 
 bool has_link(hid_t parent, const std::string& name);
 /// Give an object another name, without looking into it.
@@ -84,16 +86,5 @@ std::string read_string(hid_t object, const std::string& name);
 double read_double(hid_t object, const std::string& name);
 std::int64_t read_int64(hid_t object, const std::string& name);
 bool has_attribute(hid_t object, const std::string& name);
-
-/// Rows [first, first + count) of a dataset.
-struct Rows {
-  hsize_t first = 0;
-  hsize_t count = 0;
-};
-/// The rows of all stretches, which ascend and do not overlap, between `dataset` and memory where they follow
-/// each other. Writing in a file that all ranks opened together is collective; `doing` is for its error.
-void write_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, const void* values,
-                bool together, const std::string& doing);
-void read_rows(hid_t dataset, hid_t memory_type, std::span<const Rows> stretches, void* values);
 
 }  // namespace mpm::io::hdf5

@@ -1,14 +1,16 @@
 #include "io/output/hdf5_driver.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <memory>
+#include <cstddef>
+#include <exception>
+#include <span>
 
 #if H5_VERSION_GE(1, 13, 0)
 #include <H5FDdevelop.h>
 #endif
 
 #include "io/output/file.hpp"
+#include "io/output/hdf5.hpp"
 
 namespace mpm::io::hdf5 {
 
@@ -16,12 +18,17 @@ namespace {
 
 constexpr haddr_t largest_address = (haddr_t{1} << 63) - 1;
 
-std::string first_failure;
+/// What the access list carries to open().
+struct Settings {
+  Failure* failure;
+};
 
 /// HDF5 keeps its own part, and hands it back at every call.
 struct OpenFile : H5FD_t {
-  OpenFile(const char* path, File::Mode mode) : H5FD_t{}, file(path, mode), end(file.size()) {}
+  OpenFile(const char* path, File::Mode mode, Failure f)
+      : H5FD_t{}, file(path, mode), failure(std::move(f)), end(file.size()) {}
   File file;
+  Failure failure;
   haddr_t end;            // of what is in the file
   haddr_t allocated = 0;  // end of what HDF5 has given out
 };
@@ -31,34 +38,36 @@ const OpenFile& of(const H5FD_t* file) { return *static_cast<const OpenFile*>(fi
 
 /// Whether f() did not throw; the first that does is remembered.
 template <class F>
-bool succeeds(F f) {
+bool succeeds(std::string& failure, F f) {
   try {
     f();
     return true;
   } catch (const std::exception& e) {
-    if (first_failure.empty()) first_failure = e.what();
+    if (failure.empty()) failure = e.what();
     return false;
   }
 }
 
-H5FD_t* open(const char* path, unsigned flags, hid_t, haddr_t) {
-  first_failure.clear();
+/// H5Fcreate tries first whether there is a file.
+H5FD_t* open(const char* path, unsigned flags, hid_t access_list, haddr_t) {
+  const Failure& failure = *static_cast<const Settings*>(H5Pget_driver_info(access_list))->failure;
+  failure->clear();
   std::unique_ptr<OpenFile> opened;
-  succeeds([&] {
+  succeeds(*failure, [&] {
     if ((flags & H5F_ACC_TRUNC) != 0) File(path, File::Mode::write_anew);
     const bool change = (flags & H5F_ACC_RDWR) != 0;
-    opened = std::make_unique<OpenFile>(path, change ? File::Mode::change : File::Mode::read);
+    opened = std::make_unique<OpenFile>(path, change ? File::Mode::change : File::Mode::read, failure);
   });
   return opened.release();
 }
 
 herr_t close(H5FD_t* file) {
   const std::unique_ptr<OpenFile> opened(&of(file));
-  succeeds([&] { opened->file.close(); });
+  succeeds(*opened->failure, [&] { opened->file.close(); });
   return 0;
 }
 
-/// As of HDF5's own driver for one file.
+/// Buffers as for a plain file, and files that any other driver for one can read.
 herr_t query(const H5FD_t*, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
@@ -72,31 +81,37 @@ herr_t allocate_to(H5FD_t* file, H5FD_mem_t, haddr_t end) {
 }
 haddr_t end_of_file(const H5FD_t* file, H5FD_mem_t) { return of(file).end; }
 
-/// What lies beyond the end is zero.
+/// What lies beyond the end is zero. A failure goes the way of HDF5's own.
 herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void* buffer) {
   const OpenFile& opened = of(file);
   const std::span<std::byte> into(static_cast<std::byte*>(buffer), size);
   const auto there = static_cast<std::size_t>(at < opened.end ? std::min<haddr_t>(size, opened.end - at) : 0);
-  if (!succeeds([&] { opened.file.read_at(into.first(there), at); })) return -1;
+  std::string failure;
+  if (!succeeds(failure, [&] { opened.file.read_at(into.first(there), at); })) {
+    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_IO, H5E_READERROR, "%s",
+             failure.c_str());
+    return -1;
+  }
   std::fill(into.begin() + static_cast<std::ptrdiff_t>(there), into.end(), std::byte{0});
   return 0;
 }
 
 herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, const void* bytes) {
-  if (!first_failure.empty()) return 0;
   OpenFile& opened = of(file);
-  succeeds([&] {
+  if (!opened.failure->empty()) return 0;
+  succeeds(*opened.failure, [&] {
     opened.file.write_at({static_cast<const char*>(bytes), size}, at);
     opened.end = std::max(opened.end, at + size);
   });
   return 0;
 }
 
-/// HDF5 lets a file end where what it has given out ends.
-herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
+/// At its close a file ends where what HDF5 has given out ends; until then it keeps the room that it has.
+herr_t truncate(H5FD_t* file, hid_t, hbool_t closing) {
   OpenFile& opened = of(file);
-  if (!first_failure.empty() || opened.end == opened.allocated) return 0;
-  succeeds([&] {
+  const bool right = closing ? opened.end == opened.allocated : opened.end >= opened.allocated;
+  if (right || !opened.failure->empty()) return 0;
+  succeeds(*opened.failure, [&] {
     opened.file.truncate(opened.allocated);
     opened.end = opened.allocated;
   });
@@ -112,6 +127,7 @@ H5FD_class_t description() {
   d.name = "mpm";
   d.maxaddr = largest_address;
   d.fc_degree = H5F_CLOSE_WEAK;
+  d.fapl_size = sizeof(Settings);
   d.open = open;
   d.close = close;
   d.query = query;
@@ -128,12 +144,11 @@ H5FD_class_t description() {
 
 }  // namespace
 
-hid_t driver() {
+void use_driver(hid_t access_list, Failure& failure) {
   static const H5FD_class_t all = description();
   static const hid_t id = H5FDregister(&all);
-  return id;
+  const Settings settings{&failure};
+  check(H5Pset_driver(access_list, id, &settings), "choose the driver for files");
 }
-
-std::string& failure() { return first_failure; }
 
 }  // namespace mpm::io::hdf5

@@ -2,26 +2,17 @@
 
 namespace mpm::io {
 
-namespace {
-// HDF5 takes time quadratic in the number of stretches to join them.
-constexpr std::size_t most_stretches = 256;
-}  // namespace
-
 std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleOrder& order,
-                                       std::span<const std::int64_t> first_row_of_body, std::size_t most,
-                                       core::Exchange& exchange) {
+                                       std::span<const std::int64_t> first_row_of_body, std::size_t most) {
   std::vector<RowBatch> batches;
   for (const CohortPlace& place : order.mine) {
     const core::Cohort& cohort =
         model.grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
     const std::int64_t base = first_row_of_body[static_cast<std::size_t>(cohort.body)];
     if (base == left_out) continue;
-    if (batches.empty() || batches.back().particles + cohort.count > most ||
-        batches.back().rows.size() >= most_stretches) {
-      batches.emplace_back();
-    }
+    if (batches.empty() || batches.back().particles + cohort.count > most) batches.emplace_back();
     RowBatch& batch = batches.back();
-    const auto first = static_cast<hsize_t>(base + place.first_row);
+    const auto first = static_cast<std::uint64_t>(base + place.first_row);
     if (!batch.rows.empty() && batch.rows.back().first + batch.rows.back().count == first) {
       batch.rows.back().count += cohort.count;
     } else {
@@ -30,9 +21,6 @@ std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleO
     batch.parts.push_back({place, batch.particles});
     batch.particles += cohort.count;
   }
-  double fewest = -static_cast<double>(batches.size());
-  exchange.minimum(std::span(&fewest, 1));
-  batches.resize(static_cast<std::size_t>(-fewest));
   return batches;
 }
 

@@ -6,17 +6,21 @@
 #include <span>
 #include <vector>
 
-#include "io/output/hdf5.hpp"
 #include "io/output/particle_order.hpp"
 
 namespace mpm::io {
 
 struct RowBatch {
+  /// Rows [first, first + count) of the dataset.
+  struct Stretch {
+    std::uint64_t first = 0;
+    std::uint64_t count = 0;
+  };
   struct Part {
     CohortPlace place;
     std::size_t first = 0;  ///< of its particles in the batch's memory
   };
-  std::vector<hdf5::Rows> rows;  ///< in the dataset, ascending, neighbours joined
+  std::vector<Stretch> rows;  ///< ascending, neighbours joined; in the memory they follow each other
   std::vector<Part> parts;
   std::size_t particles = 0;
 };
@@ -24,11 +28,9 @@ struct RowBatch {
 inline constexpr std::int64_t left_out = -1;
 
 /// The batches of the bodies whose first row in the dataset is given, in the dataset's order; `left_out` for
-/// bodies that it does not hold. At most about `most` particles each. Every rank gets the same number of
-/// batches, perhaps with empty ones at the end, so that writing them can be collective. Collective.
+/// bodies that it does not hold. At most about `most` particles each.
 std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleOrder& order,
-                                       std::span<const std::int64_t> first_row_of_body, std::size_t most,
-                                       core::Exchange& exchange);
+                                       std::span<const std::int64_t> first_row_of_body, std::size_t most);
 
 /// f(body, layout, block, lanes in use, first particle of the block in the batch's memory), by all threads.
 template <class F>

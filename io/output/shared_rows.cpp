@@ -1,61 +1,80 @@
 #include "io/output/shared_rows.hpp"
 
-#include <optional>
+#include <bit>
+#include <cstring>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "io/output/file.hpp"
+#include "io/output/hdf5.hpp"
 
 namespace mpm::io {
 
 namespace {
 
-constexpr const char* remedy =
-    "see whether the disk is full, its quota used up, or the size of files limited";
+static_assert(std::endian::native == std::endian::little, "rows are written as they lie in memory");
 
-void write(const std::string& path, std::span<const SharedRows> datasets, core::Exchange& exchange) {
-  const std::string doing = fmt::format("write '{}' ({})", path, remedy);
-  std::vector<std::byte> memory;
-  std::optional<hdf5::Handle> file;
-  together(exchange, [&] { file = hdf5::open_file_together(path, exchange); });
-  for (const SharedRows& rows : datasets) {
-    std::optional<hdf5::Handle> dataset;
-    together(exchange, [&] { dataset = hdf5::open_dataset(*file, rows.dataset); });
-    for (const RowBatch& batch : rows.batches) {
-      memory.resize(batch.particles * rows.bytes);
-      rows.fill(batch, memory.data());
-      // All leave here if one must: nobody waits for it at the next batch.
-      together(exchange, [&] {
-        hdf5::write_rows(*dataset, rows.memory_type, batch.rows, memory.data(), exchange.size() > 1, doing);
-      });
-    }
-  }
-  together(exchange, [&] { file->close(doing); });
+std::vector<Extent> extents_of(const std::string& path, std::span<const SharedRows> datasets) {
+  const hdf5::Handle file = hdf5::open_file(path, hdf5::Access::read);
+  std::vector<Extent> extents;
+  for (const SharedRows& rows : datasets)
+    extents.push_back(hdf5::extent_of(hdf5::open_dataset(file, rows.dataset)));
+  return extents;
 }
 
-void check(const std::string& path, std::span<const SharedRows> datasets) {
-  const hdf5::Handle file = hdf5::open_file(path, hdf5::Access::read);
-  std::vector<std::byte> expected, found;
-  for (const SharedRows& rows : datasets) {
-    const hdf5::Handle dataset = hdf5::open_dataset(file, rows.dataset);
-    for (const RowBatch& batch : rows.batches) {
-      expected.resize(batch.particles * rows.bytes);
-      rows.fill(batch, expected.data());
-      found.resize(expected.size());
-      hdf5::read_rows(dataset, rows.memory_type, batch.rows, found.data());
-      if (found != expected) {
-        throw FileError(fmt::format(
-            "cannot write '{}' ({}): what was written to '{}' does not read back the same, and no error was "
-            "reported",
-            path, remedy, rows.dataset));
-      }
+/// f(bytes, where they stand in the file) for all stretches of rows of this rank.
+template <class F>
+void for_each_stretch(const SharedRows& rows, const Extent& dataset, F f) {
+  std::vector<std::byte> memory;
+  for (const RowBatch& batch : rows.batches) {
+    memory.resize(batch.particles * rows.bytes);
+    rows.fill(batch, memory.data());
+    std::span<const std::byte> left(memory);
+    for (const RowBatch::Stretch& stretch : batch.rows) {
+      f(left.first(stretch.count * rows.bytes), dataset.offset + stretch.first * rows.bytes);
+      left = left.subspan(stretch.count * rows.bytes);
     }
+  }
+}
+
+void write(const std::string& path, std::span<const SharedRows> datasets,
+           const std::vector<Extent>& extents) {
+  File file(path, File::Mode::fill);
+  for (std::size_t d = 0; d < datasets.size(); ++d) {
+    for_each_stretch(datasets[d], extents[d],
+                     [&](std::span<const std::byte> bytes, std::uint64_t at) { file.write_at(bytes, at); });
+  }
+  file.close();
+}
+
+void compare(const std::string& path, std::span<const SharedRows> datasets,
+             const std::vector<Extent>& extents) {
+  const File file(path, File::Mode::read);
+  std::vector<std::byte> found;
+  for (std::size_t d = 0; d < datasets.size(); ++d) {
+    for_each_stretch(datasets[d], extents[d], [&](std::span<const std::byte> bytes, std::uint64_t at) {
+      found.resize(bytes.size());
+      file.read_at(found, at);
+      if (std::memcmp(found.data(), bytes.data(), bytes.size()) == 0) return;
+      throw FileError(
+          fmt::format("cannot write '{}': what was written to '{}' does not read back the same, and no error "
+                      "was reported: "
+                      "this file system loses what several machines write; choose another with --output-dir",
+                      path, datasets[d].dataset));
+    });
   }
 }
 
 }  // namespace
 
 void write_together(const std::string& path, std::span<const SharedRows> datasets, core::Exchange& exchange) {
-  write(path, datasets, exchange);
-  if (exchange.size() > 1) together(exchange, [&] { check(path, datasets); });
+  std::vector<Extent> extents;
+  together(exchange, [&] {
+    extents = extents_of(path, datasets);
+    write(path, datasets, extents);
+  });
+  if (exchange.size() > 1) together(exchange, [&] { compare(path, datasets, extents); });
 }
 
 }  // namespace mpm::io

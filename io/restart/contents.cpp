@@ -329,7 +329,7 @@ std::vector<Extent> write_contents(const std::string& path, const RestartContent
       const std::array<hsize_t, 2> shape{static_cast<hsize_t>(c.bodies[b].particles),
                                          c.bodies[b].columns.size()};
       const hdf5::Handle data = hdf5::create_dataset(group, "particles", H5T_IEEE_F64LE, shape);
-      if (shape[0] > 0) rows.push_back({H5Dget_offset(data), 8 * shape[0] * shape[1]});
+      if (shape[0] > 0) rows.push_back(hdf5::extent_of(data));
     }
   }
   file.close("write '" + path + "'");

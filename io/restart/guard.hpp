@@ -7,15 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "io/output/file.hpp"
+
 namespace mpm::io {
 
 inline constexpr std::uint32_t restart_format = 1;
-
-/// Bytes [offset, offset + size) of the file.
-struct Extent {
-  std::uint64_t offset = 0;
-  std::uint64_t size = 0;
-};
 
 struct Guard {
   std::int64_t step = 0;

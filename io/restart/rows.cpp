@@ -3,39 +3,57 @@
 namespace mpm::io {
 
 namespace {
-constexpr std::size_t doubles_at_once = std::size_t{1} << 20;
-constexpr std::size_t stretches_at_once = 256;  // HDF5 takes time quadratic in them
+
+constexpr std::size_t bytes_at_once = std::size_t{8} << 20;
+
+std::uint64_t bytes_of(const RestartContents& contents, const CohortRecord& record) {
+  const BodyRecord& body = contents.bodies[static_cast<std::size_t>(record.body)];
+  return sizeof(double) * body.columns.size() * record.particles;
+}
+
+/// Where the rows of each body begin.
+std::vector<std::uint64_t> begins_of_bodies(const std::string& path, const RestartContents& contents) {
+  const hdf5::Handle file = hdf5::open_file(path, hdf5::Access::read);
+  std::vector<std::uint64_t> begins;
+  for (std::size_t b = 0; b < contents.bodies.size(); ++b)
+    begins.push_back(hdf5::extent_of(hdf5::open_dataset(file, rows_name(b))).offset);
+  return begins;
+}
+
 }  // namespace
 
 RowReader::RowReader(const std::string& path, const RestartContents& contents)
-    : path_(path), contents_(contents), file_(hdf5::open_file(path, hdf5::Access::read)) {
-  std::vector<hsize_t> rows(contents.bodies.size());
+    : path_(path), contents_(contents), file_(path, File::Mode::read) {
+  std::vector<std::uint64_t> next = begins_of_bodies(path, contents);
   for (const CohortRecord& r : contents.cohorts) {
-    first_row_.push_back(rows[static_cast<std::size_t>(r.body)]);
-    rows[static_cast<std::size_t>(r.body)] += r.particles;
+    first_byte_.push_back(next[static_cast<std::size_t>(r.body)]);
+    next[static_cast<std::size_t>(r.body)] += bytes_of(contents, r);
   }
 }
 
 std::size_t RowReader::read(const std::vector<std::size_t>& wanted, std::size_t first) {
-  const auto body = static_cast<std::size_t>(contents_.cohorts[wanted[first]].body);
-  const std::size_t columns = contents_.bodies[body].columns.size();
-  std::vector<hdf5::Rows> stretches;
-  std::size_t rows = 0, records = 0;
+  struct Stretch {
+    std::uint64_t at, bytes;
+  };
+  std::vector<Stretch> stretches;
+  std::uint64_t bytes = 0;
+  std::size_t records = 0;
   for (std::size_t i = first; i < wanted.size(); ++i, ++records) {
-    const CohortRecord& r = contents_.cohorts[wanted[i]];
-    const bool full =
-        (rows + r.particles) * columns > doubles_at_once || stretches.size() == stretches_at_once;
-    if (static_cast<std::size_t>(r.body) != body || (records > 0 && full)) break;
-    const hsize_t at = first_row_[wanted[i]];
-    if (!stretches.empty() && stretches.back().first + stretches.back().count == at) {
-      stretches.back().count += r.particles;
+    const std::uint64_t at = first_byte_[wanted[i]], size = bytes_of(contents_, contents_.cohorts[wanted[i]]);
+    if (records > 0 && bytes + size > bytes_at_once) break;
+    if (!stretches.empty() && stretches.back().at + stretches.back().bytes == at) {
+      stretches.back().bytes += size;
     } else {
-      stretches.push_back({at, r.particles});
+      stretches.push_back({at, size});
     }
-    rows += r.particles;
+    bytes += size;
   }
-  rows_.resize(rows * columns);
-  hdf5::read_rows(hdf5::open_dataset(file_, rows_name(body)), H5T_NATIVE_DOUBLE, stretches, rows_.data());
+  rows_.resize(bytes / sizeof(double));
+  std::span<std::byte> into = std::as_writable_bytes(std::span(rows_));
+  for (const Stretch& s : stretches) {
+    file_.read_at(into.first(s.bytes), s.at);
+    into = into.subspan(s.bytes);
+  }
   return records;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "io/output/file.hpp"
 #include "io/restart/contents.hpp"
 
 namespace mpm::io {
@@ -15,7 +16,7 @@ class RowReader {
   RowReader(const std::string& path, const RestartContents& contents);
 
   /// The next records of `wanted`, which ascends, from number `first` on: as many as fit into the memory of a
-  /// piece and belong to one body. Their rows follow each other in rows(). Returns the number of records.
+  /// piece. Their rows follow each other in rows(). Returns the number of records.
   std::size_t read(const std::vector<std::size_t>& wanted, std::size_t first);
   const double* rows() const { return rows_.data(); }
   /// Throws FileError unless the rows are as they were written.
@@ -24,8 +25,8 @@ class RowReader {
  private:
   std::string path_;
   const RestartContents& contents_;
-  hdf5::Handle file_;
-  std::vector<hsize_t> first_row_;  ///< of each record, in its body's dataset
+  File file_;
+  std::vector<std::uint64_t> first_byte_;  ///< of each record's rows
   std::vector<double> rows_;
 };
 

@@ -15,7 +15,7 @@ constexpr std::size_t bytes_at_once = std::size_t{8} << 20;
 /// The file without its rows, and the space for them.
 std::vector<Extent> make_room(const std::string& part, const RestartContents& contents,
                               const core::Scene& scene) {
-  // Asked for before HDF5 begins, which does not survive a full disk.
+  // Tried before anything is written.
   File(part, File::Mode::write_anew).reserve(expected_bytes(contents));
   std::vector<Extent> rows = write_contents(part, contents, scene);
   File file(part, File::Mode::change);
@@ -44,8 +44,8 @@ void write_all_rows(const std::string& part, const ParticleOrder& order, const c
     const auto bytes = static_cast<std::size_t>(layout.bytes_per_particle());
     std::vector<std::int64_t> first_row(bodies, left_out);
     first_row[b] = 0;
-    batches[b] = cut_into_batches(model, order, first_row, bytes_at_once / bytes, exchange);
-    datasets.push_back({rows_name(b), H5T_NATIVE_DOUBLE, bytes, batches[b],
+    batches[b] = cut_into_batches(model, order, first_row, bytes_at_once / bytes);
+    datasets.push_back({rows_name(b), bytes, batches[b],
                         [&model, columns = layout.columns()](const RowBatch& batch, std::byte* memory) {
                           fill(model, batch, columns, reinterpret_cast<double*>(memory));
                         }});

@@ -251,7 +251,7 @@ TEST_CASE("A write by all ranks together that fails, wherever it does, is an err
   std::vector<io::RowBatch> batches;
   for (const hsize_t half : {hsize_t{0}, rows_per_rank / 2})
     batches.push_back({{{rank * rows_per_rank + half, rows_per_rank / 2}}, {}, rows_per_rank / 2});
-  const io::SharedRows rows{"rows", H5T_NATIVE_DOUBLE, sizeof(double), batches,
+  const io::SharedRows rows{"rows", sizeof(double), batches,
                             [](const io::RowBatch& batch, std::byte* memory) {
                               for (std::size_t i = 0; i < batch.particles; ++i) {
                                 const double value = static_cast<double>(batch.rows[0].first + i);
