@@ -126,18 +126,14 @@ std::string timing_table(const RunReport& report) {
     text += fmt::format("{:<{}} {:>10.3f} {:>10.3f} {:>10.3f} {:>7.1f}% {:>9.1f}%\n", name, widest, s.min,
                         s.mean, s.max, share, imbalance);
   };
-  core::Exchange::Spread rest{report.seconds_loop, report.seconds_loop, report.seconds_loop};
-  const auto add_part = [&](const std::string& name, const core::Exchange::Spread& spread) {
+  double rest = report.seconds_loop - report.output.mean;
+  for (const auto& [name, spread] : report.phases) {
     add(name, spread);
-    rest.min -= spread.max;
-    rest.mean -= spread.mean;
-    rest.max -= spread.min;
-  };
-  for (const auto& [name, spread] : report.phases) add_part(name, spread);
-  add_part("output", report.output);
-  // What lies between the phases: bounds, since its parts come from different ranks.
-  rest.min = std::max(rest.min, 0.0);
-  add("other", rest);
+    rest -= spread.mean;
+  }
+  add("output", report.output);
+  text += fmt::format("{:<{}} {:>10} {:>10.3f} {:>10} {:>7.1f}%\n", "other", widest, "", rest, "",
+                      report.seconds_loop > 0 ? 100 * rest / report.seconds_loop : 0.0);
   text += fmt::format("{:<{}} {:>10} {:>10.3f}\n", "loop", widest, "", report.seconds_loop);
   return text;
 }
