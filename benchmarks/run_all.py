@@ -96,7 +96,7 @@ def scaling_blocks(out):
     parts = []
     for study, over in dict.fromkeys((r["study"], r["over"]) for r in rows):
         mine = [r for r in rows if (r["study"], r["over"]) == (study, over)]
-        parts.append(f"{study.capitalize()} scaling over {over}:\n\n{results.markdown(mine, scaling.columns())}")
+        parts.append(f"{scaling.heading(study, over)}:\n\n{results.markdown(mine, scaling.columns())}")
     return {"scaling": "\n\n".join(parts)}
 
 

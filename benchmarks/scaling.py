@@ -1,6 +1,8 @@
 """Strong and weak scaling of the copper Taylor bar over MPI ranks and over OpenMP threads, as one CSV file.
 
 strong  the same bar on 1, 2, 4 ... cores         weak  as many particles per core on each of them
+copies  as many programs that know nothing of each other, each with the bar of the strong study on a core of its own:
+        what this machine's cores lose by sharing its memory, which no program can win back
 
 core_ns is the time of a core per particle-step, time per step x cores / particles. Efficiency, strong or weak,
 is that of the study's first case over that of the case: 1 where twice the cores do twice the work. Efficiency of
@@ -15,6 +17,7 @@ On a cluster:
   scaling.py --ranks 48 96 192 --launcher "srun -n {n} -c {t} --cpu-bind=cores" --strong 100e6 --weak 1e6"""
 
 import argparse
+import concurrent.futures
 import pathlib
 from math import nan
 
@@ -31,6 +34,8 @@ def doubling(most):
 def arguments(parser, cores=results.CORES):
     parser.add_argument("--ranks", type=int, nargs="*", default=doubling(cores), help="each with one thread")
     parser.add_argument("--threads", type=int, nargs="*", default=doubling(cores), help="each with one rank")
+    parser.add_argument("--copies", type=int, nargs="*", default=[n for n in doubling(cores) if n <= results.CORES],
+                        help="programs beside each other on this machine")
     parser.add_argument("--launcher", default="mpirun --oversubscribe --bind-to none -n {n}",
                         help="command that starts {n} ranks of {t} threads")
     parser.add_argument("--strong", type=float, default=1.3e6, help="particles of the strong studies; 0: none")
@@ -53,6 +58,20 @@ def cases(options):
                 yield study, "ranks", partition, n, 1, particles(n)
         for t in options.threads:
             yield study, "threads", options.partitions[0], 1, t, particles(t)
+    if options.strong > 0:
+        for n in options.copies:
+            yield "copies", "programs", "", n, 1, options.strong
+
+
+def program(options, particles, *more):
+    return [results.BIN / "scaling", "--particles", particles, "--repeats", options.scaling_repeats, *more]
+
+
+def copies(options, n, particles):
+    """The case of the slowest of n programs that run at the same time."""
+    with concurrent.futures.ThreadPoolExecutor(n) as pool:
+        said = pool.map(lambda _: results.run(program(options, particles), OMP_NUM_THREADS="1"), range(n))
+        return max(map(results.last_json, said), key=lambda case: case["step_s"])
 
 
 def measure(options, partition, ranks, threads, particles):
@@ -61,32 +80,35 @@ def measure(options, partition, ranks, threads, particles):
     crowded = ranks * threads > results.CORES
     waiting = {"OMP_WAIT_POLICY": "passive", "OMPI_MCA_mpi_yield_when_idle": "1"} if crowded else {}
     return results.last_json(results.run(
-        [*launcher, results.BIN / "scaling", "--particles", particles, "--partition", partition,
-         "--threads", threads, "--repeats", options.scaling_repeats], OMP_NUM_THREADS=str(threads), **waiting))
+        [*launcher, *program(options, particles, "--partition", partition, "--threads", threads)],
+        OMP_NUM_THREADS=str(threads), **waiting))
 
 
 def study(options):
     """Rows of the table, and the facts of the machine."""
     rows, measured, first, states = [], {}, {}, {}
     for name, over, partition, ranks, threads, particles in cases(options):
-        key = (partition if ranks > 1 else "", ranks, threads, particles)  # one rank has no partition
+        apart = name == "copies" and ranks > 1
+        key = ("copies" if apart else partition if ranks > 1 else "", ranks, threads, particles)  # one is one
         if key not in measured:
-            measured[key] = measure(options, partition, ranks, threads, particles)
+            measured[key] = (copies(options, ranks, particles) if apart
+                             else measure(options, partition, ranks, threads, particles))
         case = measured[key]
         if states.setdefault(case["particles"], case["state"]) != case["state"]:
             raise SystemExit(f"{ranks} rank(s) x {threads} thread(s), {partition}: the state {case['state']} "
                              f"is not {states[case['particles']]}, that of the same bar before")
         cores, crowd = ranks * threads, case["oversubscribed"]
-        core_ns = 1e9 * case["step_s"] * cores / case["particles"]
-        computing_ns = 1e9 * case["compute_s"]["max"] * cores / case["particles"]
+        particles = case["particles"] * (ranks if apart else 1)
+        core_ns = 1e9 * case["step_s"] * cores / particles
+        computing_ns = 1e9 * case["compute_s"]["max"] * cores / particles
         base, computing = first.setdefault((name, over, partition), (core_ns, computing_ns))
         of_ranks = over == "ranks"
         rows.append({"study": name, "over": over, "partition": partition if of_ranks else "", "ranks": ranks,
-                     "threads": threads, "particles": int(case["particles"]), "bricks": int(case["bricks"]),
+                     "threads": threads, "particles": int(particles), "bricks": int(case["bricks"]),
                      "oversubscribed": int(crowd), "clock": case["clock"],
                      "step_ms": 1e3 * case["step_s"], "step_median_ms": 1e3 * case["step_median_s"],
                      "core_ns": core_ns,
-                     "million_particle_steps_per_s": 1e-6 * case["particles"] / case["step_s"],
+                     "million_particle_steps_per_s": 1e-6 * particles / case["step_s"],
                      "efficiency": (computing if crowd else base) / core_ns,  # by the same clock
                      "computing_efficiency": computing / computing_ns if of_ranks else nan,
                      "imbalance": case["imbalance"], "particle_imbalance": case["particle_imbalance"],
@@ -94,6 +116,10 @@ def study(options):
                         for part in PARTS},
                      "state": case["state"]})
     return rows, [f"{name:10} {value}" for name, value in case["facts"].items()]
+
+
+def heading(study, over):
+    return "Programs beside each other" if study == "copies" else f"{study.capitalize()} scaling over {over}"
 
 
 def columns():
@@ -117,7 +143,7 @@ def main():
     rows, facts = study(options)
     results.write(options.csv, rows, facts)
     for name in dict.fromkeys((r["study"], r["over"]) for r in rows):
-        print(f"\n{name[0]} scaling over {name[1]} (cores: ranks x threads)\n")
+        print(f"\n{heading(*name)} (cores: ranks x threads)\n")
         print(results.markdown([r for r in rows if (r["study"], r["over"]) == name], columns()))
     if any(r["oversubscribed"] for r in rows):
         print("\nclock: processor. More ranks and threads than cores; see scaling.py --help.")

@@ -54,6 +54,10 @@ def scaling(rows, path):
             for r, n in zip(mine, cores):  # hollow: not measured on the wall
                 face = "white" if r["oversubscribed"] else colour
                 axes.plot(n, 100 * r["efficiency"], "o", color=colour, markerfacecolor=face)
+        mine = [r for r in rows if r["study"] == "copies"]
+        if mine:
+            axes.plot([r["ranks"] for r in mine], [100 * r["efficiency"] for r in mine], "--", color=GREY, lw=1.2,
+                      label="separate programs")
         ticks = sorted({r["ranks"] * r["threads"] for r in rows})
         axes.set_xscale("log", base=2)
         axes.set_xticks(ticks, [f"{t:.0f}" for t in ticks])
