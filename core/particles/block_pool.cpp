@@ -34,6 +34,34 @@ void BlockPool::release(BlockIndex i) {
   free_.push_back(i);
 }
 
+void BlockPool::arrange(std::span<const BlockIndex> in_use) {
+  // from[i]: where is now what is to become block i; a permutation of all blocks ever given out.
+  std::vector<BlockIndex> from(in_use.begin(), in_use.end());
+  std::vector<bool> used(next_);
+  for (const BlockIndex i : in_use) used[i] = true;
+  for (BlockIndex i = 0; i < next_; ++i) {
+    if (!used[i]) from.push_back(i);
+  }
+  const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(layout_.block_doubles());
+  std::vector<double> aside(static_cast<std::size_t>(layout_.block_doubles()));
+  for (BlockIndex first = 0; first < next_; ++first) {
+    if (from[first] == first) continue;
+    std::memcpy(aside.data(), block(first), bytes);
+    BlockIndex to = first;
+    while (from[to] != first) {
+      const BlockIndex next = from[to];
+      std::memcpy(block(to), block(next), bytes);
+      from[to] = to;
+      to = next;
+    }
+    std::memcpy(block(to), aside.data(), bytes);
+    from[to] = to;
+  }
+  next_ = static_cast<BlockIndex>(in_use.size());
+  free_.clear();
+  slabs_.resize((next_ + slab_blocks - 1) / slab_blocks);
+}
+
 std::size_t BlockPool::bytes_reserved() const {
   return slabs_.size() * slab_blocks * sizeof(double) * static_cast<std::size_t>(layout_.block_doubles());
 }

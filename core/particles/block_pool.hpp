@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "core/pages.hpp"
@@ -25,6 +26,9 @@ class BlockPool {
   /// Safe to call from several threads; contents are zero.
   BlockIndex allocate();
   void release(BlockIndex i);
+  /// Move blocks so that those in use, which are given in order, become 0, 1, 2 ...; whoever named block
+  /// in_use[i] then names block i. Not beside anything else.
+  void arrange(std::span<const BlockIndex> in_use);
 
   std::size_t bytes_reserved() const;
   std::size_t blocks_in_use() const { return next_ - free_.size(); }

@@ -324,6 +324,7 @@ void discretise(Model& model, Exchange& exchange) {
   exchange.partition(*model.grid, counts, model.scene->decomposition);
   deal_out(model, sources, inputs, exchange);
   settle(model);
+  arrange_blocks(model);
 }
 
 void start_clock(Model& model, Exchange& exchange) {

@@ -225,6 +225,22 @@ void insert_travellers(Model& model, const Travellers& travellers) {
   });
 }
 
+void arrange_blocks(Model& model) {
+  for (std::size_t body = 0; body < model.bodies.size(); ++body) {
+    std::vector<BlockIndex> in_use;
+    for (int s = 0; s < model.grid->owned(); ++s) {
+      for (Cohort& cohort : model.grid->brick(static_cast<Slot>(s)).cohorts) {
+        if (static_cast<std::size_t>(cohort.body) != body) continue;
+        for (BlockIndex& b : cohort.blocks) {
+          in_use.push_back(b);
+          b = static_cast<BlockIndex>(in_use.size() - 1);
+        }
+      }
+    }
+    model.bodies[body].pool->arrange(in_use);
+  }
+}
+
 void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort) {
   constexpr NodeBlockShape shape{};  // of the least halo: the lowest nodes of cells are in the order of cells
   const BrickFrame frame(grid.geometry(), shape, brick);

@@ -166,6 +166,7 @@ void read_particles(const std::string& path, const RestartContents& contents, co
       core::sort_by_cell(*model.grid, brick.coord, pool, cohort);
     }
   }
+  core::arrange_blocks(model);
 }
 
 /// The books of all ranks go on at rank 0.

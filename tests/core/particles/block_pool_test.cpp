@@ -1,6 +1,7 @@
 // Blocks and cohorts: what goes in comes out, blocks are reused, and unused lanes hold sound numbers.
 #include "core/particles/block_pool.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -117,4 +118,33 @@ TEST_CASE(
   for (std::size_t i = 0; i < blocks.size(); ++i) zero = zero && pool.block(pool.allocate())[0] == 0;
   CHECK(zero);
   CHECK(pool.bytes_reserved() == bytes);
+}
+
+TEST_CASE("Blocks that were dealt out in any order are arranged one cohort after the other") {
+  BlockPool pool(layout_with(Column::damage));
+  std::vector<Cohort> cohorts(3);
+  for (int n = 0; n < 500; ++n)
+    append(pool, cohorts[static_cast<std::size_t>(n * n % 7 % 3)], particle(pool, n).data());
+  while (cohorts[1].count > 20) remove_swapping(pool, cohorts[1], cohorts[1].count / 2);  // leaves gaps
+  std::vector<std::vector<double>> before;
+  std::vector<BlockIndex> in_use;
+  for (Cohort& cohort : cohorts) {
+    before.push_back(numbers(pool, cohort));
+    for (BlockIndex& b : cohort.blocks) {
+      in_use.push_back(b);
+      b = static_cast<BlockIndex>(in_use.size() - 1);
+    }
+  }
+  REQUIRE_FALSE(std::is_sorted(in_use.begin(), in_use.end()));
+  pool.arrange(in_use);
+  for (std::size_t c = 0; c < cohorts.size(); ++c) CHECK(numbers(pool, cohorts[c]) == before[c]);
+  CHECK(pool.blocks_in_use() == in_use.size());
+  // What comes next takes no block that is in use.
+  Cohort more;
+  for (int n = 600; n < 900; ++n) append(pool, more, particle(pool, n).data());
+  CHECK(more.blocks.front() == in_use.size());
+  for (std::size_t c = 0; c < cohorts.size(); ++c) CHECK(numbers(pool, cohorts[c]) == before[c]);
+  BlockPool none(layout_with(Column::damage));
+  none.arrange({});
+  CHECK(none.blocks_in_use() == 0);
 }
