@@ -36,6 +36,7 @@ def measure_scaling(options):
     if options.size != "full":
         small = {"quick": (200e3, 50e3, 5), "tiny": (4e3, 2e3, 1)}[options.size]
         options.strong, options.weak, options.scaling_repeats = small
+        options.rounds = 1
     rows, facts = scaling.study(options)
     results.write(options.out / "scaling.csv", rows, facts)
 
