@@ -115,8 +115,8 @@ def study(options):
     rows, first, states = [], {}, {}
     measured = measure_in_turn(options)
     for name, over, partition, ranks, threads, particles in cases(options):
-        apart = name == "copies" and ranks > 1
-        case = measured[key_of(name, partition, ranks, threads, particles)]
+        key = key_of(name, partition, ranks, threads, particles)
+        case, apart = measured[key], key[0] == "copies"
         if states.setdefault(case["particles"], case["state"]) != case["state"]:
             raise SystemExit(f"{ranks} rank(s) x {threads} thread(s), {partition}: the state {case['state']} "
                              f"is not {states[case['particles']]}, that of the same bar before")

@@ -1,5 +1,5 @@
 // Memory for the particles of one body: blocks of eight particles, each block its body's columns one after
-// the other. Blocks are numbered with 32 bits, keep their address for life, and are reused when given back.
+// the other. Blocks are numbered with 32 bits, stay where they are but for arrange(), and are reused.
 #pragma once
 
 #include <cstdint>

@@ -226,19 +226,17 @@ void insert_travellers(Model& model, const Travellers& travellers) {
 }
 
 void arrange_blocks(Model& model) {
-  for (std::size_t body = 0; body < model.bodies.size(); ++body) {
-    std::vector<BlockIndex> in_use;
-    for (int s = 0; s < model.grid->owned(); ++s) {
-      for (Cohort& cohort : model.grid->brick(static_cast<Slot>(s)).cohorts) {
-        if (static_cast<std::size_t>(cohort.body) != body) continue;
-        for (BlockIndex& b : cohort.blocks) {
-          in_use.push_back(b);
-          b = static_cast<BlockIndex>(in_use.size() - 1);
-        }
+  std::vector<std::vector<BlockIndex>> in_use(model.bodies.size());
+  for (Brick& brick : model.grid->bricks()) {
+    for (Cohort& cohort : brick.cohorts) {
+      std::vector<BlockIndex>& blocks = in_use[static_cast<std::size_t>(cohort.body)];
+      for (BlockIndex& b : cohort.blocks) {
+        blocks.push_back(b);
+        b = static_cast<BlockIndex>(blocks.size() - 1);
       }
     }
-    model.bodies[body].pool->arrange(in_use);
   }
+  for (std::size_t b = 0; b < in_use.size(); ++b) model.bodies[b].pool->arrange(in_use[b]);
 }
 
 void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort) {

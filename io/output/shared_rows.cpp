@@ -59,8 +59,8 @@ void compare(const std::string& path, std::span<const SharedRows> datasets,
       if (std::memcmp(found.data(), bytes.data(), bytes.size()) == 0) return;
       throw FileError(
           fmt::format("cannot write '{}': what was written to '{}' does not read back the same, and no error "
-                      "was reported: "
-                      "this file system loses what several machines write; choose another with --output-dir",
+                      "was reported: this file system loses what several machines write; choose another with "
+                      "--output-dir",
                       path, datasets[d].dataset));
     });
   }
