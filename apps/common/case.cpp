@@ -5,6 +5,7 @@
 #include "io/input/echo.hpp"
 #include "io/input/reader.hpp"
 #include "io/output/file.hpp"
+#include "io/output/job_lock.hpp"
 #include "io/output/variables.hpp"
 #include "io/restart/restart.hpp"
 #include "parallel/launch.hpp"
@@ -18,7 +19,8 @@ namespace {
 
 bool is_restart(const std::string& job) { return std::filesystem::path(job).extension() == ".pe"; }
 
-/// The file itself, or for `Job.pe`, which names no step, the newest one that is whole. Collective.
+/// The file itself, or for `Job.pe`, which names no step, the newest one that is whole, once the run that
+/// writes them is over. Collective.
 std::string find_restart(const std::string& named, const parallel::Communicator& world) {
   namespace fs = std::filesystem;
   parallel::MpiExchange exchange(world);
@@ -27,6 +29,7 @@ std::string find_restart(const std::string& named, const parallel::Communicator&
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
   std::vector<std::string> notices;
   const auto newest_of = [&](const std::string& job) {
+    if (world.rank() == 0) io::JobLock::wait_for(folder + "/" + job + ".lock");
     return io::find_newest_restart(folder, job, exchange, notices);
   };
   const std::string job = path.stem().string();
@@ -120,10 +123,11 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world) {
   Case c;
   if (options.restart_input) {
     c = from_input(*options.restart_input, world);
-    parallel::on_root_then_all<io::FileError>(world, [&] {
+    c.restart_job = parallel::on_root_then_all<io::FileError>(world, [&] {
       const io::RestartScene before = io::read_restart_scene(restart);
       refuse_what_is_over(
           io::parse_scene(before.text, before.path, physics::catalogue(), {.check_files = false}), *c.scene);
+      return before.job_name;
     });
   } else {
     std::string path;
@@ -134,6 +138,7 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world) {
       return scene.text;
     });
     c = parsed(bytes, parallel::broadcast(world, path));
+    c.restart_job = c.scene->provenance.job_name;
   }
   c.restart = restart;
   return c;

@@ -16,6 +16,7 @@ struct Case {
   std::shared_ptr<const core::Scene> scene;
   std::string bytes;                   ///< of the input file, as every restart file will carry them
   std::optional<std::string> restart;  ///< the file to continue from
+  std::string restart_job;             ///< the job named in it
 };
 
 /// Rank 0 reads, every rank gets the same scene or the same InputErrors. Collective.

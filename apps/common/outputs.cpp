@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>
@@ -23,21 +25,55 @@ std::string duration(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-/// Up to where a continued run keeps what its files hold. One that has nothing left to do writes its last
-/// state again: it may have been killed before it could.
-struct Kept {
-  std::optional<std::int64_t> step;
-  std::optional<double> time;
-};
+// The endings of the files' names, by which a restart file knows them.
+constexpr const char* status_ending = ".sta";
+constexpr const char* history_ending = "_curv.dat";
+constexpr const char* h5part_ending = ".h5part";
+constexpr const char* vtu_ending = ".pvd";
+constexpr const char* log_ending = ".out";
 
-Kept kept_of(const std::optional<Continuation>& from, const core::Model& model) {
+std::string mark_named(const Continuation& from, const std::string& name) {
+  const auto found = from.marks.find(name);
+  return found == from.marks.end() ? std::string() : found->second;
+}
+
+io::TableContinuation table_from(const Continuation& from, const std::string& name, std::int64_t last_step) {
+  return {last_step, io::TableMark::from(mark_named(from, name))};
+}
+
+/// The rows of .sta that a continued run keeps. One that has nothing left to do writes its last again: it may
+/// have been killed before it could.
+std::optional<io::TableContinuation> status_from(const std::optional<Continuation>& from,
+                                                 const core::Model& model) {
   if (!from) return {};
   const core::Clock& clock = model.clock;
-  if (clock.time < model.scene->solution.end_time * (1 - 1e-12)) return {clock.step, clock.time};
-  return {clock.step - 1, std::nextafter(clock.time, 0.0)};
+  const bool over = clock.time >= model.scene->solution.end_time * (1 - 1e-12);
+  return table_from(*from, status_ending, over ? clock.step - 1 : clock.step);
+}
+
+std::optional<std::string> picture_from(const std::optional<Continuation>& from, const std::string& name) {
+  return from ? std::optional(mark_named(*from, name)) : std::nullopt;
 }
 
 }  // namespace
+
+bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Exchange& exchange) {
+  return std::erase_if(from.marks, [&](const auto& mark) {
+           return !exchange.any(exchange.rank() == 0 && std::filesystem::exists(stem + mark.first));
+         }) > 0;
+}
+
+std::string log_notice(const std::string& path, const Continuation& from) {
+  const std::string expected = mark_named(from, log_ending);
+  if (expected.empty()) return {};
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) return fmt::format("'{}' is missing; it had {} bytes: it begins anew", path, expected);
+  if (bytes >= std::strtoull(expected.c_str(), nullptr, 10)) return {};
+  return fmt::format(
+      "'{}' has {} bytes, but had {} when the restart file was written: what is missing is lost", path, bytes,
+      expected);
+}
 
 double Interval::passed(double now) const { return std::floor(now / every_ * (1 + 1e-12)); }
 
@@ -45,7 +81,7 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
                  const std::optional<Continuation>& from, io::Log& log)
     : stem_(folder + "/" + model.scene->provenance.job_name),
       log_(log),
-      status_(stem_ + ".sta", model, kept_of(from, model).step, exchange),
+      status_(stem_ + status_ending, model, status_from(from, model), exchange),
       report_(model.scene->output.console.print_time, model.clock.time),
       start_time_(model.clock.time),
       wall_start_(wall()),
@@ -53,8 +89,8 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
   const core::OutputInput& out = model.scene->output;
   if (!out.histories.empty()) {
     std::optional<io::HistoryFile::Continuation> history;
-    if (from) history = {model.clock.step, from->tracked};
-    history_.emplace(stem_ + "_curv.dat", model, history, exchange);
+    if (from) history = {table_from(*from, history_ending, model.clock.step), from->tracked};
+    history_.emplace(stem_ + history_ending, model, history, exchange);
   }
   std::set<std::string> absent;
   const auto say_absent = [&](const std::vector<std::string>& names) {
@@ -64,21 +100,27 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
   for (const auto& history : out.histories) say_absent(history.variables);
   if (out.post_processing) say_absent(out.post_processing->variables);
   for (const std::string& notice : absent) log_.note("note       {}", notice);
+  open_pictures(folder, model, exchange, from);
+  say_notices();
+}
+
+void Outputs::open_pictures(const std::string& folder, const core::Model& model, core::Exchange& exchange,
+                            const std::optional<Continuation>& from) {
+  const core::OutputInput& out = model.scene->output;
   if (!out.post_processing) return;
   const core::PostProcessingInput& post = *out.post_processing;
   const auto variables = io::variables_of(post.variables);
   using Vtk = core::PostProcessingInput::Vtk;
   pictures_ = Interval(post.time_interval, model.clock.time);
   if (post.h5part) {
-    h5part_.emplace(
-        io::H5PartWriter::Settings{stem_ + ".h5part", variables, false, kept_of(from, model).time}, model,
-        exchange);
-    if (!h5part_->notice().empty()) log_.warn("{}", h5part_->notice());
+    h5part_.emplace(io::H5PartWriter::Settings{stem_ + h5part_ending, variables, false,
+                                               picture_from(from, h5part_ending)},
+                    model, exchange);
   }
   if (post.vtk != Vtk::none) {
     vtu_.emplace(
         io::VtuWriter::Settings{folder, model.scene->provenance.job_name, post.vtk == Vtk::file_per_body,
-                                variables, false, kept_of(from, model).time},
+                                variables, false, picture_from(from, vtu_ending)},
         model, exchange);
   }
 }
@@ -87,11 +129,41 @@ std::vector<std::uint64_t> Outputs::tracked() const {
   return history_ ? history_->tracked() : std::vector<std::uint64_t>{};
 }
 
+void Outputs::say_notices() {
+  std::vector<std::string> notices{status_.notice()};
+  if (history_) notices.push_back(history_->notice());
+  if (h5part_) notices.push_back(h5part_->notice());
+  if (vtu_) notices.push_back(vtu_->notice());
+  for (const std::string& notice : notices) {
+    if (!notice.empty()) log_.warn("{}", notice);
+  }
+}
+
+std::map<std::string, std::string> Outputs::marks(core::Exchange& exchange) {
+  const double before = wall();
+  std::map<std::string, std::string> marks;
+  status_.sync(exchange);
+  marks[status_ending] = status_.mark().text();
+  if (history_) {
+    history_->sync(exchange);
+    marks[history_ending] = history_->mark().text();
+  }
+  if (h5part_) marks[h5part_ending] = h5part_->mark(exchange);
+  if (vtu_) {
+    vtu_->sync(exchange);
+    marks[vtu_ending] = vtu_->mark();
+  }
+  log_.sync(exchange);
+  marks[log_ending] = std::to_string(log_.bytes());
+  seconds_ += wall() - before;
+  return marks;
+}
+
 void Outputs::write_pictures(const core::Model& model, core::Exchange& exchange) {
-  if (h5part_) h5part_->write(model, exchange);
-  if (vtu_) vtu_->write(model, exchange);
+  const std::int64_t step = model.clock.step;
+  if (h5part_ && h5part_->last_step() != step) h5part_->write(model, exchange);
+  if (vtu_ && vtu_->last_step() != step) vtu_->write(model, exchange);
   if (history_) history_->flush(exchange);
-  picture_step_ = model.clock.step;
 }
 
 void Outputs::after_step(const core::Model& model, core::Exchange& exchange) {
@@ -135,15 +207,18 @@ const core::Totals& Outputs::report(const core::Model& model, core::Exchange& ex
 void Outputs::finish(const core::Model& model, core::Exchange& exchange) {
   if (report_step_ != model.clock.step) report(model, exchange);
   const double before = wall();
-  if ((h5part_ || vtu_) && picture_step_ != model.clock.step) write_pictures(model, exchange);
-  if (history_) history_->flush(exchange);
+  write_pictures(model, exchange);
+  if (h5part_) h5part_->finish(exchange);
+  if (vtu_) vtu_->sync(exchange);
+  status_.sync(exchange);
+  if (history_) history_->sync(exchange);
   seconds_ += wall() - before;
 }
 
 std::vector<std::string> Outputs::pictures() const {
   std::vector<std::string> files;
-  if (h5part_) files.push_back(stem_ + ".h5part");
-  if (vtu_) files.push_back(stem_ + ".pvd");
+  if (h5part_) files.push_back(stem_ + h5part_ending);
+  if (vtu_) files.push_back(stem_ + vtu_ending);
   return files;
 }
 

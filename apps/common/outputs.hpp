@@ -2,6 +2,7 @@
 // does not ask for is not created.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -33,8 +34,17 @@ class Interval {
 
 /// Where a continued run's files are to be taken up.
 struct Continuation {
-  std::vector<std::uint64_t> tracked;  ///< particles that the histories follow
+  std::vector<std::uint64_t> tracked;        ///< particles that the histories follow
+  std::map<std::string, std::string> marks;  ///< Outputs::marks() of the run that goes on
 };
+
+/// Of a run that goes on in another folder than its restart file's: files `<stem><ending>` that are not there
+/// begin anew, and their marks go. True if there are any. Collective.
+bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Exchange& exchange);
+
+/// What the user should know about the log that is to go on, before it is opened; mostly nothing. On one
+/// rank.
+std::string log_notice(const std::string& path, const Continuation& from);
 
 class Outputs {
  public:
@@ -49,6 +59,10 @@ class Outputs {
   /// At the end, the state if it is not yet in the files; everything to the disk. Collective.
   void finish(const core::Model& model, core::Exchange& exchange);
 
+  /// All that has been written so far to the disk itself, and where each file stands, for a restart file:
+  /// what a run that goes on does not write again is safe before the restart file counts. Collective.
+  std::map<std::string, std::string> marks(core::Exchange& exchange);
+
   const core::Totals& last_totals() const { return totals_; }
   std::int64_t status_rows() const { return status_.rows_added(); }
   std::vector<std::uint64_t> tracked() const;
@@ -58,6 +72,9 @@ class Outputs {
 
  private:
   void write_pictures(const core::Model& model, core::Exchange& exchange);
+  void open_pictures(const std::string& folder, const core::Model& model, core::Exchange& exchange,
+                     const std::optional<Continuation>& from);
+  void say_notices();
 
   std::string stem_;
   io::Log& log_;
@@ -67,7 +84,7 @@ class Outputs {
   std::optional<io::VtuWriter> vtu_;
   Interval report_, pictures_;
   core::Totals totals_;
-  std::int64_t picture_step_ = -1, report_step_ = -1;
+  std::int64_t report_step_ = -1;
   double seconds_ = 0;
   double start_time_ = 0;
   double wall_start_ = 0;

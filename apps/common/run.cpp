@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -18,6 +19,7 @@
 #include "core/simd/denormals.hpp"
 #include "core/step/stepper.hpp"
 #include "io/output/file.hpp"
+#include "io/output/job_lock.hpp"
 #include "io/output/memory_use.hpp"
 #include "io/output/particle_order.hpp"
 #include "io/output/provenance.hpp"
@@ -111,7 +113,7 @@ class Run {
       const io::RestartResult state = io::read_restart(*case_.restart, model_, exchange_);
       notices = state.notices;
       last_restart_ = *case_.restart;
-      if (continues_files()) continuation_ = Continuation{state.extra.tracked};
+      if (continues_files()) continuation_ = Continuation{state.extra.tracked, state.extra.marks};
     } else {
       core::discretise(model_, exchange_);
       core::start_clock(model_, exchange_);
@@ -162,15 +164,36 @@ class Run {
   }
 
  private:
+  /// From here on the files of the job are this run's.
   void open_log() {
     io::together(exchange_, [&] {
-      if (exchange_.rank() != 0) return;
-      io::make_folder(options_.output_dir);
-      if (!options_.dry_run)
-        io::remove_file(file(".summary.json"));  // of an earlier run, should this one not get so far
+      if (exchange_.rank() == 0) io::make_folder(options_.output_dir);
     });
+    bool elsewhere = false;
+    std::string cut;
+    if (!options_.dry_run) {
+      lock_.emplace(file(".lock"), exchange_);
+      elsewhere = continuation_ && goes_on_elsewhere() &&
+                  forget_what_is_elsewhere(file(""), *continuation_, exchange_);
+      if (exchange_.rank() == 0) {
+        io::remove_file(file(".summary.json"));  // of an earlier run, should this one not get so far
+        if (continuation_) cut = log_notice(file(".out"), *continuation_);
+      }
+    }
     log_.emplace(file(".out"), continues_files() || options_.dry_run, true, exchange_);
     for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
+    if (lock_ && !lock_->notice().empty()) log_->note("note       {}", lock_->notice());
+    if (!cut.empty()) log_->warn("{}", cut);
+    if (elsewhere)
+      log_->note("note       not all files that the run wrote before are in this folder: these begin here");
+  }
+
+  bool goes_on_elsewhere() {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path folder = fs::path(*case_.restart).parent_path();
+    return exchange_.any(exchange_.rank() == 0 &&
+                         !fs::equivalent(folder.empty() ? "." : folder, options_.output_dir, error));
   }
 
   /// `folder/Job<ending>`
@@ -182,8 +205,7 @@ class Run {
   /// one's name.
   bool continues_files() const {
     return case_.restart && !options_.dry_run &&
-           (!options_.restart_input ||
-            io::job_of_restart(*case_.restart) == case_.scene->provenance.job_name);
+           (!options_.restart_input || case_.restart_job == case_.scene->provenance.job_name);
   }
 
   bool status_rows_reached() const {
@@ -221,9 +243,10 @@ class Run {
   }
 
   void save() {
+    const io::RestartExtra extra{case_.bytes, outputs_->tracked(), outputs_->marks(exchange_)};
     const double before = clock_.seconds();
-    const std::string path = io::write_restart(options_.output_dir, case_.scene->provenance.job_name, model_,
-                                               {case_.bytes, outputs_->tracked(), {}}, exchange_);
+    const std::string path =
+        io::write_restart(options_.output_dir, case_.scene->provenance.job_name, model_, extra, exchange_);
     log_->say("restart    {} at step {}, time {:.6g}", path, model_.clock.step, model_.clock.time);
     last_restart_ = path;
     save_seconds_ += clock_.seconds() - before;
@@ -285,7 +308,8 @@ class Run {
     for (const std::string& picture : outputs_->pictures()) log_->say("open       {}", picture);
     try {
       io::write_summary(file(".summary.json"), model_, totals, report, exchange_);
-      log_->flush(exchange_);
+      log_->sync(exchange_);
+      lock_->release(exchange_);
     } catch (const io::FileError&) {
       if (status != "failed") throw;  // else the disk that ended the run takes no summary either
     }
@@ -296,6 +320,7 @@ class Run {
   parallel::MpiExchange exchange_;
   Case case_;
   int threads_ = 1;
+  std::optional<io::JobLock> lock_;
   std::optional<io::Log> log_;
   core::Model model_;
   std::optional<Continuation> continuation_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/output/file.hpp"
+#include "io/output/hash.hpp"
 #include "io/output/hdf5.hpp"
 #include "io/output/shared_rows.hpp"
 
@@ -61,8 +62,6 @@ Type type_of(Kind kind, bool double_precision) {
 
 std::string group_name(int n) { return fmt::format("Step#{}", n); }
 
-std::string lost_name(int n) { return fmt::format("lost#{}", n); }
-
 std::vector<BodyFacts> facts_of_all(const core::Model& model) {
   std::vector<BodyFacts> facts;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) facts.push_back(facts_of(model, b));
@@ -104,48 +103,38 @@ void fill(const core::Model& model, const RowBatch& batch, const Field& field, b
 
 H5PartWriter::H5PartWriter(Settings settings, const core::Model& model, core::Exchange& exchange)
     : settings_(std::move(settings)), fields_(fields_for(settings_.variables)) {
-  std::int64_t times = 0;
+  if (go_on(exchange)) return;
+  mark_ = {};
   together(exchange, [&] {
-    if (exchange.rank() != 0) return;
-    if (settings_.continue_from && std::filesystem::exists(settings_.path)) {
-      try {
-        times = open_existing(*settings_.continue_from);
-        return;
-      } catch (const FileError& e) {
-        const std::string aside = settings_.path + ".damaged";
-        notice_ = fmt::format("{}; it is now '{}', and a new file begins", e.what(), aside);
-        rename_file(settings_.path, aside);
-      }
-    }
-    create(*model.scene);
+    if (exchange.rank() == 0) create(*model.scene);
   });
-  exchange.sum(std::span(&times, 1));
-  times_ = static_cast<int>(times);
 }
 
-int H5PartWriter::open_existing(double last) {
-  int kept = 0;
-  {
-    const hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::read);
-    while (hdf5::has_link(file, group_name(kept)) &&
-           hdf5::read_double(hdf5::open_group(file, group_name(kept)), "TimeValue") <= last) {
-      ++kept;
-    }
+bool H5PartWriter::go_on(core::Exchange& exchange) {
+  if (!settings_.continue_from) return false;
+  const std::string& path = settings_.path;
+  const std::optional<H5PartMark> mark = H5PartMark::from(*settings_.continue_from);
+  if (!exchange.any(exchange.rank() == 0 && std::filesystem::exists(path))) {
+    if (mark && mark->times > 0)
+      notice_ = fmt::format("'{}' is missing; it had {} time(s): it begins anew", path, mark->times);
+    return false;
   }
-  File(settings_.path, File::Mode::change)
-      .reserve(std::filesystem::file_size(settings_.path) + bytes_per_group);
-  hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
-  for (int n = kept; hdf5::has_link(file, group_name(n)); ++n) {
-    hdf5::check(H5Ldelete(file, group_name(n).c_str(), H5P_DEFAULT),
-                "drop a later time of '" + settings_.path + "'");
+  std::string aside = path + ".damaged", complaint;
+  if (mark) {
+    complaint = restore(path, *mark, exchange);
+  } else {
+    complaint = fmt::format("the restart file says nothing of '{}'", path);
+    aside = path + ".old";
   }
-  // The workshop of a run that was killed may be in any state: it is never opened again.
-  int lost = 0;
-  while (hdf5::has_link(file, lost_name(lost))) ++lost;
-  if (hdf5::has_link(file, workshop)) hdf5::rename_link(file, workshop, lost_name(lost));
-  hdf5::create_group_before_link(file, workshop);
-  file.close("write '" + settings_.path + "'");
-  return kept;
+  if (complaint.empty()) {
+    mark_ = *mark;
+    return true;
+  }
+  notice_ = fmt::format("{}; it is now '{}', and a new file begins", complaint, aside);
+  together(exchange, [&] {
+    if (exchange.rank() == 0) rename_file(path, aside);
+  });
+  return false;
 }
 
 void H5PartWriter::create(const core::Scene& scene) {
@@ -155,6 +144,7 @@ void H5PartWriter::create(const core::Scene& scene) {
   hdf5::write_attribute(file, provenance_of(scene));
   hdf5::create_group(file, workshop);
   file.close("write '" + part + "'");
+  mark_.head = std::filesystem::file_size(part);
   rename_file(part, settings_.path);
 }
 
@@ -187,15 +177,23 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
 void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchange,
                                 const std::vector<RowBatch>& batches) {
   const std::vector<BodyFacts> facts = facts_of_all(model);
+  std::vector<std::uint64_t> checksums(fields_.size());
   std::vector<SharedRows> datasets;
-  for (const Field& field : fields_) {
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    const Field& field = fields_[f];
     datasets.push_back({std::string(work) + "/" + field.name,
                         type_of(field.kind, settings_.double_precision).bytes, batches,
                         [&](const RowBatch& batch, std::byte* memory) {
                           fill(model, batch, field, settings_.double_precision, facts, memory);
-                        }});
+                        },
+                        &checksums[f]});
   }
-  write_together(settings_.path, datasets, exchange);
+  const std::vector<Extent> extents = write_together(settings_.path, datasets, exchange);
+  sum_checksums(checksums, exchange);
+  unnamed_.clear();
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    if (extents[f].size > 0) unnamed_.push_back({extents[f], datasets[f].bytes, checksums[f]});
+  }
 }
 
 void H5PartWriter::name_step() {
@@ -203,8 +201,12 @@ void H5PartWriter::name_step() {
     File space(settings_.path, File::Mode::change);
     space.reserve(space.size() + bytes_per_group);
   }
+  Hash checksum;
+  for (const H5PartMark::Rows& rows : unnamed_) checksum.add(rows.checksum);
   hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
-  hdf5::rename_link(file, work, group_name(times_));
+  hdf5::write_attribute(hdf5::open_group(file, work), "checksum",
+                        static_cast<std::int64_t>(checksum.value()));
+  hdf5::rename_link(file, work, group_name(times()));
   file.close("write '" + settings_.path + "'");
 }
 
@@ -226,7 +228,34 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
   together(exchange, [&] {
     if (exchange.rank() == 0) name_step();
   });
-  ++times_;
+  mark_.rows.insert(mark_.rows.end(), unnamed_.begin(), unnamed_.end());
+  std::sort(mark_.rows.begin(), mark_.rows.end(),
+            [](const auto& a, const auto& b) { return a.extent.offset < b.extent.offset; });
+  mark_.step = model.clock.step;
+  ++mark_.times;
+}
+
+std::string H5PartWriter::mark(core::Exchange& exchange) {
+  std::string bytes;
+  together(exchange, [&] {
+    File(settings_.path, File::Mode::read).sync();
+    if (exchange.rank() != 0) return;
+    H5PartMark whole = mark_;
+    whole.copy_tables(settings_.path);
+    bytes = whole.bytes();
+  });
+  return bytes;
+}
+
+void H5PartWriter::finish(core::Exchange& exchange) {
+  together(exchange, [&] {
+    if (exchange.rank() == 0) {
+      hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
+      hdf5::check(H5Ldelete(file, workshop, H5P_DEFAULT), "remove what is only needed while times are added");
+      file.close("write '" + settings_.path + "'");
+    }
+  });
+  together(exchange, [&] { File(settings_.path, File::Mode::read).sync(); });
 }
 
 }  // namespace mpm::io

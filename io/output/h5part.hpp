@@ -6,8 +6,10 @@
 // (32-bit) and the variables asked for. Rows are in the order of particle_order.hpp.
 //
 // A time is made in a group that readers do not look for, and gets its name when it is complete; until then
-// nothing changes that the earlier times need. Limit: a kill within the few microseconds of the naming may
-// still hurt. Shown by tests/io/output/h5part_test.cpp.
+// nothing changes that the earlier times need. Its attribute `checksum` is over the values of all its
+// datasets. A run that goes on makes the file what it was (h5part_mark.hpp), so a kill or damage in between
+// does not matter. Limit: of a run that does not go on, a kill within the few microseconds of the naming may
+// hurt. Shown by tests/io/output/h5part_test.cpp.
 #pragma once
 
 #include <optional>
@@ -16,6 +18,7 @@
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
+#include "io/output/h5part_mark.hpp"
 #include "io/output/variables.hpp"
 
 namespace mpm::io {
@@ -26,8 +29,8 @@ class H5PartWriter {
     std::string path;
     std::vector<Variable> variables;
     bool double_precision = false;
-    /// Keep the times of an existing file up to this one and go on after them; start anew without.
-    std::optional<double> continue_from;
+    /// mark() of the run that goes on, empty if it had none; start anew without.
+    std::optional<std::string> continue_from;
   };
   /// Bodies without output are left out. Throws FileError. Collective.
   H5PartWriter(Settings settings, const core::Model& model, core::Exchange& exchange);
@@ -35,7 +38,15 @@ class H5PartWriter {
   /// One more time. Throws FileError; the earlier times stay readable. Collective.
   void write(const core::Model& model, core::Exchange& exchange);
 
-  int times() const { return times_; }
+  /// What a restart file needs to know of the file, on rank 0; what is in the file is then on the disk.
+  /// Throws FileError. Collective.
+  std::string mark(core::Exchange& exchange);
+  /// No more times will follow: to the disk. Throws FileError. Collective.
+  void finish(core::Exchange& exchange);
+
+  int times() const { return static_cast<int>(mark_.times); }
+  /// Of the last time in the file; -1 if there is none.
+  std::int64_t last_step() const { return mark_.step; }
   /// What the user should know about a file that could not be continued; mostly empty.
   const std::string& notice() const { return notice_; }
 
@@ -47,7 +58,7 @@ class H5PartWriter {
   };
 
  private:
-  int open_existing(double last);
+  bool go_on(core::Exchange& exchange);
   void create(const core::Scene& scene);
   void add_step(const core::Clock& clock, std::int64_t particles);
   void write_fields(const core::Model& model, core::Exchange& exchange,
@@ -56,7 +67,8 @@ class H5PartWriter {
 
   Settings settings_;
   std::vector<Field> fields_;
-  int times_ = 0;
+  H5PartMark mark_;                        ///< without the file's size and other bytes; `head` on rank 0
+  std::vector<H5PartMark::Rows> unnamed_;  ///< of the time that is being made
   std::string notice_;
 };
 

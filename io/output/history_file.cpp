@@ -107,13 +107,9 @@ HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
   } else {
     choose_particles(model, exchange);
   }
-  bool append = false;
-  together(exchange, [&] {
-    if (exchange.rank() == 0 && continuation) append = cut_table(path, head(), continuation->step);
-  });
-  file_.emplace(path, append, exchange);
-  if (!append) file_->add(to_text(provenance_of(*model.scene), "# ") + legend() + head() + '\n');
-  file_->flush(exchange);
+  std::optional<TableContinuation> rows;
+  if (continuation) rows = continuation->rows;
+  file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(), rows, exchange);
 }
 
 std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scene) {
@@ -267,7 +263,7 @@ void HistoryFile::add(const core::Model& model, core::Exchange& exchange) {
     t.last = {static_cast<std::int32_t>(b[0]), static_cast<std::int32_t>(b[1]),
               static_cast<std::int32_t>(b[2])};
   }
-  file_->add(row + '\n');
+  file_->add(model.clock.step, row);
 }
 
 std::vector<std::uint64_t> HistoryFile::tracked() const {

@@ -13,7 +13,7 @@
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
-#include "io/output/text_file.hpp"
+#include "io/output/table_file.hpp"
 #include "io/output/variables.hpp"
 
 namespace mpm::io {
@@ -24,7 +24,7 @@ inline constexpr std::uint64_t no_identity = ~std::uint64_t{0};
 class HistoryFile {
  public:
   struct Continuation {
-    std::int64_t step = 0;               ///< rows up to this one are kept
+    TableContinuation rows;              ///< those that are kept
     std::vector<std::uint64_t> tracked;  ///< tracked() of the run that goes on
   };
   /// Throws FileError. Collective.
@@ -35,6 +35,10 @@ class HistoryFile {
   void add(const core::Model& model, core::Exchange& exchange);
   /// Throws FileError. Collective.
   void flush(core::Exchange& exchange) { file_->flush(exchange); }
+  /// As flush(), and to the disk itself. Collective.
+  void sync(core::Exchange& exchange) { file_->sync(exchange); }
+  const TableMark& mark() const { return file_->mark(); }
+  const std::string& notice() const { return file_->notice(); }
 
   /// Identities of the particles that are followed, for restart files. The same on all ranks.
   std::vector<std::uint64_t> tracked() const;
@@ -58,7 +62,7 @@ class HistoryFile {
 
   std::vector<Target> targets_;
   std::size_t record_ = 0;  ///< doubles exchanged per row
-  std::optional<TextFile> file_;
+  std::optional<TableFile> file_;
 };
 
 }  // namespace mpm::io

@@ -33,6 +33,10 @@ class Log {
 
   /// Throws FileError if something could not be written. Collective.
   void flush(core::Exchange& exchange) { file_.flush(exchange); }
+  /// As flush(), and to the disk itself. Collective.
+  void sync(core::Exchange& exchange) { file_.sync(exchange); }
+  /// What the file holds; 0 on other ranks than 0.
+  std::uint64_t bytes() const { return file_.bytes(); }
 
  private:
   void put(const std::string& text, To to);

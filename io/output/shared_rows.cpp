@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/output/file.hpp"
+#include "io/output/h5part_mark.hpp"
 #include "io/output/hdf5.hpp"
 
 namespace mpm::io {
@@ -42,8 +43,12 @@ void write(const std::string& path, std::span<const SharedRows> datasets,
            const std::vector<Extent>& extents) {
   File file(path, File::Mode::fill);
   for (std::size_t d = 0; d < datasets.size(); ++d) {
-    for_each_stretch(datasets[d], extents[d],
-                     [&](std::span<const std::byte> bytes, std::uint64_t at) { file.write_at(bytes, at); });
+    const SharedRows& rows = datasets[d];
+    for_each_stretch(rows, extents[d], [&](std::span<const std::byte> bytes, std::uint64_t at) {
+      file.write_at(bytes, at);
+      if (rows.checksum != nullptr)
+        *rows.checksum += checksum_of_rows((at - extents[d].offset) / rows.bytes, bytes, rows.bytes);
+    });
   }
   file.close();
 }
@@ -68,13 +73,15 @@ void compare(const std::string& path, std::span<const SharedRows> datasets,
 
 }  // namespace
 
-void write_together(const std::string& path, std::span<const SharedRows> datasets, core::Exchange& exchange) {
+std::vector<Extent> write_together(const std::string& path, std::span<const SharedRows> datasets,
+                                   core::Exchange& exchange) {
   std::vector<Extent> extents;
   together(exchange, [&] {
     extents = extents_of(path, datasets);
     write(path, datasets, extents);
   });
   if (exchange.size() > 1) together(exchange, [&] { compare(path, datasets, extents); });
+  return extents;
 }
 
 }  // namespace mpm::io

@@ -10,11 +10,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/step/exchange.hpp"
+#include "io/output/file.hpp"
 #include "io/output/row_batches.hpp"
 
 namespace mpm::io {
@@ -26,9 +29,12 @@ struct SharedRows {
   std::span<const RowBatch> batches;
   /// Puts the rows of a batch into memory, the same ones each time.
   std::function<void(const RowBatch&, std::byte*)> fill;
+  /// This rank's share of the dataset's checksum_of_rows() is added to it, where there is one.
+  std::uint64_t* checksum = nullptr;
 };
 
-/// Throws FileError on every rank if it fails on any. Collective.
-void write_together(const std::string& path, std::span<const SharedRows> datasets, core::Exchange& exchange);
+/// Where the datasets are in the file. Throws FileError on every rank if it fails on any. Collective.
+std::vector<Extent> write_together(const std::string& path, std::span<const SharedRows> datasets,
+                                   core::Exchange& exchange);
 
 }  // namespace mpm::io

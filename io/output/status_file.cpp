@@ -53,27 +53,13 @@ double total_cells(const core::Model& model) {
   return static_cast<double>(cells[0]) * static_cast<double>(cells[1]) * static_cast<double>(cells[2]);
 }
 
-/// The file, continued if it can be.
-TextFile open_table(const std::string& path, const core::Model& model, const std::string& head,
-                    std::optional<std::int64_t> continue_from, core::Exchange& exchange) {
-  bool append = false;
-  together(exchange, [&] {
-    if (exchange.rank() == 0 && continue_from) append = cut_table(path, head, *continue_from);
-  });
-  TextFile file(path, append, exchange);
-  if (!append) file.add(to_text(provenance_of(*model.scene), "# ") + head + '\n');
-  return file;
-}
-
 }  // namespace
 
 StatusFile::StatusFile(const std::string& path, const core::Model& model,
-                       std::optional<std::int64_t> continue_from, core::Exchange& exchange)
-    : file_(open_table(path, model, head_of(model), continue_from, exchange)),
+                       const std::optional<TableContinuation>& from, core::Exchange& exchange)
+    : file_(path, to_text(provenance_of(*model.scene), "# "), head_of(model), from, exchange),
       memory_(model.scene->output.statistics.memory),
-      occupancy_(model.scene->output.statistics.cell_occupancy) {
-  file_.flush(exchange);
-}
+      occupancy_(model.scene->output.statistics.cell_occupancy) {}
 
 void StatusFile::add(const core::Model& model, const core::Totals& totals, core::Exchange& exchange) {
   const core::Clock& clock = model.clock;
@@ -99,7 +85,7 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
     add(static_cast<double>(use.sum));
   }
   if (occupancy_) add(static_cast<double>(core::occupied_cells(model, exchange)) / total_cells(model));
-  file_.add(row + '\n');
+  file_.add(clock.step, row);
   file_.flush(exchange);
   ++rows_;
 }

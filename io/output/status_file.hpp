@@ -8,24 +8,27 @@
 #include <string>
 
 #include "core/step/totals.hpp"
-#include "io/output/text_file.hpp"
+#include "io/output/table_file.hpp"
 
 namespace mpm::io {
 
 class StatusFile {
  public:
-  /// Keeps the rows up to `continue_from`, a step, of an existing file with the same columns; starts anew
-  /// without. Throws FileError. Collective.
-  StatusFile(const std::string& path, const core::Model& model, std::optional<std::int64_t> continue_from,
+  /// Starts anew without a continuation. Throws FileError. Collective.
+  StatusFile(const std::string& path, const core::Model& model, const std::optional<TableContinuation>& from,
              core::Exchange& exchange);
 
   /// One row, handed to the system when this returns. Throws FileError. Collective.
   void add(const core::Model& model, const core::Totals& totals, core::Exchange& exchange);
 
   std::int64_t rows_added() const { return rows_; }
+  /// The rows to the disk itself. Throws FileError. Collective.
+  void sync(core::Exchange& exchange) { file_.sync(exchange); }
+  const TableMark& mark() const { return file_.mark(); }
+  const std::string& notice() const { return file_.notice(); }
 
  private:
-  TextFile file_;
+  TableFile file_;
   bool memory_;
   bool occupancy_;
   std::int64_t rows_ = 0;

@@ -1,9 +1,5 @@
 #include "io/output/text_file.hpp"
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
 namespace mpm::io {
 
 namespace {
@@ -38,26 +34,11 @@ void TextFile::flush(core::Exchange& exchange) {
   agree(exchange, complaint_);
 }
 
-bool cut_table(const std::string& path, const std::string& head, std::int64_t last_step) {
-  std::ifstream in(path);
-  if (!in) return false;
-  std::string line, last_comment;
-  std::uint64_t keep = 0;
-  while (std::getline(in, line) && !in.eof()) {  // a line that ends with the file was cut short
-    if (!line.empty() && line.front() == '#') {
-      last_comment = line;
-    } else if (last_comment != head || std::strtoll(line.c_str(), nullptr, 10) > last_step) {
-      break;
-    }
-    keep += line.size() + 1;
-  }
-  in.close();
-  if (last_comment != head) {
-    rename_file(path, path + ".old");
-    return false;
-  }
-  File(path, File::Mode::change).truncate(keep);
-  return true;
+void TextFile::sync(core::Exchange& exchange) {
+  flush(exchange);
+  together(exchange, [&] {
+    if (file_) file_->sync();
+  });
 }
 
 }  // namespace mpm::io

@@ -1,6 +1,7 @@
 // A text file that grows by lines, on rank 0; the other ranks hold nothing.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,17 +25,15 @@ class TextFile {
   void write_out() noexcept;
   /// Throws FileError if anything could not be written since the file was opened. Collective.
   void flush(core::Exchange& exchange);
+  /// As flush(), and to the disk itself. Collective.
+  void sync(core::Exchange& exchange);
+  /// What the file holds; 0 on other ranks than 0.
+  std::uint64_t bytes() const { return file_ ? file_->size() : 0; }
 
  private:
   std::unique_ptr<File> file_;
   std::string waiting_;
   std::string complaint_;
 };
-
-/// Cut a table, whose rows start with the step and whose other lines start with '#', after the last whole row
-/// of a step up to `last_step`. The last '#' line before the rows must be `head`, else the table is not of
-/// this run: it is renamed to `<path>.old` and false is returned. False, too, if there is no such file. On
-/// one rank.
-bool cut_table(const std::string& path, const std::string& head, std::int64_t last_step);
 
 }  // namespace mpm::io

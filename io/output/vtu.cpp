@@ -200,6 +200,17 @@ std::string file_name_of(const core::Model& model, std::size_t body) {
   return name;
 }
 
+/// What xml_escaped() was given.
+std::string xml_plain(std::string text) {
+  constexpr std::pair<std::string_view, char> entities[] = {
+      {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&amp;", '&'}};
+  for (const auto& [entity, plain] : entities) {
+    for (std::size_t at = text.find(entity); at != std::string::npos; at = text.find(entity, at + 1))
+      text.replace(at, entity.size(), 1, plain);
+  }
+  return text;
+}
+
 std::string attribute_of(const std::string& line, const std::string& name) {
   const std::string start = name + "=\"";
   const std::size_t at = line.find(start);
@@ -212,38 +223,58 @@ std::string attribute_of(const std::string& line, const std::string& name) {
 
 VtuWriter::VtuWriter(Settings settings, const core::Model& model, core::Exchange& exchange)
     : settings_(std::move(settings)) {
+  if (settings_.continue_from && !settings_.continue_from->empty()) read_mark(*settings_.continue_from);
   together(exchange, [&] {
     if (exchange.rank() != 0) return;
     make_folder(settings_.folder + "/" + settings_.job + "_vtu");
-    if (settings_.continue_from) read_collection(*settings_.continue_from);
+    const std::size_t listed = entries_.size();
+    std::erase_if(entries_, [&](const Entry& e) {
+      return !std::filesystem::exists(settings_.folder + "/" + xml_plain(e.file));
+    });
+    if (entries_.size() < listed) {
+      notice_ = fmt::format("{} of the {} files that '{}/{}.pvd' listed are missing",
+                            listed - entries_.size(), listed, settings_.folder, settings_.job);
+    }
     write_collection(*model.scene);
   });
 }
 
-void VtuWriter::read_collection(double last) {
-  const std::string path = settings_.folder + "/" + settings_.job + ".pvd";
-  if (!std::filesystem::exists(path)) return;
-  const std::string text = read_file(path);
-  for (std::size_t at = text.find("<DataSet "); at != std::string::npos;
-       at = text.find("<DataSet ", at + 1)) {
-    const std::string line = text.substr(at, text.find("/>", at) - at);
-    const std::string time = attribute_of(line, "timestep"), part = attribute_of(line, "part");
-    if (time.empty() || part.empty()) continue;
-    const Entry entry{std::strtod(time.c_str(), nullptr), std::atoi(part.c_str()), attribute_of(line, "name"),
-                      attribute_of(line, "file")};
-    if (entry.time <= last) entries_.push_back(entry);
+/// The step of the last time, a line, then the list.
+void VtuWriter::read_mark(const std::string& mark) {
+  last_step_ = std::strtoll(mark.c_str(), nullptr, 10);
+  for (std::size_t at = mark.find("<DataSet "); at != std::string::npos;
+       at = mark.find("<DataSet ", at + 1)) {
+    const std::string line = mark.substr(at, mark.find("/>", at) - at);
+    entries_.push_back({std::strtod(attribute_of(line, "timestep").c_str(), nullptr),
+                        std::atoi(attribute_of(line, "part").c_str()), attribute_of(line, "name"),
+                        attribute_of(line, "file")});
   }
 }
 
-void VtuWriter::write_collection(const core::Scene& scene) const {
-  std::string text =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + to_xml_comment(provenance_of(scene)) +
-      "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+std::string VtuWriter::list() const {
+  std::string text;
   for (const Entry& e : entries_) {
     text += fmt::format("<DataSet timestep=\"{:.17g}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", e.time,
                         e.part, e.name, e.file);
   }
-  replace_file(settings_.folder + "/" + settings_.job + ".pvd", text + "</Collection>\n</VTKFile>\n");
+  return text;
+}
+
+std::string VtuWriter::mark() const { return fmt::format("{}\n{}", last_step_, list()); }
+
+void VtuWriter::write_collection(const core::Scene& scene) const {
+  const std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + to_xml_comment(provenance_of(scene)) +
+      "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+  replace_file(settings_.folder + "/" + settings_.job + ".pvd",
+               text + list() + "</Collection>\n</VTKFile>\n");
+}
+
+void VtuWriter::sync(core::Exchange& exchange) {
+  together(exchange, [&] {
+    for (const std::string& path : unsynced_) File(path, File::Mode::read).sync();
+    unsynced_.clear();
+  });
 }
 
 void VtuWriter::write_set(const std::string& stem, const std::string& name,
@@ -269,6 +300,7 @@ void VtuWriter::write_set(const std::string& stem, const std::string& name,
     const std::string name_of_mine = path + piece_name(stem, exchange.rank());
     try {
       write_piece(name_of_mine, piece, position, arrays);
+      unsynced_.push_back(name_of_mine);
     } catch (const FileError&) {
       remove_file(name_of_mine);
       throw;
@@ -297,6 +329,7 @@ void VtuWriter::write(const core::Model& model, core::Exchange& exchange) {
       write_set(stem, model.bodies[b].name, {b}, model, exchange, static_cast<int>(b));
     }
   }
+  last_step_ = model.clock.step;
   together(exchange, [&] {
     if (exchange.rank() == 0) write_collection(*model.scene);
   });

@@ -23,14 +23,23 @@ class VtuWriter {
     bool per_body = false;
     std::vector<Variable> variables;
     bool double_precision = false;
-    /// Keep what an existing Job.pvd lists up to this time; start its list anew without.
-    std::optional<double> continue_from;
+    /// mark() of the run that goes on, whose list is kept; start its list anew without.
+    std::optional<std::string> continue_from;
   };
   /// Throws FileError. Collective.
   VtuWriter(Settings settings, const core::Model& model, core::Exchange& exchange);
 
   /// One more time. Throws FileError; what Job.pvd lists stays readable. Collective.
   void write(const core::Model& model, core::Exchange& exchange);
+
+  /// All files to the disk itself. Throws FileError. Collective.
+  void sync(core::Exchange& exchange);
+  /// The list, for restart files; empty on other ranks than 0.
+  std::string mark() const;
+  /// Of the last time in the list; -1 if there is none.
+  std::int64_t last_step() const { return last_step_; }
+  /// What the user should know about files that are gone; mostly empty.
+  const std::string& notice() const { return notice_; }
 
  private:
   struct Entry {
@@ -39,13 +48,17 @@ class VtuWriter {
     std::string name;
     std::string file;  ///< relative to the folder of Job.pvd
   };
-  void read_collection(double last);
+  void read_mark(const std::string& mark);
+  std::string list() const;
   void write_collection(const core::Scene& scene) const;
   void write_set(const std::string& stem, const std::string& name, const std::vector<std::size_t>& bodies,
                  const core::Model& model, core::Exchange& exchange, int part);
 
   Settings settings_;
   std::vector<Entry> entries_;  ///< on rank 0
+  std::int64_t last_step_ = -1;
+  std::vector<std::string> unsynced_;  ///< files of this rank that may not be on the disk yet
+  std::string notice_;
 };
 
 }  // namespace mpm::io

@@ -233,25 +233,24 @@ void read_run(hid_t file, RestartContents& c) {
 
 void write_extra(hid_t file, const RestartExtra& extra) {
   const hdf5::Handle group = hdf5::create_group(file, "extra");
-  std::string names;
-  std::vector<double> values;
-  for (const auto& [name, value] : extra.numbers) {
-    names += name + '\n';
-    values.push_back(value);
-  }
   hdf5::write_all(group, "tracked", std::span<const std::uint64_t>(extra.tracked));
+  const hdf5::Handle marks = hdf5::create_group(group, "marks");
+  std::string names;
+  for (const auto& [name, bytes] : extra.marks) {
+    hdf5::write_all(marks, name, std::string_view(bytes));
+    names += name + '\n';
+  }
   hdf5::write_all(group, "names", std::string_view(names));
-  hdf5::write_all(group, "values", std::span<const double>(values));
 }
 
 RestartExtra read_extra(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "extra");
   RestartExtra extra;
   extra.tracked = hdf5::read_all_uint64(group, "tracked");
-  const std::vector<double> values = hdf5::read_all_double(group, "values");
+  if (!hdf5::has_link(group, "marks")) return extra;  // of format 1
+  const hdf5::Handle marks = hdf5::open_group(group, "marks");
   std::istringstream names(hdf5::read_all_bytes(group, "names"));
-  std::size_t i = 0;
-  for (std::string name; i < values.size() && std::getline(names, name);) extra.numbers[name] = values[i++];
+  for (std::string name; std::getline(names, name);) extra.marks[name] = hdf5::read_all_bytes(marks, name);
   return extra;
 }
 
@@ -298,7 +297,8 @@ std::string rows_name(std::size_t body) { return fmt::format("bodies/{}/particle
 
 std::uint64_t expected_bytes(const RestartContents& c) {
   std::uint64_t bytes = 262144 + c.extra.scene_text.size() + sizeof(CohortRecord) * c.cohorts.size() +
-                        8 * c.extra.tracked.size() + 256 * c.extra.numbers.size();
+                        8 * c.extra.tracked.size();
+  for (const auto& [name, mark] : c.extra.marks) bytes += 2048 + mark.size();
   for (const BodyRecord& b : c.bodies)
     bytes += 16384 + 8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
   return bytes;

@@ -6,7 +6,8 @@
 //   /books           exact sums as limbs (datasets), counts (attributes)
 //   /cohorts         n x 4: brick key, body, particles, checksum of their rows
 //   /bodies/<n>      attributes; dataset `particles`: particles x columns, in the order of /cohorts
-//   /extra           datasets tracked, names (lines) and values of the program's own numbers
+//   /extra           datasets tracked, names (lines)
+//   /extra/marks     where the run's other files stood: a dataset of bytes for each of the names
 #pragma once
 
 #include <string>

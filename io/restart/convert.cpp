@@ -71,6 +71,7 @@ void restart_to_h5part(const std::string& path, const std::string& h5part,
   read_restart(path, model, exchange);
   H5PartWriter writer({h5part, variables, double_precision, std::nullopt}, model, exchange);
   writer.write(model, exchange);
+  writer.finish(exchange);
 }
 
 }  // namespace mpm::io

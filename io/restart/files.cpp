@@ -21,18 +21,20 @@ bool all_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// The file names in the folder that read `<job>_<digits><ending>`.
-std::vector<std::string> names(const std::string& folder, const std::string& job, std::string_view ending) {
+/// Whether the name reads `<job>_<digits><ending>`.
+bool is_named_for(std::string_view name, const std::string& job, std::string_view ending) {
+  const std::string start = job + "_";
+  return name.size() > start.size() + ending.size() && name.starts_with(start) && name.ends_with(ending) &&
+         all_digits(name.substr(start.size(), name.size() - start.size() - ending.size()));
+}
+
+/// The file names in the folder that end so.
+std::vector<std::string> names(const std::string& folder, std::string_view ending) {
   std::vector<std::string> found;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
     const std::string name = entry.path().filename().string();
-    const std::string start = job + "_";
-    if (name.size() <= start.size() + ending.size() || !name.starts_with(start) || !name.ends_with(ending))
-      continue;
-    if (all_digits(std::string_view(name).substr(start.size(), name.size() - start.size() - ending.size()))) {
-      found.push_back(name);
-    }
+    if (name.ends_with(ending)) found.push_back(name);
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -42,12 +44,22 @@ std::string in_folder(const std::string& folder, const std::string& name) {
   return folder.empty() ? name : folder + "/" + name;
 }
 
-constexpr std::int64_t unreadable = std::numeric_limits<std::int64_t>::min();
-
-std::int64_t time_written(const std::string& path) {
-  try {
-    return read_guard(path).written;
-  } catch (const FileError&) { return unreadable; }
+/// When the job's files named for it were written, the youngest first; without those of other jobs and those
+/// that cannot be read.
+std::vector<std::pair<std::int64_t, std::string>> readable(const std::string& folder,
+                                                           const std::string& job) {
+  std::vector<std::pair<std::int64_t, std::string>> files;
+  for (const std::string& name : names(folder, extension)) {
+    if (!is_named_for(name, job, extension)) continue;
+    const std::string path = in_folder(folder, name);
+    try {
+      const Guard guard = read_guard(path);
+      if (guard.job == 0 || guard.job == job_hash(job)) files.emplace_back(guard.written, path);
+    } catch (const FileError&) {}  // counts as none
+  }
+  std::stable_sort(files.begin(), files.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  return files;
 }
 
 }  // namespace
@@ -63,31 +75,41 @@ std::string job_of_restart(const std::string& path) {
   return stem.substr(0, at);
 }
 
-std::vector<std::string> restart_files(const std::string& folder, const std::string& job) {
+RestartFiles restart_files(const std::string& folder, const std::string& job) {
+  constexpr std::int64_t unreadable = std::numeric_limits<std::int64_t>::min();
   std::vector<std::pair<std::int64_t, std::string>> files;
-  for (const std::string& name : names(folder, job, extension)) {
+  RestartFiles found;
+  for (const std::string& name : names(folder, extension)) {
     const std::string path = in_folder(folder, name);
-    files.emplace_back(time_written(path), path);
+    const bool named = is_named_for(name, job, extension);
+    try {
+      const Guard guard = read_guard(path);
+      if (guard.job == job_hash(job) || (guard.job == 0 && named)) {
+        files.emplace_back(guard.written, path);
+      } else if (named) {
+        found.of_others.push_back(path);
+      }
+    } catch (const FileError&) {
+      if (named) files.emplace_back(unreadable, path);
+    }
   }
   std::stable_sort(files.begin(), files.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::string> paths;
-  for (const auto& file : files) paths.push_back(file.second);
-  return paths;
+  for (const auto& file : files) found.paths.push_back(file.second);
+  return found;
 }
 
 std::int64_t youngest(const std::string& folder, const std::string& job) {
-  const std::vector<std::string> paths = restart_files(folder, job);
-  return paths.empty() ? 0 : std::max<std::int64_t>(0, time_written(paths.front()));
+  const auto files = readable(folder, job);
+  return files.empty() ? 0 : std::max<std::int64_t>(0, files.front().first);
 }
 
 void remove_older(const std::string& folder, const std::string& job) {
-  const std::vector<std::string> paths = restart_files(folder, job);
-  for (std::size_t i = files_kept; i < paths.size(); ++i) {
-    if (time_written(paths[i]) != unreadable) remove_file(paths[i]);
-  }
-  for (const std::string& name : names(folder, job, part_name(std::string(extension)))) {
-    remove_file(in_folder(folder, name));
+  const auto files = readable(folder, job);
+  for (std::size_t i = files_kept; i < files.size(); ++i) remove_file(files[i].second);
+  const std::string part = part_name(std::string(extension));
+  for (const std::string& name : names(folder, part)) {
+    if (is_named_for(name, job, part)) remove_file(in_folder(folder, name));
   }
 }
 

@@ -15,7 +15,8 @@ namespace mpm::io {
 namespace {
 
 constexpr std::string_view magic("mpm-restart\r\n\x1a\0\0", 16);
-constexpr std::size_t head_bytes = 64;  // magic and what stands before the extents
+constexpr std::size_t head_bytes = 64;                         // magic and what stands before the extents
+constexpr std::size_t tail_bytes = 2 * sizeof(std::uint64_t);  // the job after the extents, the checksum
 constexpr std::size_t smallest_block = 512;
 constexpr std::size_t bytes_at_once = std::size_t{1} << 20;
 
@@ -54,6 +55,7 @@ std::string encode(const Guard& guard, std::size_t block_bytes) {
     put(block, at, e.offset);
     put(block, at, e.size);
   }
+  put(block, at, guard.job);
   at = block_bytes - sizeof(std::uint64_t);
   put(block, at, hash_of_block(block));
   return block;
@@ -107,26 +109,33 @@ Guard decode(const File& file, const std::string& path, std::size_t& block_bytes
   std::size_t hash_at = block_bytes - sizeof(std::uint64_t);
   if (take<std::uint64_t>(block, hash_at) != hash_of_block(block))
     damaged(path, "its first block fails its checksum");
-  if (format != restart_format) {
-    throw FileError(fmt::format("the restart file '{}' has format {}, but this program reads format {}", path,
-                                format, restart_format));
+  if (format < oldest_restart_format || format > restart_format) {
+    throw FileError(
+        fmt::format("the restart file '{}' has format {}, but this program reads formats {} to {}", path,
+                    format, oldest_restart_format, restart_format));
   }
   for (std::uint64_t b = 0; b < bodies; ++b) {
     const auto offset = take<std::uint64_t>(block, at);
     guard.rows.push_back({offset, take<std::uint64_t>(block, at)});
   }
+  if (format > oldest_restart_format) guard.job = take<std::uint64_t>(block, at);
   return guard;
 }
 
 }  // namespace
 
 std::uint64_t guard_bytes(std::size_t bodies) {
-  return std::bit_ceil(
-      std::max(smallest_block, head_bytes + sizeof(Extent) * bodies + sizeof(std::uint64_t)));
+  return std::bit_ceil(std::max(smallest_block, head_bytes + sizeof(Extent) * bodies + tail_bytes));
 }
 
-void seal(const std::string& path, std::int64_t step, std::int64_t after, std::vector<Extent> rows,
-          std::size_t bodies) {
+std::uint64_t job_hash(const std::string& job) {
+  Hash hash;
+  hash.add(job);
+  return std::max<std::uint64_t>(1, hash.value());
+}
+
+void seal(const std::string& path, const std::string& job, std::int64_t step, std::int64_t after,
+          std::vector<Extent> rows, std::size_t bodies) {
   const auto block_bytes = static_cast<std::size_t>(guard_bytes(bodies));
   std::sort(rows.begin(), rows.end(), [](const Extent& a, const Extent& b) { return a.offset < b.offset; });
   File file(path, File::Mode::change);
@@ -138,6 +147,7 @@ void seal(const std::string& path, std::int64_t step, std::int64_t after, std::v
   guard.file_size = file.size();
   guard.tables_hash = hash_tables(file, block_bytes, guard.file_size, rows);
   guard.rows = std::move(rows);
+  guard.job = job_hash(job);
   file.write_at(encode(guard, block_bytes), 0);
   file.sync();
   file.close();

@@ -21,9 +21,10 @@ namespace mpm::io {
 
 /// What a restart file carries beside the model.
 struct RestartExtra {
-  std::string scene_text;                 ///< the bytes of the .xmp; needed on rank 0 alone
-  std::vector<std::uint64_t> tracked;     ///< HistoryFile::tracked()
-  std::map<std::string, double> numbers;  ///< the program's own: times of the next outputs, and the like
+  std::string scene_text;              ///< the bytes of the .xmp; needed on rank 0 alone
+  std::vector<std::uint64_t> tracked;  ///< HistoryFile::tracked()
+  /// Where the run's other files stood, in the words of those who write them; needed on rank 0 alone.
+  std::map<std::string, std::string> marks;
 };
 
 /// `folder/job_120.pe`
@@ -32,7 +33,8 @@ std::string restart_path(const std::string& folder, const std::string& job, std:
 std::string job_of_restart(const std::string& path);
 
 /// Writes the state, then removes all but the newest two restart files of the job. Returns the path. On
-/// failure the older files are as they were. Throws FileError. Collective.
+/// failure the older files are as they were. With the file's name the run's point of return moves: what goes
+/// on from it does not write again must be on the disk before. Throws FileError. Collective.
 std::string write_restart(const std::string& folder, const std::string& job, const core::Model& model,
                           const RestartExtra& extra, core::Exchange& exchange);
 
@@ -62,8 +64,8 @@ RestartResult read_restart(const std::string& path, core::Model& model, core::Ex
 /// Check every byte. Throws FileError. Collective.
 void verify_restart(const std::string& path, core::Exchange& exchange);
 
-/// The file of the job that was written last and is undamaged; `notices` says which ones were passed over.
-/// Collective.
+/// The file of the job that was written last and is undamaged, whatever its own name: the job's name in it
+/// counts. `notices` says which ones were passed over. Collective.
 std::optional<std::string> find_newest_restart(const std::string& folder, const std::string& job,
                                                core::Exchange& exchange, std::vector<std::string>& notices);
 

@@ -70,7 +70,7 @@ std::string write_restart(const std::string& folder, const std::string& job, con
     write_all_rows(part, order, model, exchange);
     together(exchange, [&] {
       if (exchange.rank() != 0) return;
-      seal(part, model.clock.step, youngest(folder, job), rows, contents.bodies.size());
+      seal(part, job, model.clock.step, youngest(folder, job), rows, contents.bodies.size());
       rename_file(part, path);
       remove_older(folder, job);
     });

@@ -156,10 +156,17 @@ TEST_CASE("An .h5part file holds the same on any number of ranks") {
   const auto variables = io::variables_of({"tria", "com", "SigmaXY"});
   io::H5PartWriter writer({folder / "all.h5part", variables, false, {}}, together, exchange);
   for (int i = 0; i < 3; ++i) writer.write(together, exchange);
-  const io::H5PartWriter again({folder / "all.h5part", variables, false, 1.0}, together, exchange);
+  std::string mark = exchange.gather(writer.mark(exchange)).front();
+  writer.write(together, exchange);
+  const io::H5PartWriter again({folder / "all.h5part", variables, false, mark}, together, exchange);
   CHECK(again.times() == 3);
+  CHECK(again.notice().empty());
   if (world().rank() == 0) {
-    io::H5PartWriter({folder / "one.h5part", variables, false, {}}, alone, solo).write(alone, solo);
+    io::H5PartWriter by_one({folder / "one.h5part", variables, false, {}}, alone, solo);
+    for (int i = 0; i < 3; ++i) by_one.write(alone, solo);
+    // Checksums included.
+    CHECK(io::H5PartMark::from(by_one.mark(solo))->rows.back().checksum ==
+          io::H5PartMark::from(mark)->rows.back().checksum);
     const io::hdf5::Handle all = io::hdf5::open_file(folder / "all.h5part", io::hdf5::Access::read);
     const io::hdf5::Handle one = io::hdf5::open_file(folder / "one.h5part", io::hdf5::Access::read);
     for (const char* name : {"x", "y", "velocity_2", "id", "body", "tria", "com", "SigmaXY"}) {

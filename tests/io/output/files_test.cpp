@@ -78,7 +78,7 @@ TEST_CASE("On a full disk an .h5part file keeps its earlier times and may go on 
   CHECK(io::read_file(folder / "a.h5part") == good);
   writer.write(model, solo);
   CHECK(writer.times() == 2);
-  io::H5PartWriter again({folder / "a.h5part", {}, false, 1e9}, model, solo);
+  io::H5PartWriter again({folder / "a.h5part", {}, false, writer.mark(solo)}, model, solo);
   CHECK(again.times() == 2);
 }
 
@@ -114,7 +114,7 @@ TEST_CASE("A file system that is really full") {
     CHECK_THAT(e.what(), Catch::Contains("No space left on device") && Catch::Contains("free some space"));
   }
   CHECK(written > 10);
-  io::H5PartWriter again({disk.path() + "/a.h5part", {}, false, 1e9}, model, solo);
+  io::H5PartWriter again({disk.path() + "/a.h5part", {}, false, writer.mark(solo)}, model, solo);
   CHECK(again.times() == written);
 }
 

@@ -107,36 +107,123 @@ TEST_CASE("Bodies without output are left out, and no particles at all are no er
   CHECK(column(file, 1, "id").empty());
 }
 
-TEST_CASE("A run that goes on keeps the times up to its start and drops later ones") {
-  const Folder folder("h5part_continue");
-  core::SoloExchange solo;
-  core::Model model = small_model(solo);
-  {
-    io::H5PartWriter writer({folder / "a.h5part", {}, false, {}}, model, solo);
-    for (const double t : {0.0, 0.5, 1.0, 1.5}) {
-      model.clock.time = t;
-      writer.write(model, solo);
+namespace {
+
+/// A file of times 0, 0.5, ...; `mark`: as after the second.
+struct Series {
+  explicit Series(const std::string& file, int times) : path(file), model(small_model(solo)) {
+    io::H5PartWriter writer({file, {}, false, {}}, model, solo);
+    for (int n = 0; n < times; ++n) {
+      write(writer, n);
+      if (n == 1) {
+        mark = writer.mark(solo);
+        bytes = io::read_file(path);
+      }
     }
   }
-  io::H5PartWriter writer({folder / "a.h5part", {}, false, 0.5}, model, solo);
+  void write(io::H5PartWriter& writer, int n) {
+    model.clock.time = 0.5 * n;
+    model.clock.step = 10 * n;
+    writer.write(model, solo);
+  }
+  io::H5PartWriter go_on() { return {{path, {}, false, mark}, model, solo}; }
+  void put(const std::string& text) const { std::ofstream(path, std::ios::binary) << text; }
+
+  std::string path;
+  core::SoloExchange solo;
+  core::Model model;
+  std::string mark, bytes;
+};
+
+}  // namespace
+
+TEST_CASE("A run that goes on makes the file what it was") {
+  const Folder folder("h5part_continue");
+  Series series(folder / "a.h5part", 4);
+  REQUIRE(io::read_file(series.path).size() > series.bytes.size());
+  io::H5PartWriter writer = series.go_on();
   CHECK(writer.times() == 2);
+  CHECK(writer.last_step() == 10);
   CHECK(writer.notice().empty());
-  model.clock.time = 0.75;
-  writer.write(model, solo);
-  const hdf5::Handle file = hdf5::open_file(folder / "a.h5part", hdf5::Access::read);
-  CHECK(names_in(file) == std::set<std::string>{"Step#0", "Step#1", "Step#2", "lost#0", "unfinished"});
-  CHECK(hdf5::read_double(hdf5::open_group(file, "Step#2"), "TimeValue") == 0.75);
+  CHECK(io::read_file(series.path) == series.bytes);
+  series.write(writer, 3);
+  writer.finish(series.solo);
+  const hdf5::Handle file = hdf5::open_file(series.path, hdf5::Access::read);
+  CHECK(names_in(file) == std::set<std::string>{"Step#0", "Step#1", "Step#2"});
+  CHECK(hdf5::read_double(hdf5::open_group(file, "Step#2"), "TimeValue") == 1.5);
 }
 
-TEST_CASE("A file that cannot be continued is put aside") {
+TEST_CASE("What a killed run left unfinished is gone from a file that goes on") {
+  const Folder folder("h5part_unfinished");
+  Series series(folder / "a.h5part", 2);
+  {
+    hdf5::Handle file = hdf5::open_file(series.path, hdf5::Access::change);
+    const hdf5::Handle half = hdf5::create_group(file, "unfinished/step");
+    const hsize_t rows = 1000;
+    hdf5::create_dataset(half, "x", H5T_IEEE_F32LE, std::span(&rows, 1));
+  }
+  io::File(series.path, io::File::Mode::append).write(std::string(50000, 'x'));
+  io::H5PartWriter writer = series.go_on();
+  CHECK(writer.notice().empty());
+  CHECK(io::read_file(series.path) == series.bytes);
+}
+
+TEST_CASE("No damage to an .h5part file reaches HDF5 or goes unnoticed") {
+  const Folder folder("h5part_damage");
+  Series series(folder / "a.h5part", 3);
+  const std::string good = io::read_file(series.path);
+  int repaired = 0, aside = 0, wrong = 0;
+  // Every byte of what HDF5 needs in the file's head and a few hundred others.
+  for (std::size_t at = 0; at < series.bytes.size(); at += at < 256 ? 5 : 997) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ (1 << (at % 8)));
+    series.put(bad);
+    const io::H5PartWriter writer = series.go_on();
+    const bool as_it_was = io::read_file(series.path) == series.bytes;
+    if (writer.notice().empty() && as_it_was && writer.times() == 2) {
+      ++repaired;
+    } else if (writer.times() == 0 && io::read_file(series.path + ".damaged") == bad &&
+               writer.notice().find("fail their checksum") != std::string::npos) {
+      ++aside;
+    } else {
+      ++wrong;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(repaired > 100);  // tables
+  CHECK(aside > 20);      // values
+}
+
+TEST_CASE("A file that cannot go on is put aside, whole") {
   const Folder folder("h5part_damaged");
-  core::SoloExchange solo;
-  const core::Model model = small_model(solo);
-  std::ofstream(folder / "a.h5part") << "no HDF5";
-  io::H5PartWriter writer({folder / "a.h5part", {}, false, 1.0}, model, solo);
-  CHECK(writer.times() == 0);
-  CHECK_THAT(writer.notice(), Catch::Contains("a.h5part.damaged"));
-  CHECK(io::read_file(folder / "a.h5part.damaged") == "no HDF5");
-  writer.write(model, solo);
-  CHECK(writer.times() == 1);
+  Series series(folder / "a.h5part", 2);
+  for (const std::string& bad : {std::string("no HDF5"), std::string(), series.bytes.substr(0, 100000)}) {
+    series.put(bad);
+    io::H5PartWriter writer = series.go_on();
+    CHECK(writer.times() == 0);
+    CHECK_THAT(writer.notice(), Catch::Contains("a.h5part' has " + std::to_string(bad.size()) + " bytes") &&
+                                    Catch::Contains("a.h5part.damaged', and a new file begins"));
+    CHECK(io::read_file(series.path + ".damaged") == bad);
+    series.write(writer, 0);
+    CHECK(writer.times() == 1);
+  }
+  std::filesystem::remove(series.path);
+  CHECK_THAT(series.go_on().notice(), Catch::Contains("a.h5part' is missing; it had 2 time(s)"));
+}
+
+TEST_CASE("A file with another history than the restart file's is put aside") {
+  const Folder folder("h5part_other");
+  Series series(folder / "a.h5part", 2);
+  const std::string mark = series.mark;
+  {
+    // From an earlier restart file on, under other loads: the same times, other values.
+    io::H5PartWriter writer({series.path, {}, false, {}}, series.model, series.solo);
+    series.write(writer, 0);
+    core::Cohort& cohort = series.model.grid->brick(0).cohorts[0];
+    core::Body& body = series.model.bodies[static_cast<std::size_t>(cohort.body)];
+    body.pool->block(cohort.blocks[0])[body.pool->layout().offset(core::Column::velocity_x)] += 1;
+    series.write(writer, 1);
+    series.write(writer, 2);
+  }
+  CHECK_THAT(series.go_on().notice(), Catch::Contains("not the file that goes with the restart file"));
 }

@@ -126,7 +126,7 @@ TEST_CASE("Histories of a run that goes on follow the same particles") {
   }
   set_position(model, 0, 0.4);  // nearest now, but not then
   model.clock.step = 3;
-  io::HistoryFile file(folder / "a_curv.dat", model, io::HistoryFile::Continuation{2, tracked}, solo);
+  io::HistoryFile file(folder / "a_curv.dat", model, io::HistoryFile::Continuation{{2, {}}, tracked}, solo);
   CHECK(file.tracked() == tracked);
   file.add(model, solo);
   file.flush(solo);

@@ -90,7 +90,7 @@ TEST_CASE(".sta of a run that goes on keeps the rows up to its start") {
   // A last line that was cut short is dropped, whatever its number.
   io::File(folder / "a.sta", io::File::Mode::append).write("      1");
   {
-    io::StatusFile file(folder / "a.sta", model, 20, solo);
+    io::StatusFile file(folder / "a.sta", model, io::TableContinuation{20, {}}, solo);
     model.clock.step = 25;
     file.add(model, totals, solo);
   }
@@ -106,7 +106,7 @@ TEST_CASE(".sta with other columns is put aside") {
   core::Model model = small_model(solo);
   io::StatusFile(folder / "a.sta", model, {}, solo).add(model, core::compute_totals(model, solo), solo);
   model.bodies.pop_back();
-  io::StatusFile(folder / "a.sta", model, 1000, solo);
+  io::StatusFile(folder / "a.sta", model, io::TableContinuation{1000, {}}, solo);
   CHECK(Table(folder / "a.sta").rows.empty());
   CHECK(Table(folder / "a.sta.old").rows.size() == 1);
 }

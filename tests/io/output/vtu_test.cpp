@@ -1,6 +1,7 @@
 #include "io/output/vtu.hpp"
 
 #include <cstring>
+#include <fstream>
 
 #include <catch2/catch.hpp>
 #include <libxml/parser.h>
@@ -162,22 +163,39 @@ TEST_CASE("Without any particles there is one empty piece") {
   CHECK(Vtu::attribute(piece.find("Piece"), "NumberOfPoints") == "0");
 }
 
-TEST_CASE("The list of a run that goes on keeps the times up to its start") {
+TEST_CASE("The list of a run that goes on is that of its restart file") {
   const Folder folder("vtu_continue");
   core::SoloExchange solo;
   core::Model model = small_model(solo);
+  model.scene = std::make_shared<core::Scene>([&] {
+    core::Scene scene = *model.scene;
+    scene.provenance.job_name = "a&b";
+    return scene;
+  }());
+  std::string mark;
   {
-    io::VtuWriter writer({folder.path(), "small", true, {}, false, {}}, model, solo);
+    io::VtuWriter writer({folder.path(), "a&b", true, {}, false, {}}, model, solo);
     for (const double t : {0.0, 1.0 / 3, 1.0}) {
       model.clock.time = t;
       ++model.clock.step;
       writer.write(model, solo);
+      writer.sync(solo);
+      if (t < 0.5) mark = writer.mark();
     }
   }
-  io::VtuWriter writer({folder.path(), "small", true, {}, false, 1.0 / 3}, model, solo);
-  const std::string list = io::read_file(folder / "small.pvd");
-  CHECK(Vtu(folder / "small.pvd").count("DataSet") == 6);
+  const auto go_on = [&] {
+    return io::VtuWriter({folder.path(), "a&b", true, {}, false, mark}, model, solo);
+  };
+  // Whatever the list says by now.
+  std::ofstream(folder / "a&b.pvd") << "damaged";
+  CHECK(go_on().notice().empty());
+  CHECK(go_on().last_step() == 122);
+  const std::string list = io::read_file(folder / "a&b.pvd");
+  CHECK(Vtu(folder / "a&b.pvd").count("DataSet") == 6);
   CHECK_THAT(list, Catch::Contains("0.33333333333333331"));
   CHECK_THAT(list, Catch::Contains("name=\"wall &lt;&amp;&gt; floor\""));
-  CHECK_FALSE(std::filesystem::exists(folder / "small.pvd.part"));
+  CHECK_FALSE(std::filesystem::exists(folder / "a&b.pvd.part"));
+  std::filesystem::remove(folder / "a&b_vtu/a&b_bar_121.pvtu");
+  CHECK_THAT(go_on().notice(), Catch::Contains("1 of the 6 files that"));
+  CHECK(Vtu(folder / "a&b.pvd").count("DataSet") == 5);
 }

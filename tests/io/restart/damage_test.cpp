@@ -54,7 +54,7 @@ TEST_CASE("No byte of a restart file can change unnoticed") {
   const Folder folder("restart_bytes");
   core::SoloExchange solo;
   const std::string path =
-      io::write_restart(folder.path(), "small", at_step(solo, 1), {"<PeneBlast/>", {1}, {{"a", 2}}}, solo);
+      io::write_restart(folder.path(), "small", at_step(solo, 1), {"<PeneBlast/>", {1}, {{"a", "2"}}}, solo);
   const std::string good = io::read_file(path);
   REQUIRE(complaint(path).empty());
   REQUIRE(good.size() > 20000);

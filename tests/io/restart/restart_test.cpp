@@ -18,7 +18,8 @@ using core::Column;
 
 namespace {
 
-const io::RestartExtra an_extra{"<PeneBlast/>", {17, 3}, {{"next output", 0.375}, {"next_console", 1.0 / 3}}};
+const io::RestartExtra an_extra{
+    "<PeneBlast/>", {17, 3}, {{".sta", "12 3 4"}, {"_curv.dat", std::string("a\0b", 3)}, {".out", ""}}};
 
 bool same_particles(const core::Model& a, const core::Model& b) {
   if (a.bodies.size() != b.bodies.size() || a.grid->owned() != b.grid->owned()) return false;
@@ -69,7 +70,7 @@ TEST_CASE("A restart file gives back the state to the last bit") {
   CHECK(copy.books.body_eroded == std::vector<std::int64_t>{0, 5, 0});
   CHECK(copy.books.events.failed == 7);
   CHECK(result.extra.tracked == an_extra.tracked);
-  CHECK(result.extra.numbers == an_extra.numbers);
+  CHECK(result.extra.marks == an_extra.marks);
   CHECK(result.notices.empty());
   CHECK(result.new_bodies.empty());
 

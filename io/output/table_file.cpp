@@ -1,0 +1,139 @@
+#include "io/output/table_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "io/output/hash.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+/// The number that a row starts with; nothing if it does not.
+std::optional<std::int64_t> step_of(std::string_view row) {
+  const std::size_t start = row.find_first_not_of(' ');
+  if (start == std::string_view::npos) return {};
+  std::int64_t step = 0;
+  const auto [end, error] = std::from_chars(row.data() + start, row.data() + row.size(), step);
+  const bool whole = end == row.data() + row.size() || *end == ' ';
+  return error == std::errc() && whole && step >= 0 ? std::optional(step) : std::nullopt;
+}
+
+/// What a table holds up to where it is to go on.
+struct Found {
+  bool head = false;
+  bool empty = true;
+  TableMark all;  ///< of the rows that were looked at
+  TableMark kept;
+  std::uint64_t bytes = 0;  ///< up to the end of the last row kept
+};
+
+Found look_at(const std::string& path, const std::string& head, const TableContinuation& from) {
+  Found found;
+  std::ifstream in(path, std::ios::binary);
+  std::string line;
+  std::uint64_t end = 0;
+  while (std::getline(in, line) && !in.eof()) {  // a line that ends with the file was cut short
+    found.empty = false;
+    end += line.size() + 1;
+    if (!found.head) {
+      found.head = line == head;
+      found.bytes = end;
+      continue;
+    }
+    if (from.mark && found.all.rows == from.mark->rows) break;
+    const std::optional<std::int64_t> step = step_of(line);
+    if (!from.mark && (!step || *step > from.step)) break;
+    found.all.add(step.value_or(found.all.step), line);
+    if (!step || *step > from.step || (from.mark && *step > from.mark->step)) continue;
+    found.kept = found.all;
+    found.bytes = end;
+  }
+  return found;
+}
+
+std::string rows_in_words(const TableMark& mark) {
+  return mark.rows == 0 ? "no rows" : fmt::format("{} row(s) up to step {}", mark.rows, mark.step);
+}
+
+/// What is not as the mark says.
+std::string difference(const std::string& path, const Found& found, const TableContinuation& from) {
+  if (!from.mark || found.all == *from.mark) return {};
+  const TableMark& expected = *from.mark;
+  if (found.all.rows < expected.rows) {
+    return fmt::format("'{}' has {}, but had {} when the restart file was written: what is missing is lost",
+                       path, rows_in_words(found.all), rows_in_words(expected));
+  }
+  return fmt::format(
+      "'{}' has been changed: its first {} do not have the checksum that the restart file has; its last row "
+      "kept is of step {}, and step {} was expected",
+      path, rows_in_words(expected), found.kept.step, std::min(expected.step, from.step));
+}
+
+}  // namespace
+
+void TableMark::add(std::int64_t row_step, std::string_view row) {
+  Hash hash;
+  hash.add(checksum);
+  hash.add(row);
+  *this = {row_step, rows + 1, hash.value()};
+}
+
+std::string TableMark::text() const { return fmt::format("{} {} {}", step, rows, checksum); }
+
+std::optional<TableMark> TableMark::from(const std::string& text) {
+  TableMark mark;
+  std::istringstream words(text);
+  return words >> mark.step >> mark.rows >> mark.checksum ? std::optional(mark) : std::nullopt;
+}
+
+TableCut cut_table(const std::string& path, const std::string& head, const TableContinuation& from) {
+  TableCut cut;
+  const std::string lost =
+      from.mark && from.mark->rows > 0 ? "; it had " + rows_in_words(*from.mark) : std::string();
+  if (!std::filesystem::exists(path)) {
+    if (!lost.empty()) cut.notice = fmt::format("'{}' is missing{}: it begins anew", path, lost);
+    return cut;
+  }
+  const Found found = look_at(path, head, from);
+  if (!found.head) {
+    if (found.empty) {
+      if (!lost.empty()) cut.notice = fmt::format("'{}' is empty{}: it begins anew", path, lost);
+      return cut;
+    }
+    rename_file(path, path + ".old");
+    cut.notice = fmt::format(
+        "'{0}' does not have this run's columns: it is now '{0}.old', and a new one begins", path);
+    return cut;
+  }
+  cut.append = true;
+  cut.kept = found.kept;
+  cut.notice = difference(path, found, from);
+  File(path, File::Mode::change).truncate(found.bytes);
+  return cut;
+}
+
+TableFile::TableFile(const std::string& path, const std::string& comments, const std::string& head,
+                     const std::optional<TableContinuation>& from, core::Exchange& exchange) {
+  TableCut cut;
+  together(exchange, [&] {
+    if (exchange.rank() == 0 && from) cut = cut_table(path, head, *from);
+  });
+  mark_ = cut.kept;
+  notice_ = cut.notice;
+  file_.emplace(path, cut.append, exchange);
+  if (!cut.append) file_->add(comments + head + '\n');
+  file_->flush(exchange);
+}
+
+void TableFile::add(std::int64_t step, const std::string& row) noexcept {
+  mark_.add(step, row);
+  file_->add(row + '\n');
+}
+
+}  // namespace mpm::io
