@@ -125,7 +125,7 @@ class FullDisk(Files):
         self.addCleanup(subprocess.run, ["umount", "-l", self.out], check=False)
 
     def test_disk_that_the_pictures_fill(self):
-        self.mount("2m")
+        self.mount("3m")
         case = self.write(_mpm.bounce(END, PICTURES + restarts_every(END / 9)))
         outcome = _mpm.run([case, "--output-dir", self.out], ranks=2)
         self.check_failed(outcome, "No space left on device")

@@ -1,0 +1,116 @@
+"""One run at a time writes a job's files, and the job that a restart file names in itself is the one it belongs to."""
+
+import os
+import shutil
+import signal
+
+import _mpm
+import _resume
+from _mpm import FILE_ERROR, Case
+
+HELD = r"another run writes to this folder under the same job name.*case\.lock' is held by process {} on "
+
+
+class Lock(Case):
+    def setUp(self):
+        super().setUp()
+        self.case = self.write(_resume.scene(pictures=None, histories=False))
+        self.out = self.folder / "out"
+        self.lock = self.out / "case.lock"
+
+    def start(self, ranks=1):
+        """A run that computes, and goes on for ever."""
+        process = _mpm.start([self.case, "--output-dir", self.out], ranks=ranks)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        self.assertTrue(_resume.wait_for(lambda: len(_mpm.restarts(self.out)) > 1, process))
+        return process
+
+    def test_second_run_is_refused(self):
+        process = self.start()
+        process.send_signal(signal.SIGSTOP)  # as long as it takes
+        before = _mpm.contents(self.out)
+        for ranks, words in ((1, [self.case]), (2, [self.case]), (1, [self.out / "case.pe"]),
+                             (1, [_mpm.restarts(self.out)[0]])):
+            outcome = self.run_in("out", words, code=FILE_ERROR, ranks=ranks)
+            self.assertRegex(outcome.complaint, HELD.format(process.pid))
+            self.assertEqual(_mpm.contents(self.out), before)
+        # What only reads, what writes elsewhere, and another job in the same folder are let through.
+        newest = _mpm.restarts(self.out)[-1]
+        self.run_in("out", [self.case, "--dry-run"])
+        self.run_in("converted", [newest, "-h5pt"])
+        self.run_in("elsewhere", [newest, "-nsteps", "1"])
+        other = self.write(_resume.scene(0.1, pictures=None), "other.xmp")
+        self.run_in("out", [other])
+        self.assertFalse((self.out / "other.lock").exists(), "a clean end removes the lock")
+        process.send_signal(signal.SIGCONT)
+        process.send_signal(signal.SIGUSR1)
+        self.assertEqual(_mpm.finish(process).code, _mpm.STOPPED)
+        self.assertFalse(self.lock.exists())
+        self.run_in("out", [self.out / "case.pe", "-nsteps", "1"])
+
+    def test_rank_that_outlives_its_killed_run(self):
+        for survivor in (0, 1):
+            with self.subTest(survivor=survivor):
+                self.setUp()
+                process = self.start(ranks=2)
+                members = _resume.ranks_of(process, 2)
+                os.kill(members[survivor], signal.SIGSTOP)
+                for pid in (process.pid, members[1 - survivor]):
+                    os.kill(pid, signal.SIGKILL)
+                process.wait()
+                outcome = self.run_in("out", [self.out / "case.pe"], code=FILE_ERROR)
+                self.assertRegex(outcome.complaint, "ranks of a killed one still live.*case.lock' is held by process ")
+                os.kill(members[survivor], signal.SIGKILL)
+                # The lock file is there, and nobody holds it.
+                self.assertTrue(self.lock.exists())
+                for ranks in (1, 2):
+                    self.run_in("out", [self.out / "case.pe", "-nsteps", "1"], ranks=ranks)
+
+    def test_killed_run(self):
+        process = self.start()
+        _resume.kill(process)
+        self.assertTrue(self.lock.exists())
+        self.run_in("out", [self.out / "case.pe", "-nsteps", "1"])
+        self.assertFalse(self.lock.exists())
+
+
+class Jobs(Case):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out"
+        scene = _resume.scene(0.5, pictures=None, histories=False, restart=0.2)
+        self.state = self.run_in("out", [self.write(scene)]).state
+        self.own = _mpm.restarts(self.out)
+        self.assertEqual(len(self.own), 2)
+        scene = _resume.scene(2, pictures=None, histories=False, restart=0.2)
+        self.run_in("other", [self.write(scene, "other.xmp")])
+        self.foreign = self.out / "case_900.pe"
+        shutil.copy(_mpm.restarts(self.folder / "other", "other")[-1], self.foreign)  # younger, too
+
+    def test_another_jobs_file_under_this_ones_name(self):
+        for ranks in (1, 2):
+            outcome = self.run_in("out", [self.out / "case.pe"], ranks=ranks)
+            self.assertIn(f"from {self.own[-1]}", outcome.out)
+            self.assertEqual(outcome.state, self.state)
+        for path in self.own:
+            path.unlink()
+        outcome = self.run_in("out", [self.out / "case.pe"], code=FILE_ERROR)
+        self.assertRegex(outcome.complaint, "case_900.pe' is of another job")
+
+    def test_another_jobs_file_is_not_removed(self):
+        self.run_in("out", [self.folder / "case.xmp"])
+        self.assertTrue(self.foreign.exists())
+        self.assertEqual(len(_mpm.restarts(self.out)), 3)
+
+    def test_own_file_under_another_name(self):
+        kept = self.out / "kept for later.pe"
+        self.own[-1].rename(kept)
+        self.own[0].unlink()
+        outcome = self.run_in("out", [self.out / "case.pe"])
+        self.assertIn(f"from {kept}", outcome.out)
+        self.assertEqual(outcome.state, self.state)
+
+
+if __name__ == "__main__":
+    _mpm.main()
