@@ -1,13 +1,15 @@
 // mpm_check FILE...: checks input files, and the particle files that they name, without running them.
-// Prints every complaint; exit code 0 when all files are right, 2 when any is not.
+// Prints every complaint; exit code 0 when all files are right, 2 when any is not, 6 out of memory.
 
 #include <cstdio>
+#include <new>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/common/options.hpp"
 #include "core/discretise/seeds.hpp"
 #include "core/scene/scene.hpp"
 #include "io/input/echo.hpp"
@@ -87,7 +89,12 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "mpm_check: no file given; see --help\n");
     return 2;
   }
-  bool all_right = true;
-  for (const std::string& file : settings.files) all_right = check(file, settings) && all_right;
-  return all_right ? 0 : 2;
+  try {
+    bool all_right = true;
+    for (const std::string& file : settings.files) all_right = check(file, settings) && all_right;
+    return all_right ? 0 : 2;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "mpm_check: out of memory\n");
+    return apps::out_of_resources;
+  }
 }

@@ -1,17 +1,19 @@
 // mpm_point: one particle of a material, of an input file or of the library, driven along a path of strains
 // and stresses as in a laboratory; prints the response as a table (CSV) and draws it (SVG). For calibration,
 // and to see what a law does. Exit code 0 done, 2 wrong input, 3 where the material gave no defined answer, 5
-// file error.
+// file error, 6 out of memory.
 
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/common/options.hpp"
 #include "apps/common/point_path.hpp"
 #include "apps/common/point_table.hpp"
 #include "core/scene/errors.hpp"
@@ -163,6 +165,9 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const core::InputErrors& errors) {
     fmt::print(stderr, "{}\n", errors.what());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "mpm_point: out of memory\n");
+    return apps::out_of_resources;
   } catch (const std::exception& error) { fmt::print(stderr, "mpm_point: {}\n", error.what()); }
   return 2;
 }

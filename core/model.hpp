@@ -29,7 +29,8 @@ struct Body {
   bool no_output = false;
   /// Its particles move at their own velocity, not the grid's.
   bool keeps_velocity() const { return rigid || prescribed_velocity.has_value(); }
-  std::unique_ptr<BlockPool> pool;  ///< this rank's particles of the body
+  /// Memory of this rank's particles; bodies with the same columns share one.
+  std::shared_ptr<BlockPool> pool;
 };
 
 struct Clock {
@@ -72,6 +73,15 @@ struct Model {
     return n;
   }
 };
+
+/// The pools of the model's bodies, each once, in the order of the bodies.
+inline std::vector<BlockPool*> pools_of(const Model& model) {
+  std::vector<BlockPool*> pools;
+  for (const Body& b : model.bodies) {
+    if (std::find(pools.begin(), pools.end(), b.pool.get()) == pools.end()) pools.push_back(b.pool.get());
+  }
+  return pools;
+}
 
 /// Walk over this rank's particles: f(body index, layout, block, lanes in use), blocks in storage order.
 template <class F>

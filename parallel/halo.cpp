@@ -17,10 +17,7 @@ namespace {
 
 constexpr int tag_halo = 2;
 
-// With more, bricks two apart would share nodes, and the 27 neighbours would not be all.
-constexpr int max_halo = 1;
-constexpr int max_side = core::brick_cells + 1 + 2 * max_halo;
-using NodeSet = std::bitset<max_side * max_side * max_side>;
+using NodeSet = std::bitset<NodeBlockShape{core::most_halo}.nodes()>;
 
 /// Nodes of a brick's array that the array of its neighbour number n holds too.
 std::array<NodeSet, core::neighbourhood> shared_sets(const NodeBlockShape& shape) {
@@ -116,8 +113,6 @@ void with_count(int count, F f) {
 }  // namespace
 
 std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const Directory& directory) {
-  if (grid.shape().halo > max_halo)
-    throw std::logic_error("a halo of more than one layer of nodes is not exchanged");
   const auto shared = shared_sets(grid.shape());
   const auto ghost_of = [&](Slot s) { return grid.ghost(s - grid.owned()); };
   std::map<int, HaloPartner> partners;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -71,7 +72,8 @@ template <class... Kept>
 
 /// Run f() on rank 0 and return its result, a std::string, plain data or nothing, on every rank. If it
 /// throws, every rank throws: InputErrors as they are; those of the types `Kept`, each made from its text;
-/// anything else as a std::runtime_error with the same text. Collective.
+/// anything else as a std::runtime_error with the same text. std::bad_alloc is thrown on rank 0 alone, while
+/// the others wait: the answer is abort(). Collective.
 template <class... Kept, class F>
 auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&> {
   using Result = std::invoke_result_t<F&>;
@@ -86,6 +88,8 @@ auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&>
       }
     } catch (const core::InputErrors& e) {
       message = detail::is_input_errors + detail::to_bytes(e);
+    } catch (const std::bad_alloc&) {
+      throw;  // there may be no memory for a message either: the program ends every rank
     } catch (const std::exception& e) { message = detail::letter_of<Kept...>(e) + std::string(e.what()); }
   }
   message = broadcast(comm, std::move(message));

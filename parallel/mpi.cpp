@@ -73,34 +73,50 @@ Communicator::~Communicator() {
 
 void Communicator::barrier() const { check(MPI_Barrier(handle_), "MPI_Barrier"); }
 
-void Communicator::reduce(std::span<double> values, MPI_Op op) const {
-  check(MPI_Allreduce(MPI_IN_PLACE, values.data(), count_of(values.size()), MPI_DOUBLE, op, handle_),
-        "MPI_Allreduce");
+namespace {
+
+/// f(part) for the parts of a list that have `longest` bytes at most.
+template <class T, class F>
+void for_each_part(std::span<T> list, std::size_t longest, F f) {
+  const std::size_t most = std::max(longest / sizeof(T), std::size_t{1});
+  for (std::size_t first = 0; first < list.size(); first += most)
+    f(list.subspan(first, std::min(most, list.size() - first)));
 }
 
-void Communicator::reduce(std::span<std::int64_t> values, MPI_Op op) const {
-  check(MPI_Allreduce(MPI_IN_PLACE, values.data(), count_of(values.size()), MPI_INT64_T, op, handle_),
-        "MPI_Allreduce");
+}  // namespace
+
+void Communicator::reduce(std::span<double> values, MPI_Op op, std::size_t longest) const {
+  for_each_part(values, longest, [&](std::span<double> part) {
+    check(MPI_Allreduce(MPI_IN_PLACE, part.data(), count_of(part.size()), MPI_DOUBLE, op, handle_),
+          "MPI_Allreduce");
+  });
 }
 
-void Communicator::broadcast(std::span<std::byte> bytes, int root) const {
-  constexpr std::size_t longest = std::size_t{1} << 30;
-  while (!bytes.empty()) {
-    const auto part = bytes.first(std::min(bytes.size(), longest));
+void Communicator::reduce(std::span<std::int64_t> values, MPI_Op op, std::size_t longest) const {
+  for_each_part(values, longest, [&](std::span<std::int64_t> part) {
+    check(MPI_Allreduce(MPI_IN_PLACE, part.data(), count_of(part.size()), MPI_INT64_T, op, handle_),
+          "MPI_Allreduce");
+  });
+}
+
+void Communicator::broadcast(std::span<std::byte> bytes, int root, std::size_t longest) const {
+  for_each_part(bytes, longest, [&](std::span<std::byte> part) {
     check(MPI_Bcast(part.data(), count_of(part.size()), MPI_BYTE, root, handle_), "MPI_Bcast");
-    bytes = bytes.subspan(part.size());
-  }
+  });
 }
 
-void Communicator::receive_onto(std::vector<double>& data, int rank, int tag) const {
-  MPI_Message message = MPI_MESSAGE_NULL;
-  MPI_Status status;
-  int n = 0;
-  check(MPI_Mprobe(rank, tag, handle_, &message, &status), "MPI_Mprobe");
-  check(MPI_Get_count(&status, MPI_BYTE, &n), "MPI_Get_count");
-  const std::size_t old = data.size();
-  data.resize(old + static_cast<std::size_t>(n) / sizeof(double));
-  check(MPI_Mrecv(data.data() + old, n, MPI_BYTE, &message, &status), "MPI_Mrecv");
+void Communicator::receive_onto(std::vector<double>& data, int rank, int tag, std::size_t longest) const {
+  for (std::size_t arrived = longest; arrived == longest;) {
+    MPI_Message message = MPI_MESSAGE_NULL;
+    MPI_Status status;
+    int n = 0;
+    check(MPI_Mprobe(rank, tag, handle_, &message, &status), "MPI_Mprobe");
+    check(MPI_Get_count(&status, MPI_BYTE, &n), "MPI_Get_count");
+    const std::size_t old = data.size();
+    arrived = static_cast<std::size_t>(n);
+    data.resize(old + arrived / sizeof(double));
+    check(MPI_Mrecv(data.data() + old, n, MPI_BYTE, &message, &status), "MPI_Mrecv");
+  }
 }
 
 std::vector<std::size_t> Communicator::gather_begins(std::size_t mine) const {
@@ -114,8 +130,18 @@ std::vector<std::size_t> Communicator::gather_begins(std::size_t mine) const {
 }
 
 void Communicator::gather_bytes(const void* mine, void* all, std::size_t item,
-                                std::span<const std::size_t> begin) const {
+                                std::span<const std::size_t> begin, std::size_t longest) const {
   if (begin.back() == 0) return;
+  if (begin.back() * item > longest) {  // one rank after the other: MPI counts all ranks' bytes in one int
+    const std::span<std::byte> bytes(static_cast<std::byte*>(all), begin.back() * item);
+    const auto of = [&](std::size_t r) {
+      return bytes.subspan(begin[r] * item, (begin[r + 1] - begin[r]) * item);
+    };
+    const std::span<std::byte> own = of(static_cast<std::size_t>(rank_));
+    std::copy_n(static_cast<const std::byte*>(mine), own.size(), own.begin());
+    for (int r = 0; r < size_; ++r) broadcast(of(static_cast<std::size_t>(r)), r, longest);
+    return;
+  }
   std::vector<int> sizes, places;
   for (std::size_t r = 0; r + 1 < begin.size(); ++r) {
     sizes.push_back(count_of((begin[r + 1] - begin[r]) * item));
@@ -171,6 +197,13 @@ void Requests::send(const Communicator& comm, const void* data, std::size_t byte
 void Requests::receive(const Communicator& comm, void* data, std::size_t bytes, int rank, int tag) {
   requests_.push_back(MPI_REQUEST_NULL);
   check(MPI_Irecv(data, count_of(bytes), MPI_BYTE, rank, tag, comm.handle(), &requests_.back()), "MPI_Irecv");
+}
+
+void Requests::send_unannounced(const Communicator& comm, const void* data, std::size_t bytes, int rank,
+                                int tag, std::size_t longest) {
+  const auto* from = static_cast<const std::byte*>(data);
+  for (; bytes >= longest; bytes -= longest, from += longest) send(comm, from, longest, rank, tag);
+  send(comm, from, bytes, rank, tag);
 }
 
 void Requests::wait_all() {

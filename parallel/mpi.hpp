@@ -1,6 +1,6 @@
 // Thin owners over MPI: the library's life, a communicator, persistent messages. Every return code is
-// checked. Sizes are 64-bit on this side; where MPI counts with an int, messages are cut or the call is
-// refused.
+// checked. Sizes are 64-bit on this side, MPI counts with an int: long messages are cut into pieces. The
+// length of a piece is an argument of the calls that cut, so that tests can do it with short messages.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +21,9 @@ class MpiError : public std::runtime_error {
  public:
   MpiError(const char* function, int code);
 };
+
+/// Bytes of the longest message in one piece; a multiple of the size of what is sent.
+inline constexpr std::size_t longest_piece = std::size_t{1} << 30;
 
 /// Throws MpiError unless `code` is MPI_SUCCESS.
 void check(int code, const char* function);
@@ -71,23 +74,23 @@ class Communicator {
   /// Collective.
   void barrier() const;
   /// Entry by entry over the ranks, in place. Collective.
-  void reduce(std::span<double> values, MPI_Op op) const;
+  void reduce(std::span<double> values, MPI_Op op, std::size_t longest = longest_piece) const;
   /// Collective.
-  void reduce(std::span<std::int64_t> values, MPI_Op op) const;
+  void reduce(std::span<std::int64_t> values, MPI_Op op, std::size_t longest = longest_piece) const;
   /// In place on every rank what `root` holds. Collective.
-  void broadcast(std::span<std::byte> bytes, int root = 0) const;
+  void broadcast(std::span<std::byte> bytes, int root = 0, std::size_t longest = longest_piece) const;
 
-  /// Append the next message of `rank` with `tag`, whatever its length. Waits for it.
-  void receive_onto(std::vector<double>& data, int rank, int tag) const;
+  /// Append what `rank` sends next with Requests::send_unannounced and the same `longest`. Waits for it.
+  void receive_onto(std::vector<double>& data, int rank, int tag, std::size_t longest = longest_piece) const;
 
   /// Every rank's list to every rank. Collective.
   template <class T>
-  Gathered<T> all_gather(std::span<const T> mine) const {
+  Gathered<T> all_gather(std::span<const T> mine, std::size_t longest = longest_piece) const {
     static_assert(std::is_trivially_copyable_v<T>);
     Gathered<T> all;
     all.begin = gather_begins(mine.size());
     all.items.resize(all.begin.back());
-    gather_bytes(mine.data(), all.items.data(), sizeof(T), all.begin);
+    gather_bytes(mine.data(), all.items.data(), sizeof(T), all.begin, longest);
     return all;
   }
 
@@ -95,7 +98,7 @@ class Communicator {
   /// Messages are cut at `longest` bytes. Collective.
   template <class T>
   std::vector<T> all_to_all(std::span<const T> send, std::span<const std::size_t> begin,
-                            std::size_t longest = std::size_t{1} << 30) const {
+                            std::size_t longest = longest_piece) const {
     static_assert(std::is_trivially_copyable_v<T>);
     const std::vector<std::size_t> arriving = exchange_begins(begin);
     std::vector<T> received(arriving.back());
@@ -106,7 +109,8 @@ class Communicator {
  private:
   explicit Communicator(MPI_Comm parent);
   std::vector<std::size_t> gather_begins(std::size_t mine) const;
-  void gather_bytes(const void* mine, void* all, std::size_t item, std::span<const std::size_t> begin) const;
+  void gather_bytes(const void* mine, void* all, std::size_t item, std::span<const std::size_t> begin,
+                    std::size_t longest) const;
   std::vector<std::size_t> exchange_begins(std::span<const std::size_t> begin) const;
   void exchange_bytes(const void* send, std::span<const std::size_t> send_begin, void* receive,
                       std::span<const std::size_t> receive_begin, std::size_t item,
@@ -123,6 +127,9 @@ class Requests {
  public:
   void send(const Communicator& comm, const void* data, std::size_t bytes, int rank, int tag);
   void receive(const Communicator& comm, void* data, std::size_t bytes, int rank, int tag);
+  /// To a rank that does not know how much comes: pieces of `longest` bytes and a shorter last one.
+  void send_unannounced(const Communicator& comm, const void* data, std::size_t bytes, int rank, int tag,
+                        std::size_t longest = longest_piece);
   void wait_all();
 
  private:

@@ -268,7 +268,8 @@ void MpiExchange::migrate(const BrickGrid& grid, Travellers& travellers, std::sp
   const Parcels parcels = pack(travellers, destination, partners.size() + 1, columns_of);
   Requests requests;
   for (std::size_t p = 0; p < partners.size(); ++p) {
-    requests.send(comm_, parcels.of(p).data(), parcels.of(p).size_bytes(), partners[p].rank, tag_migrate);
+    requests.send_unannounced(comm_, parcels.of(p).data(), parcels.of(p).size_bytes(), partners[p].rank,
+                              tag_migrate);
   }
   const auto stay = parcels.of(partners.size());
   std::vector<double> arrived(stay.begin(), stay.end());

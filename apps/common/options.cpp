@@ -40,7 +40,7 @@ ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
   CLI::App app("Material point method for extreme deformation.", "mpm_run");
   app.footer(
       "Exit codes: 0 done, 2 wrong input, 3 numerical failure, 4 stopped early (a restart file is there), 5 "
-      "file error.\n"
+      "file error (file descriptors that run out included), 6 out of memory or threads.\n"
       "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and leave.");
   app.set_version_flag("--version", std::string(core::version) + " (" + std::string(core::git_hash) + ")");
   app.add_option("job", o.job,

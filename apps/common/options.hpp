@@ -19,7 +19,14 @@ struct RunOptions {
 };
 
 /// What the process returns to the shell.
-enum ExitCode { done = 0, input_error = 2, numerical_failure = 3, stopped_early = 4, file_error = 5 };
+enum ExitCode {
+  done = 0,
+  input_error = 2,
+  numerical_failure = 3,
+  stopped_early = 4,
+  file_error = 5,
+  out_of_resources = 6  ///< memory or threads
+};
 
 /// The options, or the code with which to leave at once (help asked for, or wrong usage; said on rank 0
 /// only).

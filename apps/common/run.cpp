@@ -13,9 +13,11 @@
 
 #include "apps/common/case.hpp"
 #include "apps/common/outputs.hpp"
+#include "apps/common/resources.hpp"
 #include "apps/common/stop.hpp"
 #include "apps/common/watch.hpp"
 #include "core/setup/build_model.hpp"
+#include "core/setup/memory.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/stepper.hpp"
 #include "io/output/file.hpp"
@@ -47,31 +49,34 @@ int choose_threads(const core::Scene& scene) {
   return threads;
 }
 
+/// Starts the threads, all at once. OpenMP ends the program when the system refuses one, so it is asked
+/// first. Throws NoThreads on every rank if it refuses on any. Collective.
+void start_threads(int threads, core::Exchange& exchange) {
+  const std::string refusal = why_no_threads(threads - 1);
+  if (exchange.any(!refusal.empty())) {
+    for (const std::string& text : exchange.gather(refusal)) {
+      if (!text.empty())
+        throw NoThreads(
+            fmt::format("the system refuses {} threads per rank: {}; ask for fewer with OpenMPSetting "
+                        "or OMP_NUM_THREADS, or raise the limit (ulimit -u, ulimit -v)",
+                        threads, text));
+    }
+  }
+#pragma omp parallel
+  core::flush_denormals_to_zero();
+}
+
 std::string bytes_in_words(double bytes) {
   return bytes < 1e6   ? fmt::format("{:.1f} kB", bytes / 1e3)
          : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6)
                        : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
-/// What the scene pays for, in the words of a dry run and of the log's head.
-void describe(const core::Model& model, const core::Stepper& stepper, core::Exchange& exchange, int threads,
-              io::Log& log) {
-  const core::GridGeometry& g = model.grid->geometry();
-  std::int64_t counts[2] = {static_cast<std::int64_t>(model.local_particles()), model.grid->owned()};
-  const auto particles = exchange.spread(static_cast<double>(counts[0]));
-  double state = 0;
-  for (const core::Body& b : model.bodies) {
-    state += static_cast<double>(b.pool->blocks_in_use()) * b.pool->layout().block_doubles() * sizeof(double);
-  }
-  const auto memory = exchange.spread(state + static_cast<double>(model.grid->node_bytes()));
-  exchange.sum(std::span<std::int64_t>(counts));
-  log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use",
-          g.cells[0], g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
-  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0], exchange.size(),
-          threads, particles.min, particles.max);
-  log.say("memory     {} for state and nodes on the fullest rank", bytes_in_words(memory.max));
+/// A line for each body; of very many, for the first ones.
+void describe_bodies(const core::Model& model, io::Log& log) {
+  constexpr std::size_t most = 100;
   const int common = core::ColumnSet::mechanics().size();
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < std::min(model.bodies.size(), most); ++b) {
     const core::Body& body = model.bodies[b];
     const core::ColumnLayout& layout = body.pool->layout();
     std::string more;
@@ -82,6 +87,24 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
     log.say("body       \"{}\" of \"{}\": {} bytes a particle{}{}", body.name, body.model->name(),
             layout.bytes_per_particle(), more.empty() ? "" : ", beyond the mechanics", more);
   }
+  if (model.bodies.size() > most) log.say("body       {} more bodies", model.bodies.size() - most);
+}
+
+/// What the scene pays for, in the words of a dry run and of the log's head.
+void describe(const core::Model& model, const core::Stepper& stepper, core::Exchange& exchange, int threads,
+              io::Log& log) {
+  const core::GridGeometry& g = model.grid->geometry();
+  std::int64_t counts[2] = {static_cast<std::int64_t>(model.local_particles()), model.grid->owned()};
+  const auto particles = exchange.spread(static_cast<double>(counts[0]));
+  const core::MemoryNeed need = core::memory_need(model);
+  const auto memory = exchange.spread(need.total());
+  exchange.sum(std::span<std::int64_t>(counts));
+  log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use",
+          g.cells[0], g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
+  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0], exchange.size(),
+          threads, particles.min, particles.max);
+  log.say("memory     {} for particles, bricks and bodies on the fullest rank", bytes_in_words(memory.max));
+  describe_bodies(model, log);
   std::string phases;
   for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
   log.say("step       {}", phases);
@@ -105,6 +128,7 @@ class Run {
       : options_(options), exchange_(world), case_(load_case(options, world)) {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
+    start_threads(threads_, exchange_);
     core::check_decomposition(case_.scene->decomposition, exchange_.size());
     model_ = core::prepare_model(case_.scene, physics::make_materials(*case_.scene),
                                  io::columns_for(case_.scene->output));

@@ -98,9 +98,8 @@ struct BarRun {
   double particles() const { return static_cast<double>(model.local_particles()); }
   double state_bytes() const {
     double bytes = 0;
-    for (const core::Body& b : model.bodies) {
-      bytes +=
-          static_cast<double>(b.pool->blocks_in_use()) * b.pool->layout().block_doubles() * sizeof(double);
+    for (const core::BlockPool* pool : core::pools_of(model)) {
+      bytes += static_cast<double>(pool->blocks_in_use()) * pool->layout().block_doubles() * sizeof(double);
     }
     return bytes;
   }

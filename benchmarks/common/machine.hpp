@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "core/setup/build_model.hpp"
+#include "core/setup/memory.hpp"
 #include "core/version.hpp"
 
 namespace mpm::benchmarks {

@@ -89,6 +89,10 @@ struct GridGeometry {
   }
 };
 
+/// Widest halo of nodes. With two layers, bricks two apart would hold the same nodes, and the 27 of a
+/// neighbourhood would not be all that a node's sum needs.
+inline constexpr int most_halo = 1;
+
 /// Nodes of one brick's array. Node (i, j, k) counts from the brick's lowest node, -halo <= i < side - halo.
 struct NodeBlockShape {
   int halo = 0;

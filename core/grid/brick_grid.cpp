@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
+#include <string>
 
 namespace mpm::core {
 
@@ -14,6 +16,12 @@ void AlignedDoubles::resize(std::size_t n) {
     capacity_ = wanted;
   }
   size_ = n;
+}
+
+BrickGrid::BrickGrid(const GridGeometry& geometry, int halo) : geometry_(geometry), shape_{halo} {
+  if (halo < 0 || halo > most_halo)
+    throw std::logic_error("a halo of " + std::to_string(halo) + " layers of nodes, of at most " +
+                           std::to_string(most_halo));
 }
 
 void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts) {

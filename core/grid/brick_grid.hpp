@@ -47,7 +47,8 @@ struct Brick {
 
 class BrickGrid {
  public:
-  explicit BrickGrid(const GridGeometry& geometry, int halo = 0) : geometry_(geometry), shape_{halo} {}
+  /// Throws std::logic_error for a halo beyond most_halo.
+  explicit BrickGrid(const GridGeometry& geometry, int halo = 0);
 
   const GridGeometry& geometry() const { return geometry_; }
   const NodeBlockShape& shape() const { return shape_; }

@@ -66,6 +66,13 @@ std::size_t BlockPool::bytes_reserved() const {
   return slabs_.size() * slab_blocks * sizeof(double) * static_cast<std::size_t>(layout_.block_doubles());
 }
 
+std::shared_ptr<BlockPool> BlockPools::of(const ColumnSet& columns) {
+  for (const std::shared_ptr<BlockPool>& pool : pools_) {
+    if (pool->layout().set() == columns) return pool;
+  }
+  return pools_.emplace_back(std::make_shared<BlockPool>(ColumnLayout(columns)));
+}
+
 std::uint32_t append(BlockPool& pool, Cohort& cohort, const double* columns) {
   const std::uint32_t lane = cohort.count % block_lanes;
   if (lane == 0) cohort.blocks.push_back(pool.allocate());

@@ -1,8 +1,10 @@
-// Memory for the particles of one body: blocks of eight particles, each block its body's columns one after
-// the other. Blocks are numbered with 32 bits, stay where they are but for arrange(), and are reused.
+// Memory for the particles of bodies that carry the same columns: blocks of eight particles of one body, each
+// block its columns one after the other. Blocks are numbered with 32 bits, stay where they are but for
+// arrange(), and are reused.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -45,6 +47,16 @@ class BlockPool {
   std::vector<BlockIndex> free_;
   BlockIndex next_ = 0;
   std::mutex mutex_;
+};
+
+/// One pool for each set of columns: a slab for each of very many bodies, however small, would fill the
+/// memory.
+class BlockPools {
+ public:
+  std::shared_ptr<BlockPool> of(const ColumnSet& columns);
+
+ private:
+  std::vector<std::shared_ptr<BlockPool>> pools_;
 };
 
 /// The particles of one body in one brick: all blocks full but the last.

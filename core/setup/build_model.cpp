@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 
@@ -10,6 +9,7 @@
 #include <unistd.h>
 
 #include "core/discretise/seeds.hpp"
+#include "core/setup/memory.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/migration.hpp"
 #include "core/step/passes.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t most_cells = std::int64_t{brick_cells}
                                     << 20;             // brick coordinates have 21 bits, one of them spare
-constexpr std::uint64_t units_in_run = 16;             // of a body, that one rank makes in one go
+constexpr std::uint64_t units_in_run = 16;             // of a body, next to each other, that one rank makes
 constexpr std::size_t seeds_in_piece = 1 << 14;        // seeds that a rank makes between two sends
 constexpr double exact_integers = 9007199254740992.0;  // identities are kept in doubles, 2^53
 
@@ -35,12 +35,14 @@ void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
   std::vector<Seed> seeds;
   for (std::uint64_t first = units_in_run * static_cast<std::uint64_t>(rank); first < units;
        first += stride) {
-    source.generate(first, std::min(first + units_in_run, units), seeds);
-    if (seeds.size() >= seeds_in_piece || first + stride >= units) {
+    for (std::uint64_t u = first; u < std::min(first + units_in_run, units); ++u) {
+      source.generate(u, u + 1, seeds);
+      if (seeds.size() < seeds_in_piece) continue;
       f(seeds);
       seeds.clear();
     }
   }
+  if (!seeds.empty()) f(seeds);
 }
 
 void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
@@ -63,6 +65,7 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
 /// Counts per brick, and the first seed outside the grid in words.
 struct Census {
   std::map<BrickKey, std::int64_t> bricks;
+  std::int64_t block_bytes = 0;  ///< of the blocks that hold them: in every brick of every body, full but one
   std::int64_t outside = 0;
   std::string first_outside;
 };
@@ -71,12 +74,14 @@ Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSou
                    const std::vector<const BodyInput*>& inputs, const Exchange& exchange) {
   Census census;
   const GridGeometry& geometry = model.grid->geometry();
+  std::map<BrickKey, std::int64_t> bricks;  // of one body
   for (std::size_t b = 0; b < sources.size(); ++b) {
+    bricks.clear();
     for_each_piece(*sources[b], exchange.rank(), exchange.size(), [&](const std::vector<Seed>& seeds) {
       for (const Seed& s : seeds) {
         const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
         if (geometry.contains(x)) {
-          ++census.bricks[key_of(geometry.brick_at(x))];
+          ++bricks[key_of(geometry.brick_at(x))];
           continue;
         }
         ++census.outside;
@@ -87,6 +92,12 @@ Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSou
         }
       }
     });
+    const auto block =
+        static_cast<std::int64_t>(sizeof(double)) * model.bodies[b].pool->layout().block_doubles();
+    for (const auto& [key, n] : bricks) {
+      census.bricks[key] += n;
+      census.block_bytes += (n + block_lanes - 1) / block_lanes * block;
+    }
   }
   return census;
 }
@@ -109,6 +120,23 @@ void refuse_outside(const Model& model, const Census& census, Exchange& exchange
                   g.origin.z + double(g.cells[2]) * g.cell.z, first));
 }
 
+/// Throws InputErrors on every rank if one of them needs more bytes than it can have.
+void refuse_above(double needed, const ModelPlan& plan, const Model& model, Exchange& exchange) {
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  const std::vector<std::string> hosts = exchange.gather(host);
+  const auto here = std::count(hosts.begin(), hosts.end(), std::string(host));
+  const double free = std::min(available_memory() / static_cast<double>(here), address_space_left());
+  double shortest[3] = {free - needed, -needed, free};
+  exchange.minimum(shortest);
+  if (shortest[0] >= 0) return;
+  throw InputErrors(
+      model.scene->components.front().source, "Component",
+      fmt::format("about {:.3g} particles need {:.3g} GiB per rank, but only {:.3g} GiB are free; "
+                  "use a larger dp or more machines",
+                  plan.particles, -shortest[1] / 1073741824.0, shortest[2] / 1073741824.0));
+}
+
 void refuse_too_large(const Model& model, const ModelPlan& plan, double identities, Exchange& exchange) {
   if (identities >= exact_integers) {
     throw InputErrors(
@@ -117,21 +145,19 @@ void refuse_too_large(const Model& model, const ModelPlan& plan, double identiti
                     "use a larger dp",
                     plan.particles));
   }
-  // State, and half as much again for nodes and what is on its way.
-  const double needed = 1.5 * plan.state_bytes / exchange.size();
-  char host[256] = {};
-  gethostname(host, sizeof host - 1);
-  const std::vector<std::string> hosts = exchange.gather(host);
-  const auto here = std::count(hosts.begin(), hosts.end(), std::string(host));
-  double shortest[1] = {available_memory() / static_cast<double>(here)};
-  exchange.minimum(shortest);
-  if (needed > shortest[0]) {
-    throw InputErrors(
-        model.scene->components.front().source, "Component",
-        fmt::format("about {:.3g} particles need {:.3g} GiB per rank, but only {:.3g} GiB are free; "
-                    "use a larger dp or more machines",
-                    plan.particles, needed / 1073741824.0, shortest[0] / 1073741824.0));
-  }
+  // Particles, and half as much again for nodes and what is on its way.
+  refuse_above(1.5 * plan.state_bytes / exchange.size(), plan, model, exchange);
+}
+
+/// Once it is known which bricks are whose: with what the nodes need, too.
+void refuse_too_large(const Model& model, const ModelPlan& plan, const Census& census, Exchange& exchange) {
+  std::int64_t bytes[1] = {census.block_bytes};
+  exchange.sum(std::span<std::int64_t>(bytes));
+  // Of the particles, some are on their way to their bricks.
+  const double under_way = std::min(16.0 * (1 << 20), static_cast<double>(bytes[0]));
+  const MemoryNeed need = memory_need(model);
+  refuse_above(static_cast<double>(bytes[0]) / exchange.size() + need.bricks + need.bodies + under_way, plan,
+               model, exchange);
 }
 
 void deal_out(Model& model, const std::vector<std::unique_ptr<SeedSource>>& sources,
@@ -227,17 +253,6 @@ GridGeometry geometry_of(const Scene& scene) {
   return g;
 }
 
-double available_memory() {
-  std::ifstream info("/proc/meminfo");
-  for (std::string word; info >> word;) {
-    if (word != "MemAvailable:") continue;
-    double kib = 0;
-    info >> kib;
-    return 1024 * kib;
-  }
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
 bool made_of_bars(const Geometry& geometry) {
   return std::holds_alternative<BarMeshGeometry>(geometry) ||
          std::holds_alternative<BarLinesGeometry>(geometry) ||
@@ -258,6 +273,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
   model.options.keep_strain =
       solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
   model.grid = std::make_unique<BrickGrid>(geometry_of(*scene));
+  BlockPools pools;
   for_each_active_body(*scene, [&](int component, const BodyInput& input) {
     Body body;
     body.name = input.name;
@@ -280,7 +296,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
         model.grid->geometry().boundary.end())
       columns.add(Column::sound_speed);  // of the dashpots there
-    body.pool = std::make_unique<BlockPool>(ColumnLayout(columns));
+    body.pool = pools.of(columns);
     model.bodies.push_back(std::move(body));
   });
   model.books.body_eroded.resize(model.bodies.size());
@@ -316,12 +332,14 @@ void discretise(Model& model, Exchange& exchange) {
     sources.push_back(make_seed_source(*model.scene, *input));
     identities += static_cast<double>(sources.back()->identities());
   }
-  refuse_too_large(model, plan_of(model), identities, exchange);
+  const ModelPlan plan = plan_of(model);
+  refuse_too_large(model, plan, identities, exchange);
   const Census census = take_census(model, sources, inputs, exchange);
   refuse_outside(model, census, exchange);
   std::vector<BrickCount> counts;
   for (const auto& [key, n] : census.bricks) counts.push_back({brick_of_key(key), n});
   exchange.partition(*model.grid, counts, model.scene->decomposition);
+  refuse_too_large(model, plan, census, exchange);
   deal_out(model, sources, inputs, exchange);
   settle(model);
   arrange_blocks(model);

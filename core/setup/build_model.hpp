@@ -35,9 +35,6 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
 
 ModelPlan plan_of(const Model& model);
 
-/// Bytes of main memory that this machine has free, shared by the ranks on it.
-double available_memory();
-
 /// Make the particles. Throws InputErrors on every rank together for a body outside the grid, an identity or
 /// a memory range exceeded, and a decomposition that does not fit. Collective.
 void discretise(Model& model, Exchange& exchange);

@@ -226,17 +226,21 @@ void insert_travellers(Model& model, const Travellers& travellers) {
 }
 
 void arrange_blocks(Model& model) {
-  std::vector<std::vector<BlockIndex>> in_use(model.bodies.size());
+  const std::vector<BlockPool*> pools = pools_of(model);
+  std::vector<std::size_t> pool_of;  // of each body
+  for (const Body& b : model.bodies)
+    pool_of.push_back(static_cast<std::size_t>(std::ranges::find(pools, b.pool.get()) - pools.begin()));
+  std::vector<std::vector<BlockIndex>> in_use(pools.size());
   for (Brick& brick : model.grid->bricks()) {
     for (Cohort& cohort : brick.cohorts) {
-      std::vector<BlockIndex>& blocks = in_use[static_cast<std::size_t>(cohort.body)];
+      std::vector<BlockIndex>& blocks = in_use[pool_of[static_cast<std::size_t>(cohort.body)]];
       for (BlockIndex& b : cohort.blocks) {
         blocks.push_back(b);
         b = static_cast<BlockIndex>(blocks.size() - 1);
       }
     }
   }
-  for (std::size_t b = 0; b < in_use.size(); ++b) model.bodies[b].pool->arrange(in_use[b]);
+  for (std::size_t p = 0; p < pools.size(); ++p) pools[p]->arrange(in_use[p]);
 }
 
 void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort) {

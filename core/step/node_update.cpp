@@ -1,6 +1,8 @@
 #include "core/step/node_update.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace mpm::core {
 
@@ -11,6 +13,9 @@ using Half = Lanes<4>;
 }  // namespace
 
 SharedNodes::SharedNodes(const NodeBlockShape& shape) : nodes_(shape.nodes()) {
+  if (shape.halo < 0 || shape.halo > most_halo)
+    throw std::logic_error("nodes of bricks with a halo of " + std::to_string(shape.halo) +
+                           " layers are shared by more bricks than a neighbourhood has");
   const int low = -shape.halo, high = brick_cells + shape.halo;
   const auto within = [&](int i) { return low <= i && i <= high; };
   std::array<std::vector<Share>, 9> by_count;
@@ -25,7 +30,8 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape) : nodes_(shape.nodes()) {
           const int a = i - brick_cells * d.x, b = j - brick_cells * d.y, c = k - brick_cells * d.z;
           if (within(a) && within(b) && within(c)) shares.push_back({n, shape.index(a, b, c)});
         }
-        by_count[shares.size()].insert(by_count[shares.size()].end(), shares.begin(), shares.end());
+        std::vector<Share>& alike = by_count.at(shares.size());
+        alike.insert(alike.end(), shares.begin(), shares.end());
         nodes[shares.size()].push_back(shape.index(i, j, k));
       }
     }
@@ -41,7 +47,8 @@ template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums) {
   constexpr int width = record_doubles(of);
   using Part = Lanes<width>;
-  static const std::vector<double> nothing(static_cast<std::size_t>(node_doubles * 11 * 11 * 11), 0.0);
+  static const std::vector<double> nothing(
+      static_cast<std::size_t>(node_doubles * NodeBlockShape{most_halo}.nodes()), 0.0);
   const Brick& brick = grid.brick(slot);
   std::array<const double*, neighbourhood> from{};
   for (std::size_t n = 0; n < neighbourhood; ++n) {

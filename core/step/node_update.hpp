@@ -13,6 +13,7 @@ namespace mpm::core {
 /// Which bricks share each node of a brick, in the order of summation: made once for a shape of node block.
 class SharedNodes {
  public:
+  /// Throws std::logic_error for a halo beyond most_halo.
   explicit SharedNodes(const NodeBlockShape& shape);
 
   struct Share {

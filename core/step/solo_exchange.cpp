@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/counts.hpp"
 #include "core/step/exchange.hpp"
 
 namespace mpm::core {
@@ -15,11 +16,13 @@ std::vector<BrickCoord> owned_bricks(const BrickGrid& grid) {
 void check_decomposition(const DecompositionInput& how, int ranks) {
   if (!how.dimensions) return;
   const auto [x, y, z] = *how.dimensions;
-  if (std::int64_t{x} * y * z == ranks) return;
-  throw InputErrors(how.source, "DomainDecomposition",
-                    "dimension0 * dimension1 * dimension2 = " + std::to_string(std::int64_t{x} * y * z) +
-                        " must equal the number of ranks, which is " + std::to_string(ranks) +
-                        "; start that many ranks, change the dimensions, or remove the element");
+  const std::optional<std::int64_t> parts = product_of({x, y, z});
+  if (parts == ranks && x > 0 && y > 0 && z > 0) return;
+  throw InputErrors(
+      how.source, "DomainDecomposition",
+      "dimension0 * dimension1 * dimension2 = " + (parts ? std::to_string(*parts) : "more than 2^63") +
+          " must equal the number of ranks, which is " + std::to_string(ranks) +
+          "; start that many ranks, change the dimensions, or remove the element");
 }
 
 void SoloExchange::partition(BrickGrid& grid, std::span<const BrickCount> counts,

@@ -114,10 +114,18 @@ void over_bricks(const Model& model, P& out, F f) {
   }
 }
 
+/// Bodies [first, last).
+struct BodyRange {
+  std::size_t first = 0, last = 0;
+};
+
 /// f(body index, layout, block, lanes in use) over one brick.
 template <class F>
-void over_blocks(const Model& model, const Brick& brick, F f) {
-  for (const Cohort& cohort : brick.cohorts) {
+void over_blocks(const Model& model, const Brick& brick, BodyRange bodies, F f) {
+  const auto begin =
+      std::ranges::lower_bound(brick.cohorts, static_cast<int>(bodies.first), {}, &Cohort::body);
+  for (auto at = begin; at != brick.cohorts.end() && static_cast<std::size_t>(at->body) < bodies.last; ++at) {
+    const Cohort& cohort = *at;
     const BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       const int used = cohort.used_lanes(b);
@@ -165,51 +173,72 @@ std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) {
 
 }  // namespace
 
-Totals compute_totals(const Model& model, Exchange& exchange) {
-  const std::size_t bodies = model.bodies.size();
-  const std::vector<double> inverse_density = inverse_densities(model);
-  std::vector<Partial> local(bodies);
-  over_bricks(model, local, [&](const Brick& brick, std::vector<Partial>& to) {
-    over_blocks(model, brick,
-                [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
-                  add_block(layout, block, used, inverse_density[body], to[body]);
-                });
-  });
+namespace {
 
-  const Books& books = model.books;
+/// What is known of some bodies once all ranks have given their share. Collective.
+struct BodySums {
   std::vector<ExactSum> sum;
   std::vector<double> low;
-  std::vector<std::int64_t> count{books.eroded, books.left_grid, books.velocity_limited};
-  for (std::size_t b = 0; b < bodies; ++b) {
-    sum.insert(sum.end(), local[b].sum.begin(), local[b].sum.end());
-    low.insert(low.end(), local[b].low.begin(), local[b].low.end());
-    count.insert(count.end(), {local[b].particles, local[b].failed, entry(books.body_eroded, b),
-                               entry(books.body_left, b)});
-  }
-  for (const ExactSum* s :
-       {&books.external_work, &books.removed_mass, &books.removed_kinetic, &books.removed_internal}) {
-    sum.push_back(*s);
-  }
-  exchange.sum(std::span(sum));
-  exchange.sum(std::span(count));
-  exchange.minimum(low);
+  std::vector<std::int64_t> count;  ///< per body: particles, failed, eroded, left
+};
 
+BodySums sums_of_bodies(const Model& model, const std::vector<double>& inverse_density, BodyRange bodies,
+                        Exchange& exchange) {
+  std::vector<Partial> local(bodies.last - bodies.first);
+  over_bricks(model, local, [&](const Brick& brick, std::vector<Partial>& to) {
+    over_blocks(model, brick, bodies,
+                [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
+                  add_block(layout, block, used, inverse_density[body], to[body - bodies.first]);
+                });
+  });
+  const Books& books = model.books;
+  BodySums all;
+  for (std::size_t b = bodies.first; b < bodies.last; ++b) {
+    const Partial& mine = local[b - bodies.first];
+    all.sum.insert(all.sum.end(), mine.sum.begin(), mine.sum.end());
+    all.low.insert(all.low.end(), mine.low.begin(), mine.low.end());
+    all.count.insert(all.count.end(),
+                     {mine.particles, mine.failed, entry(books.body_eroded, b), entry(books.body_left, b)});
+  }
+  exchange.sum(std::span(all.sum));
+  exchange.sum(std::span(all.count));
+  exchange.minimum(all.low);
+  return all;
+}
+
+}  // namespace
+
+Totals compute_totals(const Model& model, Exchange& exchange) {
+  // An exact sum is half a kilobyte, a body has a dozen and each thread its own: of very many bodies, some at
+  // a time; as many on every rank.
+  constexpr std::size_t at_once = 256;
+  const std::size_t bodies = model.bodies.size();
+  const std::vector<double> inverse_density = inverse_densities(model);
   Totals totals;
   std::array<ExactSum, sums> all;
-  for (std::size_t b = 0; b < bodies; ++b) {
-    const ExactSum* body_sum = &sum[sums * b];
-    const std::int64_t* c = &count[3 + 4 * b];
-    BodyTotals body = body_totals(body_sum, &low[lows * b], c[0]);
-    body.failed = c[1];
-    body.eroded = c[2];
-    body.left_grid = c[3];
-    totals.particles += body.particles;
-    totals.failed += body.failed;
-    totals.bodies.push_back(body);
-    for (std::size_t i = 0; i < sums; ++i) all[i] += body_sum[i];
+  for (std::size_t first = 0; first < bodies; first += at_once) {
+    const BodyRange range{first, std::min(first + at_once, bodies)};
+    const BodySums part = sums_of_bodies(model, inverse_density, range, exchange);
+    for (std::size_t b = 0; b < range.last - range.first; ++b) {
+      const ExactSum* body_sum = &part.sum[sums * b];
+      const std::int64_t* c = &part.count[4 * b];
+      BodyTotals body = body_totals(body_sum, &part.low[lows * b], c[0]);
+      body.failed = c[1];
+      body.eroded = c[2];
+      body.left_grid = c[3];
+      totals.particles += body.particles;
+      totals.failed += body.failed;
+      totals.bodies.push_back(body);
+      for (std::size_t i = 0; i < sums; ++i) all[i] += body_sum[i];
+    }
   }
   static_cast<Quantities&>(totals) = quantities_of(all.data());
-  const ExactSum* booked = &sum[sums * bodies];
+
+  const Books& books = model.books;
+  std::array booked{books.external_work, books.removed_mass, books.removed_kinetic, books.removed_internal};
+  std::array<std::int64_t, 3> count{books.eroded, books.left_grid, books.velocity_limited};
+  exchange.sum(std::span<ExactSum>(booked));
+  exchange.sum(std::span<std::int64_t>(count));
   totals.external_work = booked[0].value();
   totals.removed_mass = booked[1].value();
   totals.removed_kinetic = booked[2].value();
@@ -231,7 +260,7 @@ Energies compute_energies(const Model& model, Exchange& exchange) {
   const std::vector<double> inverse_density = inverse_densities(model);
   std::vector<Pair> local(1);
   over_bricks(model, local, [&](const Brick& brick, std::vector<Pair>& to) {
-    over_blocks(model, brick,
+    over_blocks(model, brick, {0, model.bodies.size()},
                 [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
                   const BlockEnergies sum = energies_of(layout, block, used, inverse_density[body]);
                   to[0].kinetic.add(sum.kinetic);
@@ -260,7 +289,7 @@ std::int64_t occupied_cells(const Model& model, Exchange& exchange) {
 #pragma omp parallel for schedule(dynamic, 16) reduction(+ : cells)
   for (int s = 0; s < bricks; ++s) {
     std::uint64_t seen = 0;
-    over_blocks(model, model.grid->brick(s),
+    over_blocks(model, model.grid->brick(s), {0, model.bodies.size()},
                 [&](std::size_t, const ColumnLayout& layout, const double* block, int used) {
                   const double* x = block + layout.offset(Column::position_x);
                   for (int i = 0; i < used; ++i) {

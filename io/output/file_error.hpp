@@ -2,6 +2,7 @@
 // what() and leaves with exit code 5.
 #pragma once
 
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -22,13 +23,14 @@ FileError system_error(const std::string& doing, const std::string& path, int er
 void agree(core::Exchange& exchange, const std::string& complaint);
 
 /// Run f() on this rank; if it throws on any, every rank throws a FileError with that rank's text. There must
-/// be nothing collective in f. Collective.
+/// be nothing collective in f. std::bad_alloc is thrown on the rank that has it alone, while the others wait:
+/// the answer is to end every rank. Collective.
 template <class F>
 void together(core::Exchange& exchange, F f) {
   std::string complaint;
   try {
     f();
-  } catch (const std::exception& e) {
+  } catch (const std::bad_alloc&) { throw; } catch (const std::exception& e) {
     complaint = e.what();
     if (complaint.empty()) complaint = "unknown error";
   }

@@ -36,16 +36,17 @@ std::string head_of(const core::Model& model) {
   return head;
 }
 
-core::Quantities material_sum(const core::Model& model, const core::Totals& totals, std::size_t material) {
-  core::Quantities sum;
+/// Of each material, the sum over its bodies.
+std::vector<core::Quantities> material_sums(const core::Model& model, const core::Totals& totals) {
+  std::vector<core::Quantities> sums(model.materials.size());
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (static_cast<std::size_t>(model.bodies[b].material) != material) continue;
+    core::Quantities& sum = sums[static_cast<std::size_t>(model.bodies[b].material)];
     sum.mass += totals.bodies[b].mass;
     sum.kinetic += totals.bodies[b].kinetic;
     sum.internal += totals.bodies[b].internal;
     sum.momentum = sum.momentum + totals.bodies[b].momentum;
   }
-  return sum;
+  return sums;
 }
 
 double total_cells(const core::Model& model) {
@@ -78,7 +79,7 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
   }
   for (int a = 0; a < 3; ++a) add(totals.momentum[a]);
   for (const core::BodyTotals& b : totals.bodies) add_group(b);
-  for (std::size_t m = 0; m < model.materials.size(); ++m) add_group(material_sum(model, totals, m));
+  for (const core::Quantities& sum : material_sums(model, totals)) add_group(sum);
   if (memory_) {
     const MemoryUse use = peak_memory(exchange);
     add(static_cast<double>(use.largest));

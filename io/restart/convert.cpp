@@ -37,6 +37,7 @@ core::Model model_for(const RestartContents& contents) {
   scene->header = contents.header;
   scene->provenance = contents.provenance;
   model.grid = std::make_unique<core::BrickGrid>(contents.grid);
+  core::BlockPools pools;
   for (const BodyRecord& record : contents.bodies) {
     at_grown(scene->materials, record.material_number).name = record.material;
     core::ComponentInput& component = at_grown(scene->components, record.component_number);
@@ -51,7 +52,7 @@ core::Model model_for(const RestartContents& contents) {
     body.material = record.material_number;
     body.model = model.materials.back().get();
     body.no_output = record.no_output;
-    body.pool = std::make_unique<core::BlockPool>(core::ColumnLayout(columns));
+    body.pool = pools.of(columns);
   }
   model.scene = std::move(scene);
   return model;

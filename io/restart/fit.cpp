@@ -1,6 +1,8 @@
 #include "io/restart/fit.hpp"
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -8,20 +10,14 @@ namespace mpm::io {
 
 namespace {
 
-/// The scene's own words on a body of this name, whether it takes part or not.
-const core::BodyInput* input_of(const core::Scene& scene, const std::string& name) {
-  for (const core::ComponentInput& component : scene.components) {
-    for (const core::BodyInput& body : component.bodies) {
-      if (body.name == name) return &body;
-    }
-  }
-  return nullptr;
-}
-
 class Fitting {
  public:
   Fitting(const RestartContents& contents, const core::Model& model, std::vector<std::string>& notices)
-      : contents_(contents), model_(model), notices_(notices) {}
+      : contents_(contents), model_(model), notices_(notices) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) numbers_.emplace(model.bodies[b].name, b);
+    for (const core::ComponentInput& component : model.scene->components)
+      for (const core::BodyInput& body : component.bodies) inputs_.emplace(body.name, &body);
+  }
 
   Fit run() {
     Fit fit;
@@ -43,17 +39,17 @@ class Fitting {
   }
 
   std::optional<Fit::Body> place(const BodyRecord& record) {
-    const auto found = std::find_if(model_.bodies.begin(), model_.bodies.end(),
-                                    [&](const core::Body& b) { return b.name == record.name; });
-    const core::BodyInput* input = input_of(*model_.scene, record.name);
-    if (found == model_.bodies.end()) {
+    const auto found = numbers_.find(record.name);
+    const auto stated = inputs_.find(record.name);
+    const core::BodyInput* input = stated == inputs_.end() ? nullptr : stated->second;
+    if (found == numbers_.end()) {
       leave_out(record, input);
       return std::nullopt;
     }
     const core::SourceLocation where = input != nullptr ? input->source : core::SourceLocation{};
-    check_material(record, *found, where);
-    return Fit::Body{static_cast<std::size_t>(found - model_.bodies.begin()), sources(record, *found, where),
-                     record.columns.size()};
+    const core::Body& body = model_.bodies[found->second];
+    check_material(record, body, where);
+    return Fit::Body{found->second, sources(record, body, where), record.columns.size()};
   }
 
   void leave_out(const BodyRecord& record, const core::BodyInput* input) {
@@ -132,6 +128,9 @@ class Fitting {
   const core::Model& model_;
   std::vector<std::string>& notices_;
   core::Complaints wrong_;
+  std::unordered_map<std::string_view, std::size_t> numbers_;  ///< of the model's bodies, by name
+  /// The scene's own words on each body, whether it takes part or not.
+  std::unordered_map<std::string_view, const core::BodyInput*> inputs_;
 };
 
 }  // namespace

@@ -37,14 +37,21 @@ void fill(const core::Model& model, const RowBatch& batch, int columns, double* 
 void write_all_rows(const std::string& part, const ParticleOrder& order, const core::Model& model,
                     core::Exchange& exchange) {
   const std::size_t bodies = model.bodies.size();
+  std::vector<ParticleOrder> of_body(bodies);  // so that each body looks at no other's cohorts
+  for (const CohortPlace& place : order.mine) {
+    const core::Brick& brick = model.grid->brick(place.slot);
+    const int body = brick.cohorts[static_cast<std::size_t>(place.cohort)].body;
+    of_body[static_cast<std::size_t>(body)].mine.push_back(place);
+  }
+  std::vector<std::int64_t> first_row(bodies, left_out);
   std::vector<std::vector<RowBatch>> batches(bodies);
   std::vector<SharedRows> datasets;
   for (std::size_t b = 0; b < bodies; ++b) {
     const core::ColumnLayout& layout = model.bodies[b].pool->layout();
     const auto bytes = static_cast<std::size_t>(layout.bytes_per_particle());
-    std::vector<std::int64_t> first_row(bodies, left_out);
     first_row[b] = 0;
-    batches[b] = cut_into_batches(model, order, first_row, bytes_at_once / bytes);
+    batches[b] = cut_into_batches(model, of_body[b], first_row, bytes_at_once / bytes);
+    first_row[b] = left_out;
     datasets.push_back({rows_name(b), bytes, batches[b],
                         [&model, columns = layout.columns()](const RowBatch& batch, std::byte* memory) {
                           fill(model, batch, columns, reinterpret_cast<double*>(memory));

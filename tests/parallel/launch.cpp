@@ -81,6 +81,62 @@ TEST_CASE("Stretches reach their ranks whole, however the messages are cut") {
   }
 }
 
+TEST_CASE("Lists, reductions and broadcasts are whole, however their messages are cut") {
+  const auto me = static_cast<std::size_t>(world().rank()), ranks = static_cast<std::size_t>(world().size());
+  const auto length = [](std::size_t rank) { return rank % 3 == 2 ? 0 : 200 + 37 * rank; };
+  std::vector<std::uint64_t> mine, all;
+  for (std::size_t r = 0; r < ranks; ++r) {
+    for (std::size_t i = 0; i < length(r); ++i) {
+      all.push_back(mix(r, i));
+      if (r == me) mine.push_back(mix(r, i));
+    }
+  }
+  for (const std::size_t longest : {std::size_t{8}, std::size_t{1000}, std::size_t{1016}, longest_piece}) {
+    const auto gathered = world().all_gather(std::span<const std::uint64_t>(mine), longest);
+    CHECK(gathered.items == all);
+    CHECK(std::ranges::equal(gathered.of(world().rank()), mine));
+
+    std::vector<std::int64_t> whole(500);
+    std::vector<double> real(500);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      whole[i] = static_cast<std::int64_t>(i * (me + 1));
+      real[i] = static_cast<double>(i) - static_cast<double>(me);
+    }
+    world().reduce(whole, MPI_SUM, longest);
+    world().reduce(real, MPI_MIN, longest);
+    int wrong = 0;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      wrong += whole[i] != static_cast<std::int64_t>(i * ranks * (ranks + 1) / 2);
+      wrong += real[i] != static_cast<double>(i) - static_cast<double>(ranks - 1);
+    }
+    CHECK(wrong == 0);
+
+    const int root = world().size() - 1;
+    std::vector<std::uint64_t> word = world().rank() == root ? all : std::vector<std::uint64_t>(all.size());
+    world().broadcast(std::as_writable_bytes(std::span(word)), root, longest);
+    CHECK(word == all);
+  }
+}
+
+TEST_CASE("A message of unannounced length arrives whole, however it is cut") {
+  constexpr std::size_t piece = 64;  // eight doubles
+  const int next = (world().rank() + 1) % world().size();
+  const int last = (world().rank() + world().size() - 1) % world().size();
+  for (const std::size_t length : {0, 1, 7, 8, 9, 16, 100}) {
+    std::vector<double> out, in{-1};
+    for (std::size_t i = 0; i < length; ++i) out.push_back(static_cast<double>(i) + 0.5);
+    Requests requests;
+    requests.send_unannounced(world(), out.data(), out.size() * sizeof(double), next, 77, piece);
+    requests.send_unannounced(world(), out.data(), out.size() * sizeof(double), next, 77, piece);
+    world().receive_onto(in, last, 77, piece);
+    world().receive_onto(in, last, 77, piece);
+    requests.wait_all();
+    std::vector<double> expected{-1};
+    for (int twice = 0; twice < 2; ++twice) expected.insert(expected.end(), out.begin(), out.end());
+    CHECK(in == expected);
+  }
+}
+
 TEST_CASE("A failed call names itself") {
   int value = 0;
   CHECK_THROWS_WITH(check(MPI_Bcast(&value, 1, MPI_INT, world().size(), world().handle()), "MPI_Bcast"),

@@ -148,3 +148,15 @@ TEST_CASE("Blocks that were dealt out in any order are arranged one cohort after
   none.arrange({});
   CHECK(none.blocks_in_use() == 0);
 }
+
+TEST_CASE("Bodies with the same columns share a pool, others do not") {
+  BlockPools pools;
+  ColumnSet more = ColumnSet::mechanics();
+  more.add(Column::damage);
+  const auto plain = pools.of(ColumnSet::mechanics()), damaged = pools.of(more);
+  CHECK(plain != damaged);
+  CHECK(pools.of(ColumnSet::mechanics()) == plain);
+  CHECK(pools.of(more) == damaged);
+  CHECK(damaged->layout().has(Column::damage));
+  CHECK_FALSE(plain->layout().has(Column::damage));
+}

@@ -162,7 +162,7 @@ struct SmallRun {
       core::Body& body = model.bodies.emplace_back();
       body.name = "body";
       body.model = model.materials[0].get();
-      body.pool = std::make_unique<core::BlockPool>(core::ColumnLayout(columns));
+      body.pool = std::make_shared<core::BlockPool>(core::ColumnLayout(columns));
     }
     model.books.body_eroded.resize(model.bodies.size());
     model.books.body_left.resize(model.bodies.size());

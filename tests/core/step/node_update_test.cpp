@@ -126,7 +126,7 @@ TEST_CASE("A node's sum is that of all bricks which hold it") {
       });
     }
     const SharedNodes shared(grid.shape());
-    // At most eight addends (27 with a halo), in another order: round-off of their sizes.
+    // At most eight addends, in another order: round-off of their sizes.
     double worst = 0;
     for (const auto& [node, r] :
          agreed(grid, [&](Slot s, double*r) { sum_contributions<NodeArray::first>(grid, shared, s, r); })) {
@@ -245,5 +245,14 @@ TEST_CASE("Every boundary holds what it should on every face, also where the las
         CHECK(held > 0);
       }
     }
+  }
+}
+
+TEST_CASE("A halo that a neighbourhood of 27 bricks cannot serve is refused") {
+  CHECK_NOTHROW(SharedNodes(NodeBlockShape{most_halo}));
+  // With two layers, node -2 of a brick is node 6 of the brick two further down, which is no neighbour.
+  for (const int halo : {-1, 2, 3, 5}) {
+    CHECK_THROWS_AS(SharedNodes(NodeBlockShape{halo}), std::logic_error);
+    CHECK_THROWS_AS(BrickGrid(geometry_of({16, 16, 16}), halo), std::logic_error);
   }
 }

@@ -37,7 +37,7 @@ std::unique_ptr<SmallRun> continued(const SmallRun& from, ReferenceCase c) {
   for (const Brick& brick : from.model.grid->bricks()) {
     if (brick.particles() > 0) counts.push_back({brick.coord, 1});
   }
-  for (Body& body : to->model.bodies) body.pool = std::make_unique<BlockPool>(body.pool->layout());
+  for (Body& body : to->model.bodies) body.pool = std::make_shared<BlockPool>(body.pool->layout());
   for (Brick& brick : to->model.grid->bricks()) brick.cohorts.clear();
   to->solo.partition(*to->model.grid, counts, {});
   std::vector<double> columns(column_count);

@@ -35,7 +35,7 @@ Model two_bodies() {
     body.model = model.materials[0].get();
     ColumnSet columns = ColumnSet::mechanics();
     if (b == 1) columns.add({Column::effective_plastic_strain, Column::temperature, Column::failed});
-    body.pool = std::make_unique<BlockPool>(ColumnLayout(columns));
+    body.pool = std::make_shared<BlockPool>(ColumnLayout(columns));
   }
   return model;
 }
@@ -123,6 +123,42 @@ TEST_CASE("Totals do not lose small parts beside large ones") {
   add(model, {0, {5, 5, 5}, {-1e17, 0, 0}, 1, 0});
   SoloExchange solo;
   CHECK(compute_totals(model, solo).momentum.x == 1);
+}
+
+TEST_CASE("The totals of very many bodies, which are added up some at a time, are theirs") {
+  constexpr int many = 1300;  // more than two groups on one thread
+  Model model = two_bodies();
+  model.bodies.clear();
+  BlockPools pools;
+  for (int b = 0; b < many; ++b) {
+    Body& body = model.bodies.emplace_back();
+    body.model = model.materials[0].get();
+    body.pool = pools.of(ColumnSet::mechanics());
+  }
+  CHECK(pools_of(model).size() == 1);
+  double mass = 0;
+  for (int b = 0; b < many; ++b) {
+    const double m = 1 + b % 7;
+    add(model, {b, {b % 8 < 4 ? 1.0 : 5.0, 1 + 0.0001 * b, 3}, {0, 1.0 * b, 0}, m, 4});
+    mass += m;
+  }
+  model.books.body_left.assign(many, 0);
+  model.books.body_left[many - 1] = 3;
+  model.books.left_grid = 3;
+  SoloExchange solo;
+  const Totals t = compute_totals(model, solo);
+  REQUIRE(t.bodies.size() == many);
+  CHECK(t.particles == many);
+  CHECK(t.mass == mass);
+  CHECK(t.left_grid == 3);
+  int wrong = 0;
+  for (int b = 0; b < many; ++b) {
+    const BodyTotals& body = t.bodies[static_cast<std::size_t>(b)];
+    const double m = 1 + b % 7;
+    wrong += body.particles != 1 || body.mass != m || body.momentum.y != m * b ||
+             body.left_grid != (b == many - 1 ? 3 : 0);
+  }
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("A body without particles has mass 0 and no place") {

@@ -94,7 +94,7 @@ inline core::Model prepared_model(std::shared_ptr<const core::Scene> scene, cons
       core::ColumnSet columns = core::ColumnSet::mechanics();
       columns.add(body.model->columns({}));
       columns.add(setup.shown);
-      body.pool = std::make_unique<core::BlockPool>(core::ColumnLayout(columns));
+      body.pool = std::make_shared<core::BlockPool>(core::ColumnLayout(columns));
     }
   }
   model.books.body_eroded.resize(model.bodies.size());
