@@ -135,7 +135,7 @@ class Descriptors(Case):
                 outcome = run([path, "--output-dir", self.folder / "out"], ranks=ranks,
                               mpirun=["prlimit", f"--nofile={most}"], **(more if ranks == 1 else {}))
                 self.assertEqual(outcome.code, FILE_ERROR, (ranks, most, outcome))
-                self.assertRegex(outcome.err, r"Too many open files: only \d+ more .* ulimit -n")
+                self.assertRegex(outcome.err, r"Too many open files: only \d+ more .*ulimit -n")
 
 
 if __name__ == "__main__":
