@@ -120,13 +120,16 @@ void refuse_outside(const Model& model, const Census& census, Exchange& exchange
                   g.origin.z + double(g.cells[2]) * g.cell.z, first));
 }
 
-/// Throws InputErrors on every rank if one of them needs more bytes than it can have.
-void refuse_above(double needed, const ModelPlan& plan, const Model& model, Exchange& exchange) {
+/// Throws InputErrors on every rank if one of them needs more bytes than it can have. `reserved`: of these,
+/// what has its addresses already and is not filled yet.
+void refuse_above(double needed, double reserved, const ModelPlan& plan, const Model& model,
+                  Exchange& exchange) {
   char host[256] = {};
   gethostname(host, sizeof host - 1);
   const std::vector<std::string> hosts = exchange.gather(host);
   const auto here = std::count(hosts.begin(), hosts.end(), std::string(host));
-  const double free = std::min(available_memory() / static_cast<double>(here), address_space_left());
+  const double free =
+      std::min(available_memory() / static_cast<double>(here), address_space_left() + reserved);
   double shortest[3] = {free - needed, -needed, free};
   exchange.minimum(shortest);
   if (shortest[0] >= 0) return;
@@ -146,17 +149,18 @@ void refuse_too_large(const Model& model, const ModelPlan& plan, double identiti
                     plan.particles));
   }
   // Particles, and half as much again for nodes and what is on its way.
-  refuse_above(1.5 * plan.state_bytes / exchange.size(), plan, model, exchange);
+  refuse_above(1.5 * plan.state_bytes / exchange.size(), 0, plan, model, exchange);
 }
 
 /// Once it is known which bricks are whose: with what the nodes need, too.
 void refuse_too_large(const Model& model, const ModelPlan& plan, const Census& census, Exchange& exchange) {
   std::int64_t bytes[1] = {census.block_bytes};
   exchange.sum(std::span<std::int64_t>(bytes));
-  // Of the particles, some are on their way to their bricks.
-  const double under_way = std::min(16.0 * (1 << 20), static_cast<double>(bytes[0]));
+  // Of the particles, some are on their way to their bricks; of what bodies take, the input is there already.
+  const auto particles = static_cast<double>(bytes[0]);
+  const double under_way = std::min(16.0 * (1 << 20), particles);
   const MemoryNeed need = memory_need(model);
-  refuse_above(static_cast<double>(bytes[0]) / exchange.size() + need.bricks + need.bodies + under_way, plan,
+  refuse_above(particles / exchange.size() + under_way + need.bricks + 0.5 * need.bodies, need.bricks, plan,
                model, exchange);
 }
 
