@@ -1,5 +1,6 @@
 #include "apps/common/outputs.hpp"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/step/finite.hpp"
 #include "io/output/variables.hpp"
 
 namespace mpm::apps {
@@ -41,18 +43,31 @@ io::TableContinuation table_from(const Continuation& from, const std::string& na
   return {last_step, io::TableMark::from(mark_named(from, name))};
 }
 
-/// The rows of .sta that a continued run keeps. One that has nothing left to do writes its last again: it may
-/// have been killed before it could.
+/// Up to where a continued run keeps the rows of .sta. One that has nothing left to do writes its last again:
+/// it may have been killed before it could.
+std::int64_t last_status_step(const core::Model& model) {
+  const core::Clock& clock = model.clock;
+  const bool over = clock.time >= model.scene->solution.end_time * (1 - 1e-12);
+  return over ? clock.step - 1 : clock.step;
+}
+
 std::optional<io::TableContinuation> status_from(const std::optional<Continuation>& from,
                                                  const core::Model& model) {
   if (!from) return {};
-  const core::Clock& clock = model.clock;
-  const bool over = clock.time >= model.scene->solution.end_time * (1 - 1e-12);
-  return table_from(*from, status_ending, over ? clock.step - 1 : clock.step);
+  return table_from(*from, status_ending, last_status_step(model));
 }
 
 std::optional<std::string> picture_from(const std::optional<Continuation>& from, const std::string& name) {
   return from ? std::optional(mark_named(*from, name)) : std::nullopt;
+}
+
+/// Histories have a row for every step; without them the file has one for each row of .sta.
+std::optional<io::HistoryFile::Continuation> history_from(const std::optional<Continuation>& from,
+                                                          const core::Model& model) {
+  if (!from) return {};
+  const bool each_step = !model.scene->output.histories.empty();
+  const std::int64_t last_step = each_step ? model.clock.step : last_status_step(model);
+  return io::HistoryFile::Continuation{table_from(*from, history_ending, last_step), from->tracked};
 }
 
 }  // namespace
@@ -82,16 +97,12 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
     : stem_(folder + "/" + model.scene->provenance.job_name),
       log_(log),
       status_(stem_ + status_ending, model, status_from(from, model), exchange),
+      history_(stem_ + history_ending, model, history_from(from, model), exchange),
       report_(model.scene->output.console.print_time, model.clock.time),
       start_time_(model.clock.time),
       wall_start_(wall()),
       momentum_(model.scene->output.console.print_momentum) {
   const core::OutputInput& out = model.scene->output;
-  if (!out.histories.empty()) {
-    std::optional<io::HistoryFile::Continuation> history;
-    if (from) history = {table_from(*from, history_ending, model.clock.step), from->tracked};
-    history_.emplace(stem_ + history_ending, model, history, exchange);
-  }
   std::set<std::string> absent;
   const auto say_absent = [&](const std::vector<std::string>& names) {
     for (const std::string& notice : io::absence_notices(io::variables_of(names), model))
@@ -125,13 +136,10 @@ void Outputs::open_pictures(const std::string& folder, const core::Model& model,
   }
 }
 
-std::vector<std::uint64_t> Outputs::tracked() const {
-  return history_ ? history_->tracked() : std::vector<std::uint64_t>{};
-}
+std::vector<std::uint64_t> Outputs::tracked() const { return history_.tracked(); }
 
 void Outputs::say_notices() {
-  std::vector<std::string> notices{status_.notice()};
-  if (history_) notices.push_back(history_->notice());
+  std::vector<std::string> notices{status_.notice(), history_.notice()};
   if (h5part_) notices.push_back(h5part_->notice());
   if (vtu_) notices.push_back(vtu_->notice());
   for (const std::string& notice : notices) {
@@ -144,10 +152,8 @@ std::map<std::string, std::string> Outputs::marks(core::Exchange& exchange) {
   std::map<std::string, std::string> marks;
   status_.sync(exchange);
   marks[status_ending] = status_.mark().text();
-  if (history_) {
-    history_->sync(exchange);
-    marks[history_ending] = history_->mark().text();
-  }
+  history_.sync(exchange);
+  marks[history_ending] = history_.mark().text();
   if (h5part_) marks[h5part_ending] = h5part_->mark(exchange);
   if (vtu_) {
     vtu_->sync(exchange);
@@ -161,15 +167,24 @@ std::map<std::string, std::string> Outputs::marks(core::Exchange& exchange) {
 
 void Outputs::write_pictures(const core::Model& model, core::Exchange& exchange) {
   const std::int64_t step = model.clock.step;
-  if (h5part_ && h5part_->last_step() != step) h5part_->write(model, exchange);
-  if (vtu_ && vtu_->last_step() != step) vtu_->write(model, exchange);
-  if (history_) history_->flush(exchange);
+  const auto write = [&](auto& pictures) {
+    if (!pictures || pictures->last_step() == step) return;
+    core::require_finite(model, exchange);
+    pictures->write(model, exchange);
+    if (!pictures->warning().empty()) log_.warn("{}", pictures->warning());
+  };
+  write(h5part_);
+  write(vtu_);
+  history_.flush(exchange);
 }
 
 void Outputs::after_step(const core::Model& model, core::Exchange& exchange) {
   const double before = wall();
   const double now = model.clock.time;
-  if (history_) history_->add(model, exchange);
+  if (history_.each_step()) {
+    history_.add(model, exchange);
+    for (const std::string& gone : history_.gone()) log_.note("note       {}", gone);
+  }
   if (model.clock.step == 0 || pictures_.due(now)) {
     write_pictures(model, exchange);
     pictures_.done(now);
@@ -180,10 +195,19 @@ void Outputs::after_step(const core::Model& model, core::Exchange& exchange) {
 const core::Totals& Outputs::report(const core::Model& model, core::Exchange& exchange) {
   const double before = wall();
   totals_ = core::compute_totals(model, exchange);
+  const core::EnergyBalance balance = core::energy_balance(totals_, model.initial_energy);
+  core::require_finite(
+      model,
+      std::array{totals_.kinetic, totals_.internal, totals_.external_work, totals_.momentum.x,
+                 totals_.momentum.y, totals_.momentum.z, balance.total, balance.relative_drift},
+      exchange);
   status_.add(model, totals_, exchange);
+  if (!history_.each_step()) {
+    history_.add(model, {totals_.kinetic, totals_.internal}, exchange);
+    history_.flush(exchange);
+  }
   const core::Clock& clock = model.clock;
   const double end = model.scene->solution.end_time;
-  const core::EnergyBalance balance = core::energy_balance(totals_, model.initial_energy);
   if (report_step_ < 0) {
     log_.say("{:>9} {:>12} {:>10} {:>14} {:>14} {:>10} {:>9} {:>6} {:>8}", "step", "time", "dt", "kinetic",
              "internal", "drift", "particles", "done", "left");
@@ -211,7 +235,13 @@ void Outputs::finish(const core::Model& model, core::Exchange& exchange) {
   if (h5part_) h5part_->finish(exchange);
   if (vtu_) vtu_->sync(exchange);
   status_.sync(exchange);
-  if (history_) history_->sync(exchange);
+  history_.sync(exchange);
+  const auto say_cut = [&](const auto& pictures, const char* ending) {
+    const std::string text = pictures ? pictures->cut_values().total(stem_ + ending) : std::string();
+    if (!text.empty()) log_.say("counted    {}", text);
+  };
+  say_cut(h5part_, h5part_ending);
+  say_cut(vtu_, vtu_ending);
   seconds_ += wall() - before;
 }
 

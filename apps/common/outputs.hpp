@@ -79,7 +79,7 @@ class Outputs {
   std::string stem_;
   io::Log& log_;
   io::StatusFile status_;
-  std::optional<io::HistoryFile> history_;
+  io::HistoryFile history_;
   std::optional<io::H5PartWriter> h5part_;
   std::optional<io::VtuWriter> vtu_;
   Interval report_, pictures_;

@@ -19,6 +19,7 @@
 #include "core/setup/build_model.hpp"
 #include "core/setup/memory.hpp"
 #include "core/simd/denormals.hpp"
+#include "core/step/finite.hpp"
 #include "core/step/stepper.hpp"
 #include "io/output/file.hpp"
 #include "io/output/job_lock.hpp"
@@ -108,7 +109,9 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
   std::string phases;
   for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
   log.say("step       {}", phases);
-  log.say("time step  critical {:.6g}, to {:.6g} at the end", model.clock.critical_dt,
+  const double critical = model.clock.critical_dt;
+  log.say("time step  critical {}, to {:.6g} at the end",
+          std::isfinite(critical) ? fmt::format("{:.6g}", critical) : "without limit",
           model.scene->solution.end_time);
 }
 
@@ -240,7 +243,7 @@ class Run {
   std::string loop() {
     if (!case_.restart) {
       outputs_->after_step(model_, exchange_);
-      watch_->after_report(model_, outputs_->report(model_, exchange_));
+      outputs_->report(model_, exchange_);
     }
     const double end = case_.scene->solution.end_time;
     while (model_.clock.time < end * (1 - 1e-12)) {
@@ -251,7 +254,7 @@ class Run {
       particle_steps_ += static_cast<double>(model_.local_particles());
       watch_->after_step(model_, stepper_->incidents(), exchange_, *log_);
       outputs_->after_step(model_, exchange_);
-      if (outputs_->report_due(model_)) watch_->after_report(model_, outputs_->report(model_, exchange_));
+      if (outputs_->report_due(model_)) outputs_->report(model_, exchange_);
       if (restart_.due(model_.clock.time)) {
         save();
         restart_.done(model_.clock.time);
@@ -269,6 +272,7 @@ class Run {
   void save() {
     const io::RestartExtra extra{case_.bytes, outputs_->tracked(), outputs_->marks(exchange_)};
     const double before = clock_.seconds();
+    core::require_finite(model_, exchange_);
     const std::string path =
         io::write_restart(options_.output_dir, case_.scene->provenance.job_name, model_, extra, exchange_);
     log_->say("restart    {} at step {}, time {:.6g}", path, model_.clock.step, model_.clock.time);
@@ -320,6 +324,7 @@ class Run {
           totals.removed_internal);
     }
     say_what_was_counted();
+    watch_->conclude(*log_);
     if (status == "failed") {
       log_->say("FAILED     {}", reason);
       if (!last_restart_.empty()) log_->say("           the last good state is in {}", last_restart_);

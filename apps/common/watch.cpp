@@ -1,34 +1,14 @@
 #include "apps/common/watch.hpp"
 
+#include <array>
 #include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "core/step/migration.hpp"
+#include "core/step/finite.hpp"
 #include "core/step/witness.hpp"
 
 namespace mpm::apps {
-
-namespace {
-
-core::Witness first_with_negative_energy(const core::Model& model) {
-  core::Witness first;
-  std::vector<double> columns;
-  core::for_each_block(model, [&](int body, const core::ColumnLayout& layout, const double* block, int used) {
-    for (int lane = 0; lane < used; ++lane) {
-      if (!(block[layout.offset(core::Column::internal_energy) + lane] < 0)) continue;
-      first.offer(block[layout.offset(core::Column::identity) + lane], [&] {
-        columns.clear();
-        for (int c = 0; c < layout.columns(); ++c) columns.push_back(block[core::block_lanes * c + lane]);
-        return core::describe_particle(model.bodies[static_cast<std::size_t>(body)], columns.data());
-      });
-    }
-  });
-  return first;
-}
-
-}  // namespace
 
 Watch::Watch(const core::Scene& scene, double time) : warn_(scene.solution.warn), scene_(scene) {
   const auto note = [&](const auto& points, const std::string& body, const char* load) {
@@ -51,30 +31,57 @@ void Watch::after_step(const core::Model& model, const core::Stepper::Incidents&
     log.warn("time {:.6g}: the last Coefficient of {} has passed, its load is zero from now on",
              model.clock.time, load_ends_.begin()->second);
   }
+  if (scene_.solution.energy_fraction) check_energy(model, exchange);
   if (!warn_.negative_internal_energy && !warn_.negative_volume && !warn_.outside_grid) return;
   std::int64_t counts[3] = {warn_.negative_internal_energy ? mine.events.negative_energy : 0,
                             warn_.negative_volume ? mine.events.negative_volume : 0,
                             warn_.outside_grid ? mine.left_grid : 0};
   exchange.sum(std::span<std::int64_t>(counts));
-  static constexpr const char* words[3] = {"with internal energy below zero",
-                                           "whose volume would have vanished", "left the grid"};
   for (int i = 0; i < 3; ++i) {
-    if (counts[i] == 0) continue;
-    if (warn_.level == core::WarnInput::Level::per_particle && warned_[i]) continue;
-    std::string text = fmt::format("step {}, time {:.6g}: {} particle(s) {}", model.clock.step,
-                                   model.clock.time, counts[i], words[i]);
-    const core::Witness first = i == 0   ? first_with_negative_energy(model)
-                                : i == 2 ? mine.first_left
-                                         : core::Witness{};
-    if (i != 1) text += "; the first: " + core::first_of_all(exchange, first).words;
-    if (warn_.level == core::WarnInput::Level::stop) throw core::NumericalFailure(text);
-    warned_[i] = true;
-    log.warn("{}", text);
+    Kind& kind = kinds_[i];
+    kind.incidents += counts[i];
+    const bool all_named = kind.named.size() == core::Witnesses::most;
+    if (counts[i] == 0 || all_named) continue;
+    warn(kind, counts[i],
+         core::first_of_all(exchange, i == 0   ? mine.negative
+                                      : i == 1 ? mine.vanishing
+                                               : mine.first_left),
+         model, log);
   }
 }
 
-void Watch::after_report(const core::Model& model, const core::Totals& totals) const {
-  if (!scene_.solution.energy_fraction) return;
+/// `first`: of all ranks.
+void Watch::warn(Kind& kind, std::int64_t count, const core::Witnesses& first, const core::Model& model,
+                 io::Log& log) const {
+  const std::string when = fmt::format("step {}, time {:.6g}: ", model.clock.step, model.clock.time);
+  if (warn_.level == core::WarnInput::Level::per_particle) {
+    for (const auto& [identity, words] : first.words()) {
+      if (kind.named.size() == core::Witnesses::most || !kind.named.insert(identity).second) continue;
+      log.warn("{}{} {}", when, words, kind.words);
+      if (kind.named.size() == core::Witnesses::most)
+        log.warn("these were {} particles {}: from now on they are only counted", core::Witnesses::most,
+                 kind.words);
+    }
+    return;
+  }
+  std::string text = fmt::format("{}{} particle(s) {}", when, count, kind.words);
+  if (!first.empty()) text += "; the first: " + first.words().begin()->second;
+  if (warn_.level == core::WarnInput::Level::stop) throw core::NumericalFailure(text);
+  log.warn("{}", text);
+}
+
+void Watch::conclude(io::Log& log) const {
+  if (warn_.level != core::WarnInput::Level::per_particle) return;
+  for (const Kind& kind : kinds_) {
+    if (kind.incidents > 0)
+      log.say("counted    {} particle(s) {}, added over the steps; {} named above", kind.incidents,
+              kind.words, kind.named.size());
+  }
+}
+
+void Watch::check_energy(const core::Model& model, core::Exchange& exchange) const {
+  const core::Totals totals = core::compute_energy_totals(model, exchange);
+  core::require_finite(model, std::array{totals.kinetic, totals.internal, totals.external_work}, exchange);
   const double drift = core::energy_balance(totals, model.initial_energy).relative_drift;
   if (std::abs(drift) <= *scene_.solution.energy_fraction) return;
   throw core::NumericalFailure(fmt::format(

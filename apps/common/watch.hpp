@@ -1,9 +1,9 @@
 // The scene's guards: Warn, EnergyFraction, near_boundary_stop, loads that end. Only those that it asks for
-// cost anything.
+// cost anything. What they say is the same on any ranks and threads.
 #pragma once
 
 #include <map>
-#include <optional>
+#include <set>
 #include <string>
 
 #include "core/model.hpp"
@@ -18,19 +18,32 @@ class Watch {
   /// `time`: of the run's start.
   Watch(const core::Scene& scene, double time);
 
-  /// Warnings of the step just done. Throws core::NumericalFailure at level 2, on every rank. Collective.
+  /// Warnings of the step just done. Throws core::NumericalFailure at level 2, and if the energy error
+  /// exceeds EnergyFraction, on every rank. Collective.
   void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Exchange& exchange,
                   io::Log& log);
-  /// Throws core::NumericalFailure if the energy error exceeds EnergyFraction, on every rank.
-  void after_report(const core::Model& model, const core::Totals& totals) const;
+  /// What level 1 has counted beyond the particles that it named.
+  void conclude(io::Log& log) const;
   /// True, on all ranks, if the scene wants to stop near the boundary and a particle is in the outermost
   /// cells of an open face. Collective.
   bool near_boundary(const core::Model& model, core::Exchange& exchange) const;
 
  private:
+  /// Something unphysical that a particle may do.
+  struct Kind {
+    const char* words;
+    std::set<double> named;      ///< identities, at level 1
+    std::int64_t incidents = 0;  ///< of all ranks, particles times steps
+  };
+  void warn(Kind& kind, std::int64_t count, const core::Witnesses& first, const core::Model& model,
+            io::Log& log) const;
+  void check_energy(const core::Model& model, core::Exchange& exchange) const;
+
   core::WarnInput warn_;
   const core::Scene& scene_;
-  bool warned_[3] = {};
+  Kind kinds_[3] = {{"with internal energy below zero", {}, 0},
+                    {"whose volume would have vanished", {}, 0},
+                    {"left the grid", {}, 0}};
   std::multimap<double, std::string> load_ends_;  ///< when a table of a load ends, and whose it is
 };
 

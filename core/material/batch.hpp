@@ -4,6 +4,8 @@
 // the next lives in scratch rows here, which stay in the first-level cache.
 #pragma once
 
+#include <cstdint>
+
 #include "core/particles/columns.hpp"
 #include "core/tensor/tensor.hpp"
 
@@ -84,6 +86,8 @@ struct Batch {
   alignas(64) Row sound_speed;     ///< longitudinal wave speed c; filled where the layout has that column
   alignas(64) Row critical_speed;  ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is not to count
   MaterialEvents events;
+  /// Lanes that events.negative_volume and events.negative_energy count, a bit each.
+  std::uint64_t vanishing = 0, negative = 0;
 
   double* column(Column c, int b) { return block[b] + layout->offset(c); }
 };

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "core/discretise/seeds.hpp"
+#include "core/setup/first_step.hpp"
 #include "core/setup/memory.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/migration.hpp"
@@ -350,22 +351,24 @@ void discretise(Model& model, Exchange& exchange) {
 }
 
 void start_clock(Model& model, Exchange& exchange) {
-  double fastest = 0;
+  Fastest fastest;
   for_each_batch(model, [&](Body& body, Batch& batch) {
     body.model->initialise(batch, model.options);
-    const int velocity_at = batch.layout->offset(Column::velocity_x);
-    for (int i = 0; i < batch.particles; ++i) {
-      const double* v = batch.block[i / block_lanes] + velocity_at + i % block_lanes;
-      const double vv =
-          v[0] * v[0] + v[block_lanes] * v[block_lanes] + v[2 * block_lanes] * v[2 * block_lanes];
-      fastest = std::max(fastest, batch.critical_speed[i] + std::sqrt(vv));
-    }
+    for (int i = 0; i < batch.particles; ++i)
+      fastest.offer(static_cast<int>(&body - model.bodies.data()), batch, i);
   });
-  double critical[1] = {std::min(critical_step(*model.grid, fastest), conduction_step(model))};
+  refuse_undefined(model, exchange);
+  double critical[1] = {std::min(critical_step(*model.grid, fastest.speed), conduction_step(model))};
   exchange.minimum(critical);
   model.clock.critical_dt = model.clock.first_critical_dt = critical[0];
+  refuse_endless(model, fastest, exchange);
   const Totals totals = compute_totals(model, exchange);
   model.initial_energy = totals.kinetic + totals.internal;
+  if (!std::isfinite(model.initial_energy)) {
+    throw InputErrors(
+        model.scene->components.front().source, "Component",
+        "the energies of all particles together are beyond the range of numbers: check the units");
+  }
 }
 
 }  // namespace mpm::core

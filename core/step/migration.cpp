@@ -144,9 +144,10 @@ void Migration::merge(Harvest& h) {
   }
   wanted_.insert(wanted_.end(), h.wanted.begin(), h.wanted.end());
   left_now_ += h.left;
-  if (!h.first_left.empty()) first_left_.offer(h.first_left.identity, [&] { return h.first_left.words; });
+  first_left_.merge(h.first_left);
   if (!h.complaint.empty()) complaint_.offer(h.complaint.identity, [&] { return h.complaint.words; });
-  h.first_left = h.complaint = {};
+  h.first_left = {};
+  h.complaint = {};
   if (h.books.eroded + h.books.left_grid > 0) {
     books.removed_mass += h.books.removed_mass;
     books.removed_kinetic += h.books.removed_kinetic;
@@ -169,7 +170,8 @@ void Migration::merge(Harvest& h) {
 void Migration::collect(std::vector<std::vector<Leaver>>& leavers) {
   wanted_.clear();
   left_now_ = 0;
-  first_left_ = complaint_ = {};
+  first_left_ = {};
+  complaint_ = {};
   for_each_by_threads(
       std::size_t{0}, leavers.size(), 16,
       [&](std::size_t s) {

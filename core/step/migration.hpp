@@ -32,9 +32,9 @@ class Migration {
 
   /// A problem of the last collect() that ends the run; empty if there is none.
   const Witness& complaint() const { return complaint_; }
-  /// Particles that left the grid in the last collect(), and the first of them.
+  /// Particles that left the grid in the last collect(), and the first few of them.
   std::int64_t left_now() const { return left_now_; }
-  const Witness& first_left() const { return first_left_; }
+  const Witnesses& first_left() const { return first_left_; }
 
  private:
   /// What one thread finds; threads share the bricks out among themselves.
@@ -43,7 +43,8 @@ class Migration {
     std::vector<BrickCoord> wanted;
     Books books;
     std::int64_t left = 0;
-    Witness first_left, complaint;
+    Witnesses first_left;
+    Witness complaint;
   };
   void collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& harvest);
   void dispose(std::size_t body, const double* columns, bool eroded, Harvest& harvest) const;
@@ -56,7 +57,8 @@ class Migration {
   std::vector<BrickCoord> wanted_;
   std::vector<int> columns_of_;
   std::int64_t left_now_ = 0;
-  Witness first_left_, complaint_;
+  Witnesses first_left_;
+  Witness complaint_;
 };
 
 /// Append travellers to their bricks, which must be ours: each cohort's in ascending order of identity.

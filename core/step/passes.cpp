@@ -235,8 +235,10 @@ template <bool moves, class F>
         if constexpr (moves) { move(body, place, block, cohort.used_lanes(at_block), at); }
       }
       batch.events = {};
+      batch.vanishing = batch.negative = 0;
       body.model->update(batch, model_.options);
       at.found.events += batch.events;
+      if ((batch.vanishing | batch.negative) != 0) note_unphysical(body, batch, at.found);
       keep_sound_speed(batch);
       if (velocities == Velocities::of_next_step)
         at.found.fastest = fastest_particle(batch, at.found.fastest);
@@ -423,6 +425,8 @@ StepFindings Passes::take_findings() {
     total.fastest = std::max(total.fastest, w.found.fastest);
     total.limited += w.found.limited;
     total.events += w.found.events;
+    total.vanishing.merge(w.found.vanishing);
+    total.negative.merge(w.found.negative);
     total.work += w.found.work;
     w.found = {};
   }

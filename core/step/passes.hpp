@@ -12,6 +12,7 @@
 #include "core/step/loads.hpp"
 #include "core/step/node_update.hpp"
 #include "core/step/particles_to_grid.hpp"
+#include "core/step/witness.hpp"
 
 namespace mpm::core {
 
@@ -27,7 +28,8 @@ struct StepFindings {
   double fastest = 0;        ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
   std::int64_t limited = 0;  ///< velocities held by LimitVelocity
   MaterialEvents events;
-  ExactSum work;  ///< external work
+  Witnesses vanishing, negative;  ///< particles of negative volume and energy, where the scene watches them
+  ExactSum work;                  ///< external work
 };
 
 class Passes {
@@ -105,6 +107,7 @@ class Passes {
   ContributionsAhead<of> nodes_ahead(Slot s) const;
   RoomAhead motion_ahead(Slot s);
   void move(const Body& body, const BlockPlace& place, double* block, int used, Workplace& at);
+  void note_unphysical(const Body& body, const Batch& batch, StepFindings& found) const;
   void book_motion(const ColumnLayout& layout, const double* block, int used, Workplace& at) const;
   void note_leavers(Slot s, std::size_t cohort, std::size_t b, const BrickFrame& frame,
                     const ColumnLayout& layout, const double* block, int used);

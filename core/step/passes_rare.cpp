@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/step/migration.hpp"
 #include "core/step/passes.hpp"
 
 namespace mpm::core {
@@ -47,6 +48,24 @@ void Passes::fly_on(const Body& body, const BlockPlace& place, double* block, in
       v = free;
     }
   }
+}
+
+void Passes::note_unphysical(const Body& body, const Batch& batch, StepFindings& found) const {
+  const ColumnLayout& layout = *batch.layout;
+  const auto note = [&](std::uint64_t lanes, Witnesses& among) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctzll(lanes);
+      const double* values = batch.block[lane / block_lanes] + lane % block_lanes;
+      among.offer(values[layout.offset(Column::identity)], [&] {
+        double columns[column_count];
+        for (int c = 0; c < layout.columns(); ++c) columns[c] = values[block_lanes * c];
+        return describe_particle(body, columns);
+      });
+    }
+  };
+  const WarnInput& warn = model_.scene->solution.warn;
+  if (warn.negative_volume) note(batch.vanishing, found.vanishing);
+  if (warn.negative_internal_energy) note(batch.negative, found.negative);
 }
 
 /// The work of gravity and damping in the motion that a block has just made from at.before.

@@ -7,40 +7,14 @@
 
 #include <fmt/format.h>
 
+#include "core/step/finite.hpp"
+
 namespace mpm::core {
 
 namespace {
 
 /// A step this much shorter than the first one leads nowhere: the run would not end.
 constexpr double smallest_step_ratio = 1e-7;
-
-/// The rank's particle with the smallest identity whose state is not all numbers; empty if none.
-Witness first_not_finite(const Model& model) {
-  Witness first;
-  std::vector<double> columns;
-  for_each_block(model, [&](int body_index, const ColumnLayout& layout, const double* block, int used) {
-    for (int lane = 0; lane < used; ++lane) {
-      columns.clear();
-      bool finite = true;
-      for (int c = 0; c < layout.columns(); ++c) {
-        columns.push_back(block[block_lanes * c + lane]);
-        finite = finite && std::isfinite(columns.back());
-      }
-      if (finite) continue;
-      first.offer(block[layout.offset(Column::identity) + lane], [&] {
-        std::string words =
-            describe_particle(model.bodies[static_cast<std::size_t>(body_index)], columns.data()) + ":";
-        for (int c = 0; c < column_count; ++c) {
-          const auto column = static_cast<Column>(c);
-          if (layout.has(column))
-            words += fmt::format(" {}={:.6g}", name_of(column), block[layout.offset(column) + lane]);
-        }
-        return words;
-      });
-    }
-  });
-  return first;
-}
 
 }  // namespace
 
@@ -77,6 +51,11 @@ void Stepper::choose_time_step() {
                                 : factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
   // The last step ends on time.
   dt = std::min(dt, model_.scene->solution.end_time - clock.time);
+  if (!(clock.time + dt > clock.time)) {
+    throw NumericalFailure(fmt::format(
+        "step {}, time {:.9g}: a time step of {:.3g} does not advance the time any more; the fastest: {}",
+        clock.step + 1, clock.time, dt, fastest_in_words(model_, exchange_)));
+  }
   clock.dt = dt;
   passes_.begin_step(dt);
 }
@@ -89,7 +68,8 @@ void Stepper::agree() {
   books.velocity_limited += found.limited;
   books.events += found.events;
   books.failed += found.events.failed;
-  incidents_ = {found.events, migration_.left_now(), migration_.first_left()};
+  incidents_ = {found.events, found.vanishing, found.negative, migration_.left_now(),
+                migration_.first_left()};
 
   // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to
   // stop.

@@ -44,8 +44,9 @@ class Stepper {
   /// Of the last step, on this rank: for the scene's warnings.
   struct Incidents {
     MaterialEvents events;
+    Witnesses vanishing, negative;
     std::int64_t left_grid = 0;
-    Witness first_left;
+    Witnesses first_left;
   };
   const Incidents& incidents() const { return incidents_; }
 

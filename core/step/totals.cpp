@@ -249,17 +249,21 @@ Totals compute_totals(const Model& model, Exchange& exchange) {
   return totals;
 }
 
-Energies compute_energies(const Model& model, Exchange& exchange) {
-  struct Pair {
-    ExactSum kinetic, internal;
-    void merge(const Pair& other) {
-      kinetic += other.kinetic;
-      internal += other.internal;
-    }
-  };
+namespace {
+
+struct EnergySums {
+  ExactSum kinetic, internal;
+  void merge(const EnergySums& other) {
+    kinetic += other.kinetic;
+    internal += other.internal;
+  }
+};
+
+/// Of this rank's particles.
+EnergySums energy_sums(const Model& model) {
   const std::vector<double> inverse_density = inverse_densities(model);
-  std::vector<Pair> local(1);
-  over_bricks(model, local, [&](const Brick& brick, std::vector<Pair>& to) {
+  std::vector<EnergySums> local(1);
+  over_bricks(model, local, [&](const Brick& brick, std::vector<EnergySums>& to) {
     over_blocks(model, brick, {0, model.bodies.size()},
                 [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
                   const BlockEnergies sum = energies_of(layout, block, used, inverse_density[body]);
@@ -267,9 +271,31 @@ Energies compute_energies(const Model& model, Exchange& exchange) {
                   to[0].internal.add(sum.internal);
                 });
   });
-  std::array<ExactSum, 2> sum{local[0].kinetic, local[0].internal};
+  return local[0];
+}
+
+}  // namespace
+
+Energies compute_energies(const Model& model, Exchange& exchange) {
+  const EnergySums local = energy_sums(model);
+  std::array<ExactSum, 2> sum{local.kinetic, local.internal};
   exchange.sum(std::span<ExactSum>(sum));
   return {sum[0].value(), sum[1].value()};
+}
+
+Totals compute_energy_totals(const Model& model, Exchange& exchange) {
+  const EnergySums local = energy_sums(model);
+  const Books& books = model.books;
+  std::array<ExactSum, 5> sum{local.kinetic, local.internal, books.external_work, books.removed_kinetic,
+                              books.removed_internal};
+  exchange.sum(std::span<ExactSum>(sum));
+  Totals totals;
+  totals.kinetic = sum[0].value();
+  totals.internal = sum[1].value();
+  totals.external_work = sum[2].value();
+  totals.removed_kinetic = sum[3].value();
+  totals.removed_internal = sum[4].value();
+  return totals;
 }
 
 EnergyBalance energy_balance(const Totals& totals, double initial_energy) {

@@ -60,6 +60,9 @@ struct Energies {
 /// The energies of compute_totals alone, cheap enough for every step. Collective.
 Energies compute_energies(const Model& model, Exchange& exchange);
 
+/// What energy_balance() asks of compute_totals, to the last bit, and nothing else. Collective.
+Totals compute_energy_totals(const Model& model, Exchange& exchange);
+
 struct EnergyBalance {
   double total = 0;  ///< kinetic + internal of the particles present
   /// What is there and what has left, less what has come in, less the initial energy; over the largest of

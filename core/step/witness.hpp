@@ -2,8 +2,13 @@
 // the same on any ranks and threads.
 #pragma once
 
+#include <cstdlib>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "core/step/exchange.hpp"
 
@@ -22,6 +27,45 @@ struct Witness {
     words = other_words();
   }
 };
+
+/// The first few, in ascending order of identity.
+class Witnesses {
+ public:
+  static constexpr std::size_t most = 20;
+
+  bool empty() const { return words_.empty(); }
+  const std::map<double, std::string>& words() const { return words_; }
+  /// As Witness::offer.
+  template <class F>
+  void offer(double identity, F words) {
+    if (words_.size() == most && identity >= words_.rbegin()->first) return;
+    const auto [at, is_new] = words_.try_emplace(identity);
+    if (is_new) at->second = words();
+    if (words_.size() > most) words_.erase(std::prev(words_.end()));
+  }
+  void merge(const Witnesses& other) {
+    for (const auto& [identity, words] : other.words_) offer(identity, [&words = words] { return words; });
+  }
+
+ private:
+  std::map<double, std::string> words_;
+};
+
+/// The first few over all ranks. Collective.
+inline Witnesses first_of_all(Exchange& exchange, const Witnesses& mine) {
+  std::string lines;
+  for (const auto& [identity, words] : mine.words()) lines += fmt::format("{:.17g} {}\n", identity, words);
+  Witnesses all;
+  for (const std::string& of_rank : exchange.gather(lines)) {
+    for (std::size_t at = 0; at < of_rank.size();) {
+      const std::size_t space = of_rank.find(' ', at), end = of_rank.find('\n', at);
+      all.offer(std::strtod(of_rank.c_str() + at, nullptr),
+                [&] { return of_rank.substr(space + 1, end - space - 1); });
+      at = end + 1;
+    }
+  }
+  return all;
+}
 
 /// The first over all ranks. Collective.
 inline Witness first_of_all(Exchange& exchange, const Witness& mine) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -68,35 +69,40 @@ std::vector<BodyFacts> facts_of_all(const core::Model& model) {
   return facts;
 }
 
+/// Returns how many values were cut.
 template <class T>
-void fill(const core::Model& model, const RowBatch& batch, const Field& field,
-          const std::vector<BodyFacts>& facts, std::byte* memory) {
+std::int64_t fill(const core::Model& model, const RowBatch& batch, const Field& field,
+                  const std::vector<BodyFacts>& facts, std::byte* memory) {
   T* out = reinterpret_cast<T*>(memory);
+  std::int64_t all_cut = 0;
   for_each_block(model, batch,
                  [&](std::size_t body, const core::ColumnLayout& layout, const double* block, int used,
                      std::size_t first) {
                    const double* identity = block + layout.offset(core::Column::identity);
+                   std::int64_t cut = 0;
                    for (int i = 0; i < used; ++i) {
                      const double value = field.kind == Kind::identity
                                               ? identity[i]
                                               : evaluate(field.variable, layout, block, i, facts[body]);
-                     out[first + static_cast<std::size_t>(i)] = static_cast<T>(value);
+                     out[first + static_cast<std::size_t>(i)] = narrowed<T>(value, cut);
+                   }
+                   if (cut > 0) {
+#pragma omp atomic
+                     all_cut += cut;
                    }
                  });
+  return all_cut;
 }
 
-void fill(const core::Model& model, const RowBatch& batch, const Field& field, bool double_precision,
-          const std::vector<BodyFacts>& facts, std::byte* memory) {
+std::int64_t fill(const core::Model& model, const RowBatch& batch, const Field& field, bool double_precision,
+                  const std::vector<BodyFacts>& facts, std::byte* memory) {
   switch (field.kind) {
-    case Kind::identity: fill<std::int64_t>(model, batch, field, facts, memory); break;
-    case Kind::integer: fill<std::int32_t>(model, batch, field, facts, memory); break;
-    case Kind::real:
-      if (double_precision) {
-        fill<double>(model, batch, field, facts, memory);
-      } else {
-        fill<float>(model, batch, field, facts, memory);
-      }
+    case Kind::identity: return fill<std::int64_t>(model, batch, field, facts, memory);
+    case Kind::integer: return fill<std::int32_t>(model, batch, field, facts, memory);
+    case Kind::real: break;
   }
+  return double_precision ? fill<double>(model, batch, field, facts, memory)
+                          : fill<float>(model, batch, field, facts, memory);
 }
 
 }  // namespace
@@ -179,21 +185,30 @@ void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchan
   const std::vector<BodyFacts> facts = facts_of_all(model);
   std::vector<std::uint64_t> checksums(fields_.size());
   std::vector<SharedRows> datasets;
+  // By field and batch: each may be filled more than once.
+  std::vector<std::vector<std::int64_t>> cut(fields_.size(), std::vector<std::int64_t>(batches.size()));
   for (std::size_t f = 0; f < fields_.size(); ++f) {
     const Field& field = fields_[f];
+    std::vector<std::int64_t>& of_field = cut[f];
     datasets.push_back({std::string(work) + "/" + field.name,
                         type_of(field.kind, settings_.double_precision).bytes, batches,
                         [&](const RowBatch& batch, std::byte* memory) {
-                          fill(model, batch, field, settings_.double_precision, facts, memory);
+                          of_field[static_cast<std::size_t>(&batch - batches.data())] =
+                              fill(model, batch, field, settings_.double_precision, facts, memory);
                         },
                         &checksums[f]});
   }
   const std::vector<Extent> extents = write_together(settings_.path, datasets, exchange);
   sum_checksums(checksums, exchange);
   unnamed_.clear();
+  std::vector<std::string> names;
+  std::vector<std::int64_t> counts;
   for (std::size_t f = 0; f < fields_.size(); ++f) {
     if (extents[f].size > 0) unnamed_.push_back({extents[f], datasets[f].bytes, checksums[f]});
+    names.push_back(fields_[f].name);
+    counts.push_back(std::accumulate(cut[f].begin(), cut[f].end(), std::int64_t{0}));
   }
+  warning_ = cut_.warning(settings_.path, model.clock.step, names, std::move(counts), exchange);
 }
 
 void H5PartWriter::name_step() {

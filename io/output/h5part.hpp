@@ -2,6 +2,8 @@
 // schema: A. Adelmann et al., vis.lbl.gov/Research/AcceleratorSAPP). ParaView joins name_0, name_1, name_2 to
 // a vector.
 //
+// Reals are 32-bit floats; what is beyond them is cut (narrowing.hpp).
+//
 // Every group has the attributes TimeValue and step, and x, y, z, velocity_0..2 (reals), id (64-bit), body
 // (32-bit) and the variables asked for. Rows are in the order of particle_order.hpp.
 //
@@ -19,6 +21,7 @@
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
 #include "io/output/h5part_mark.hpp"
+#include "io/output/narrowing.hpp"
 #include "io/output/variables.hpp"
 
 namespace mpm::io {
@@ -50,6 +53,10 @@ class H5PartWriter {
   /// What the user should know about a file that could not be continued; mostly empty.
   const std::string& notice() const { return notice_; }
 
+  /// What the last write() cut for the first time; mostly empty. The same on all ranks.
+  const std::string& warning() const { return warning_; }
+  const CutValues& cut_values() const { return cut_; }
+
   struct Field {
     enum class Kind { identity, integer, real };
     std::string name;
@@ -69,7 +76,8 @@ class H5PartWriter {
   std::vector<Field> fields_;
   H5PartMark mark_;                        ///< without the file's size and other bytes; `head` on rank 0
   std::vector<H5PartMark::Rows> unnamed_;  ///< of the time that is being made
-  std::string notice_;
+  std::string notice_, warning_;
+  CutValues cut_;
 };
 
 }  // namespace mpm::io

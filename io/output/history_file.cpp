@@ -1,12 +1,15 @@
 #include "io/output/history_file.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
-#include "core/step/totals.hpp"
+#include "core/step/finite.hpp"
+#include "io/output/narrowing.hpp"
 #include "io/output/provenance.hpp"
 
 namespace mpm::io {
@@ -83,6 +86,12 @@ std::vector<core::Slot> candidates(const core::BrickGrid& grid, const std::optio
   return slots;
 }
 
+/// A ratio or a square may be beyond the range of numbers where what it is made of is not.
+double finite(double value) {
+  std::int64_t cut = 0;
+  return narrowed<double>(value, cut);
+}
+
 double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b) {
   const core::Vec3<double> d = a - b;
   return dot(d, d);
@@ -93,23 +102,30 @@ double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b
 HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
                          std::optional<Continuation> continuation, core::Exchange& exchange)
     : targets_(targets_of(*model.scene)) {
-  std::size_t particles = 0;
   for (Target& t : targets_) {
     t.first = record_;
     record_ += first_value + t.variables.size();
-    particles += t.particle;
+    t.values.resize(t.variables.size());
   }
-  if (continuation && continuation->tracked.size() == particles) {
-    std::size_t next = 0;
-    for (Target& t : targets_) {
-      if (t.particle) t.identity = continuation->tracked[next++];
-    }
-  } else {
-    choose_particles(model, exchange);
-  }
+  if (!continuation || !recall(continuation->tracked)) choose_particles(model, exchange);
   std::optional<TableContinuation> rows;
   if (continuation) rows = continuation->rows;
   file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(), rows, exchange);
+}
+
+/// False where it is not of these targets.
+bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
+  std::size_t length = 0;
+  for (const Target& t : targets_) length += t.particle ? 2 + t.values.size() : 0;
+  if (tracked.size() != length) return false;
+  auto next = tracked.begin();
+  for (Target& t : targets_) {
+    if (!t.particle) continue;
+    t.identity = *next++;
+    t.present = *next++ != 0;
+    for (double& value : t.values) value = std::bit_cast<double>(*next++);
+  }
+  return true;
 }
 
 std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scene) {
@@ -117,8 +133,9 @@ std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scen
   for (const core::TimeHistoryInput& history : scene.output.histories) {
     const std::vector<Variable> variables = variables_of(history.variables);
     for (const auto& p : history.particles)
-      targets.push_back({to_vec(p), true, variables, 0, no_identity, {}});
-    for (const auto& p : history.points) targets.push_back({to_vec(p), false, variables, 0, no_identity, {}});
+      targets.push_back({to_vec(p), true, variables, 0, no_identity, false, {}, {}});
+    for (const auto& p : history.points)
+      targets.push_back({to_vec(p), false, variables, 0, no_identity, false, {}, {}});
   }
   return targets;
 }
@@ -144,8 +161,9 @@ void HistoryFile::choose_particles(const core::Model& model, core::Exchange& exc
   }
   exchange.minimum(identity);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (targets_[i].particle && identity[i] < infinity)
-      targets_[i].identity = static_cast<std::uint64_t>(identity[i]);
+    if (!targets_[i].particle || identity[i] == infinity) continue;
+    targets_[i].identity = static_cast<std::uint64_t>(identity[i]);
+    targets_[i].present = true;
   }
 }
 
@@ -159,6 +177,7 @@ std::string HistoryFile::head() const {
     for (const Variable v : t.variables) {
       add(fmt::format("{}[{}{}]", info_of(v).name, t.particle ? "particle" : "point", n));
     }
+    if (t.particle) add(fmt::format("present[particle{}]", n));
   }
   return head;
 }
@@ -176,13 +195,17 @@ std::string HistoryFile::legend() const {
       text += fmt::format("# particle{}: identity {}, nearest to {}\n", ++particles, t.identity, where);
     }
   }
+  if (particles > 0)
+    text +=
+        "# present[particle]: 1; 0 once it is eroded or has left the grid, its other columns then keep their "
+        "last values\n";
   return text;
 }
 
 void HistoryFile::look_up(const core::Model& model, int reach, std::vector<double>& values) const {
   for (const Target& t : targets_) {
     double* record = &values[t.first];
-    if (!t.particle || t.identity == no_identity || *record == 0) continue;
+    if (!t.particle || !t.present || *record == 0) continue;
     for (const core::Slot s : candidates(*model.grid, t.last, reach)) {
       const auto found = find_in(model, model.grid->brick(s), t.identity);
       if (!found) continue;
@@ -194,7 +217,7 @@ void HistoryFile::look_up(const core::Model& model, int reach, std::vector<doubl
       const BodyFacts facts = facts_of(model, static_cast<std::size_t>(found->body));
       for (std::size_t v = 0; v < t.variables.size(); ++v) {
         record[first_value + v] =
-            evaluate(t.variables[v], found->pool->layout(), found->block, found->lane, facts);
+            finite(evaluate(t.variables[v], found->pool->layout(), found->block, found->lane, facts));
       }
       break;
     }
@@ -221,25 +244,29 @@ void HistoryFile::average(const core::Model& model, const Target& t, std::vector
     weights += w;
     const BodyFacts facts = facts_of(model, static_cast<std::size_t>(at.body));
     for (std::size_t v = 0; v < sums.size(); ++v) {
-      sums[v] += w * evaluate(t.variables[v], at.pool->layout(), at.block, at.lane, facts);
+      sums[v] += w * finite(evaluate(t.variables[v], at.pool->layout(), at.block, at.lane, facts));
     }
     return true;
   });
   if (!(weights > 0)) return;
   values[t.first] = 0;
-  for (std::size_t v = 0; v < sums.size(); ++v) values[t.first + first_value + v] = sums[v] / weights;
+  for (std::size_t v = 0; v < sums.size(); ++v) values[t.first + first_value + v] = finite(sums[v] / weights);
 }
 
 void HistoryFile::add(const core::Model& model, core::Exchange& exchange) {
   const core::Energies energies = core::compute_energies(model, exchange);
+  core::require_finite(model, std::array{energies.kinetic, energies.internal}, exchange);
+  add(model, energies, exchange);
+}
+
+void HistoryFile::add(const core::Model& model, const core::Energies& energies, core::Exchange& exchange) {
   std::vector<double> values(record_, infinity);
   for (const Target& t : targets_) {
     if (!t.particle) average(model, t, values);
   }
   const auto missing = [&] {
-    return std::any_of(targets_.begin(), targets_.end(), [&](const Target& t) {
-      return t.particle && t.identity != no_identity && values[t.first] != 0;
-    });
+    return std::any_of(targets_.begin(), targets_.end(),
+                       [&](const Target& t) { return t.particle && t.present && values[t.first] != 0; });
   };
   for (int reach = same_brick; reach <= everywhere && (reach == same_brick || missing()); ++reach) {
     look_up(model, reach, values);
@@ -249,29 +276,43 @@ void HistoryFile::add(const core::Model& model, core::Exchange& exchange) {
   std::string row = fmt::format("{:>{}}", model.clock.step, width);
   const auto put = [&](double value) { row += fmt::format(" {:>{}.16e}", value, width); };
   for (const double value : {model.clock.time, energies.kinetic, energies.internal}) put(value);
+  gone_.clear();
+  int particles = 0;
   for (Target& t : targets_) {
     const double* record = &values[t.first];
     const bool found = record[0] == 0;
-    const double otherwise = t.particle ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-    for (std::size_t v = 0; v < t.variables.size(); ++v) put(found ? record[first_value + v] : otherwise);
-    if (!t.particle) continue;
-    if (!found) {
-      t.identity = no_identity;  // eroded, or left the grid
-      continue;
+    for (std::size_t v = 0; v < t.values.size(); ++v) {
+      if (found || !t.particle) t.values[v] = found ? record[first_value + v] : 0.0;
+      put(t.values[v]);
     }
-    const double* b = record + place_entry;
-    t.last = {static_cast<std::int32_t>(b[0]), static_cast<std::int32_t>(b[1]),
-              static_cast<std::int32_t>(b[2])};
+    if (!t.particle) continue;
+    ++particles;
+    row += fmt::format(" {:>{}}", found ? 1 : 0, width);
+    if (found) {
+      const double* b = record + place_entry;
+      t.last = {static_cast<std::int32_t>(b[0]), static_cast<std::int32_t>(b[1]),
+                static_cast<std::int32_t>(b[2])};
+    } else if (t.present) {
+      t.present = false;
+      gone_.push_back(
+          fmt::format("step {}, time {:.6g}: particle{} of the time histories (identity {}) is eroded or has "
+                      "left the grid; "
+                      "its columns keep their last values",
+                      model.clock.step, model.clock.time, particles, t.identity));
+    }
   }
   file_->add(model.clock.step, row);
 }
 
 std::vector<std::uint64_t> HistoryFile::tracked() const {
-  std::vector<std::uint64_t> identities;
+  std::vector<std::uint64_t> memory;
   for (const Target& t : targets_) {
-    if (t.particle) identities.push_back(t.identity);
+    if (!t.particle) continue;
+    memory.push_back(t.identity);
+    memory.push_back(t.present ? 1 : 0);
+    for (const double value : t.values) memory.push_back(std::bit_cast<std::uint64_t>(value));
   }
-  return identities;
+  return memory;
 }
 
 }  // namespace mpm::io

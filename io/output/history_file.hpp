@@ -1,10 +1,11 @@
-// Job_curv.dat: one row per step with the total energies and the histories that the scene asks for.
+// Job_curv.dat: rows of the total energies and of the histories that the scene asks for.
 //
 // A `Particle` history follows the particle that is nearest to its point when the history starts (of several,
-// the one with the lowest identity) wherever it goes; not-a-number once it is gone. A `Point` history is the
-// average over the particles in the cell around the point, weighted by mass and by the cell's trilinear
-// function of their distance from the point; 0 while the cell is empty. The same bits on any ranks. Shown by
-// tests/io/output/history_file_test.cpp.
+// the one with the lowest identity) wherever it goes. Its last column, `present[particleN]`, is 1; once the
+// particle is eroded or has left the grid it is 0, and the others keep their last values. A `Point` history
+// is the average over the particles in the cell around the point, weighted by mass and by the cell's
+// trilinear function of their distance from the point; 0 while the cell is empty. The same bits on any ranks.
+// Shown by tests/io/output/history_file_test.cpp.
 #pragma once
 
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
+#include "core/step/totals.hpp"
 #include "io/output/table_file.hpp"
 #include "io/output/variables.hpp"
 
@@ -25,14 +27,21 @@ class HistoryFile {
  public:
   struct Continuation {
     TableContinuation rows;              ///< those that are kept
-    std::vector<std::uint64_t> tracked;  ///< tracked() of the run that goes on
+    std::vector<std::uint64_t> tracked;  ///< tracked() when the last of them was written
   };
   /// Throws FileError. Collective.
   HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
               core::Exchange& exchange);
 
-  /// The row of the present state; it waits in memory. Collective.
+  /// With histories a row belongs to every step; without, the total energies do, as often as someone wants.
+  bool each_step() const { return !targets_.empty(); }
+  /// The row of the present state; it waits in memory. Throws core::NumericalFailure where that has no finite
+  /// energy. Collective.
   void add(const core::Model& model, core::Exchange& exchange);
+  /// The same, where the energies are known.
+  void add(const core::Model& model, const core::Energies& energies, core::Exchange& exchange);
+  /// Particles that the last row does not find any more, a line each, for the log. The same on all ranks.
+  const std::vector<std::string>& gone() const { return gone_; }
   /// Throws FileError. Collective.
   void flush(core::Exchange& exchange) { file_->flush(exchange); }
   /// As flush(), and to the disk itself. Collective.
@@ -40,7 +49,8 @@ class HistoryFile {
   const TableMark& mark() const { return file_->mark(); }
   const std::string& notice() const { return file_->notice(); }
 
-  /// Identities of the particles that are followed, for restart files. The same on all ranks.
+  /// What histories remember, for restart files: of each particle its identity, whether it is present (0, 1)
+  /// and the bits of its last values. The same on all ranks.
   std::vector<std::uint64_t> tracked() const;
 
  private:
@@ -51,9 +61,12 @@ class HistoryFile {
     std::size_t first = 0;  ///< of its record in the values exchanged
     // Of a particle: who it is, and where it was last.
     std::uint64_t identity = no_identity;
+    bool present = false;
     std::optional<core::BrickCoord> last;
+    std::vector<double> values;  ///< of its last row
   };
   static std::vector<Target> targets_of(const core::Scene& scene);
+  bool recall(const std::vector<std::uint64_t>& tracked);
   void choose_particles(const core::Model& model, core::Exchange& exchange);
   std::string head() const;
   std::string legend() const;
@@ -63,6 +76,7 @@ class HistoryFile {
   std::vector<Target> targets_;
   std::size_t record_ = 0;  ///< doubles exchanged per row
   std::optional<TableFile> file_;
+  std::vector<std::string> gone_;
 };
 
 }  // namespace mpm::io

@@ -87,7 +87,7 @@ std::vector<std::string> absence_notices(const std::vector<Variable>& variables,
 
 BodyFacts facts_of(const core::Model& model, std::size_t body) {
   const core::Body& b = model.bodies[body];
-  return {static_cast<int>(body), b.component, b.material, b.model->reference_density()};
+  return {static_cast<int>(body), b.component + 1, b.material, b.model->reference_density()};
 }
 
 double evaluate(Variable v, const ColumnLayout& layout, const double* block, int lane,

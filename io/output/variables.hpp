@@ -2,8 +2,8 @@
 //
 // To add one: a name in Variable, a row in variable_table and a line in evaluate(). pres is the pressure p of
 // the equation of state, positive in compression and without the artificial viscosity; stresses are the whole
-// Cauchy stress s - (p + q) I. tria is -p over the Mises stress. Numbers of bodies, components and materials
-// count from 0 in the order of the input. Shown by tests/io/output/variables_test.cpp.
+// Cauchy stress s - (p + q) I. tria is -p over the Mises stress. Numbers of bodies and materials count
+// from 0 in the order of the input, those of components from 1. Shown by tests/io/output/variables_test.cpp.
 #pragma once
 
 #include <array>
@@ -71,7 +71,7 @@ inline constexpr std::array<VariableInfo, static_cast<std::size_t>(Variable::cou
     {"sigy", "stress", "yield stress"},
     {"damg", "1", "damage"},
     {"body", "1", "number of the body", true},
-    {"com", "1", "number of the component", true},
+    {"com", "1", "number of the component, from 1", true},
     {"mat", "1", "number of the material", true},
     {"kelv", "temperature", "temperature"},
     {"velocity_0", "velocity", "velocity along x"},
@@ -118,7 +118,7 @@ std::vector<std::string> absence_notices(const std::vector<Variable>& variables,
 /// What of a body enters its variables.
 struct BodyFacts {
   int body = 0;
-  int component = 0;
+  int component = 1;  ///< from 1
   int material = 0;
   double reference_density = 1;
 };

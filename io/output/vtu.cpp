@@ -92,8 +92,9 @@ class Appended {
   std::string buffer_;
 };
 
+/// Adds how many values were cut to `cut`.
 template <class T>
-void put_values(const Piece& piece, const Array& array, Appended& out) {
+void put_values(const Piece& piece, const Array& array, Appended& out, std::int64_t& cut) {
   for (const CohortPlace& place : piece.places) {
     const core::Cohort& cohort =
         piece.model->grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
@@ -109,18 +110,18 @@ void put_values(const Piece& piece, const Array& array, Appended& out) {
       }
       for (int c = 0; c < array.components; ++c) {
         const auto v = static_cast<Variable>(static_cast<int>(array.first) + c);
-        out.put(static_cast<T>(evaluate(v, layout, block, lane, facts)));
+        out.put(narrowed<T>(evaluate(v, layout, block, lane, facts), cut));
       }
     }
   }
 }
 
-void put_array(const Piece& piece, const Array& array, Appended& out) {
+void put_array(const Piece& piece, const Array& array, Appended& out, std::int64_t& cut) {
   out.put(piece.particles * array.bytes * static_cast<std::uint64_t>(array.components));
-  if (array.type == "Float32") put_values<float>(piece, array, out);
-  if (array.type == "Float64") put_values<double>(piece, array, out);
-  if (array.type == "Int32") put_values<std::int32_t>(piece, array, out);
-  if (array.type == "Int64") put_values<std::int64_t>(piece, array, out);
+  if (array.type == "Float32") put_values<float>(piece, array, out, cut);
+  if (array.type == "Float64") put_values<double>(piece, array, out, cut);
+  if (array.type == "Int32") put_values<std::int32_t>(piece, array, out, cut);
+  if (array.type == "Int64") put_values<std::int64_t>(piece, array, out, cut);
 }
 
 std::string vtk_head(const char* type, const core::Scene& scene) {
@@ -138,9 +139,9 @@ std::string time_field(double time) {
       time);
 }
 
-/// Cells are vertices: cell i is point i.
+/// Cells are vertices: cell i is point i. Adds how many values were cut to `cut`, by array, position first.
 void write_piece(const std::string& path, const Piece& piece, const Array& position,
-                 const std::vector<Array>& arrays) {
+                 const std::vector<Array>& arrays, std::vector<std::int64_t>& cut) {
   std::uint64_t offset = 0;
   const auto declare = [&](const Array& a) {
     const std::string text =
@@ -163,8 +164,8 @@ void write_piece(const std::string& path, const Piece& piece, const Array& posit
   File file(path, File::Mode::write_anew);
   file.write(head);
   Appended out(file);
-  put_array(piece, position, out);
-  for (const Array& a : arrays) put_array(piece, a, out);
+  put_array(piece, position, out, cut[0]);
+  for (std::size_t a = 0; a < arrays.size(); ++a) put_array(piece, arrays[a], out, cut[a + 1]);
   constexpr std::uint8_t vertex = 1;
   out.put(8 * piece.particles);
   for (std::uint64_t i = 0; i < piece.particles; ++i) out.put(static_cast<std::int64_t>(i));
@@ -299,7 +300,7 @@ void VtuWriter::write_set(const std::string& stem, const std::string& name,
     if (std::find(ranks.begin(), ranks.end(), exchange.rank()) == ranks.end()) return;
     const std::string name_of_mine = path + piece_name(stem, exchange.rank());
     try {
-      write_piece(name_of_mine, piece, position, arrays);
+      write_piece(name_of_mine, piece, position, arrays, cut_now_);
       unsynced_.push_back(name_of_mine);
     } catch (const FileError&) {
       remove_file(name_of_mine);
@@ -315,6 +316,10 @@ void VtuWriter::write_set(const std::string& stem, const std::string& name,
 }
 
 void VtuWriter::write(const core::Model& model, core::Exchange& exchange) {
+  std::vector<std::string> names{"position"};
+  for (const Array& a : point_arrays(settings_.variables, settings_.double_precision))
+    names.push_back(a.name);
+  cut_now_.assign(names.size(), 0);
   std::vector<std::size_t> written;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (!model.bodies[b].no_output) written.push_back(b);
@@ -333,6 +338,8 @@ void VtuWriter::write(const core::Model& model, core::Exchange& exchange) {
   together(exchange, [&] {
     if (exchange.rank() == 0) write_collection(*model.scene);
   });
+  warning_ = cut_.warning(settings_.folder + "/" + settings_.job + ".pvd", model.clock.step, names,
+                          std::move(cut_now_), exchange);
 }
 
 }  // namespace mpm::io

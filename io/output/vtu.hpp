@@ -1,8 +1,9 @@
 // Job_vtu/: one unstructured grid of vertices per time, in pieces, one from each rank that has particles,
 // held together by a .pvtu; or one such set per body. Job.pvd lists all times and is replaced as a whole.
 //
-// Arrays are appended raw, little-endian, 32-bit reals unless asked. Point data: velocity (vector), id, body
-// and the variables asked for; velocity_0..2 are in the vector. Shown by tests/io/output/vtu_test.cpp.
+// Arrays are appended raw, little-endian, 32-bit reals unless asked (cut as narrowing.hpp says). Point data:
+// velocity (vector), id, body and the variables asked for; velocity_0..2 are in the vector. Shown by
+// tests/io/output/vtu_test.cpp.
 #pragma once
 
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
+#include "io/output/narrowing.hpp"
 #include "io/output/variables.hpp"
 
 namespace mpm::io {
@@ -40,6 +42,9 @@ class VtuWriter {
   std::int64_t last_step() const { return last_step_; }
   /// What the user should know about files that are gone; mostly empty.
   const std::string& notice() const { return notice_; }
+  /// What the last write() cut for the first time; mostly empty. The same on all ranks.
+  const std::string& warning() const { return warning_; }
+  const CutValues& cut_values() const { return cut_; }
 
  private:
   struct Entry {
@@ -59,6 +64,9 @@ class VtuWriter {
   std::int64_t last_step_ = -1;
   std::vector<std::string> unsynced_;  ///< files of this rank that may not be on the disk yet
   std::string notice_;
+  std::vector<std::int64_t> cut_now_;  ///< by array, position first: of the picture that is being written
+  CutValues cut_;
+  std::string warning_;
 };
 
 }  // namespace mpm::io

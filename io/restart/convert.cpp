@@ -1,4 +1,7 @@
+#include <cstdio>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "io/output/h5part.hpp"
 #include "io/restart/contents.hpp"
@@ -73,6 +76,8 @@ void restart_to_h5part(const std::string& path, const std::string& h5part,
   H5PartWriter writer({h5part, variables, double_precision, std::nullopt}, model, exchange);
   writer.write(model, exchange);
   writer.finish(exchange);
+  if (exchange.rank() == 0 && !writer.warning().empty())
+    fmt::print(stderr, "warning: {}\n", writer.warning());
 }
 
 }  // namespace mpm::io

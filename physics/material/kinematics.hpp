@@ -101,7 +101,10 @@ template <class T>
     const T old_volume = core::load<T>(block + volume_at);
     const T ratio = volume_ratio(type, l, dt, strain, accumulated, cell_strain);
     const core::MaskOf<T> unusable = !(ratio > 0.0);
-    if (core::any(unusable)) batch.events.negative_volume += count<T>(unusable, row, batch.particles);
+    if (core::any(unusable)) {
+      batch.events.negative_volume += count<T>(unusable, row, batch.particles);
+      batch.vanishing |= lanes_of<T>(unusable, row, batch.particles);
+    }
     T volume = core::select(unusable, old_volume, old_volume * ratio);
     if (limits) {
       volume = limit_volume(batch, options, reference_density, core::load<T>(block + mass_at), volume, row);

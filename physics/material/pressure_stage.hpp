@@ -96,14 +96,16 @@ void store_speeds(core::Batch& batch, double* block, int row, const PressureRule
 
 /// Every stress has gone into the energy, so one look at it finds what is no number.
 template <class T>
-void count_events(core::MaterialEvents& events, core::MaskOf<T> undefined, const T& energy, double negligible,
-                  int row, int particles) {
+void count_events(core::Batch& batch, core::MaskOf<T> undefined, const T& energy, double negligible,
+                  int row) {
   const core::MaskOf<T> negative = energy < negligible;
   const core::MaskOf<T> not_finite = !(energy - energy == 0.0);
   if (!core::any(undefined | negative | not_finite)) return;
-  events.undefined_root += count<T>(undefined, row, particles);
-  events.negative_energy += count<T>(negative, row, particles);
-  events.not_finite += count<T>(not_finite, row, particles);
+  core::MaterialEvents& events = batch.events;
+  events.undefined_root += count<T>(undefined, row, batch.particles);
+  events.negative_energy += count<T>(negative, row, batch.particles);
+  events.not_finite += count<T>(not_finite, row, batch.particles);
+  batch.negative |= lanes_of<T>(negative, row, batch.particles);
 }
 
 /// Thermal expansion: the pressure feels only what the volume has changed beyond it. With e = expansion (T -
@@ -195,7 +197,7 @@ template <class T, class Eos>
                  damping_speed(batch, rules, rate, c_before, specific_volume, row));
     if (verdict != nullptr) core::store(verdict + row, core::select(undefined, max(sentence, 1.0), sentence));
 
-    count_events<T>(batch.events, undefined, energy, negligible, row, batch.particles);
+    count_events<T>(batch, undefined, energy, negligible, row);
   });
 }
 

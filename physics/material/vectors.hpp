@@ -33,6 +33,21 @@ template <class T>
   }
 }
 
+/// The same lanes as bits of a batch.
+template <class T>
+[[gnu::noinline, gnu::cold]] std::uint64_t lanes_of(core::MaskOf<T> mask, int row, int particles) {
+  std::uint64_t lanes = 0;
+  for (int i = 0; i < core::LaneTraits<T>::width && row + i < particles; ++i) {
+    bool set;
+    if constexpr (core::LaneTraits<T>::width == 1)
+      set = mask;
+    else
+      set = mask[i];
+    if (set) lanes |= std::uint64_t{1} << (row + i);
+  }
+  return lanes;
+}
+
 template <class T>
 inline core::Sym3<T> load_deviator(const double* block, const core::ColumnLayout& layout) {
   using core::Column;

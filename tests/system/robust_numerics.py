@@ -3,6 +3,7 @@ particles that leave are booked; walls, limits, damping and prescribed motion do
 
 import json
 import math
+import re
 
 import h5py
 
@@ -63,6 +64,17 @@ class Failures(Case):
         self.check_failure(scene(_mpm.BOUNCING, '<EnergyFraction value="1e-4"/>', end=9),
                            r"step \d+, time [\d.]+: the total energy is off by .*, more than EnergyFraction 0\.0001")
 
+    def test_energy_fraction_is_checked_at_every_step(self):
+        """The run ends in the first step whose energy is off, whenever .sta is written."""
+        self.write(scene(_mpm.BOUNCING, end=9).replace('print_time="0.9"', 'print_time="1e-9"'))
+        self.run_in("all", [self.folder / "case.xmp"])
+        table = _mpm.table(self.folder / "all/case.sta")
+        first = next(int(s) for s, drift in zip(table["step"], table["relative_drift"]) if abs(drift) > 1e-4)
+        self.assertGreater(first, 10)
+        self.check_failure(scene(_mpm.BOUNCING, '<EnergyFraction value="1e-4"/>', end=9)
+                           .replace('print_time="0.9"', 'print_time="9"'),
+                           rf"step {first}, time [\d.]+: the total energy is off by .*, more than EnergyFraction 0\.0001")
+
     def test_particle_outside_at_level_2(self):
         self.check_failure(scene(FLIGHT, '<Warn type="grid" level="2"/>', faces="000000"), self.PARTICLE)
 
@@ -119,7 +131,7 @@ class Leaving(Case):
         with h5py.File(self.folder / "out/case.h5part") as file:
             steps = _mpm.pictures(file)
             self.assertEqual((steps[0]["x"].shape, steps[-1]["x"].shape), ((512,), (0,)))
-        self.assertTrue(math.isnan(_mpm.table(self.folder / "out/case_curv.dat")["pres[particle1]"][-1]))
+        self.assertEqual(_mpm.table(self.folder / "out/case_curv.dat")["present[particle1]"][-1], 0)
 
     def test_warnings(self):
         def warnings(more):
@@ -131,8 +143,54 @@ class Leaving(Case):
             self.assertRegex(line, r"step \d+, time .*: \d+ particle\(s\) left the grid; "
                                    r'the first: particle \d+ of body "bird"')
         self.assertEqual(sum(int(line.split(": ")[2].split()[0]) for line in steps), 512)
-        self.assertEqual(len(warnings('<Warn type="grid" level="1"/>')), 1)
         self.assertEqual(warnings(""), [])
+
+    def test_warnings_by_particle(self):
+        """Twenty are named, in the order of steps and identities; the rest is counted. The same on any ranks."""
+        logs = set()
+        for ranks in (1, 2, 3):
+            out = self.fly('<Warn type="grid" level="1"/>', ranks=ranks).out
+            named = [line for line in out.splitlines() if line.startswith("warning: ")]
+            logs.add("\n".join(named))
+            self.assertEqual(len(named), 21)
+            found = [re.fullmatch(r"warning: step (\d+), time \S+: particle (\d+) of body \"bird\" at \([^)]*\) "
+                                  "left the grid", line) for line in named[:20]]
+            order = [(int(m.group(1)), int(m.group(2))) for m in found]
+            self.assertEqual(order, sorted(set(order)))
+            self.assertRegex(named[20], "20 particles left the grid: from now on they are only counted")
+            self.assertIn("counted    512 particle(s) left the grid, added over the steps; 20 named above", out)
+        self.assertEqual(len(logs), 1)
+
+    def test_each_particle_is_named_once(self):
+        """Five with negative energy in every step, and volumes that would vanish."""
+        fluid = fluid_of(1000, 'E0="-1"')
+        bodies = [_mpm.block("few", (1, 1, 1), (2.5, 0.5, 0.5))]
+        logs = set()
+        for ranks in (1, 2):
+            self.write(scene(bodies, '<Warn type="ie|vol" level="1"/>', end=0.1).replace(_mpm.material(), fluid))
+            out = self.run_in("out", [self.folder / "case.xmp"], ranks=ranks).out
+            named = [line for line in out.splitlines() if line.startswith("warning: ")]
+            self.assertEqual([re.search(r"particle (\d+) of", line).group(1) for line in named], list("01234"))
+            self.assertIn("with internal energy below zero", named[0])
+            steps = _mpm.summary(self.folder / "out")["steps"]
+            self.assertIn(f"counted    {5 * steps} particle(s) with internal energy below zero, added over the steps; "
+                          "5 named above", out)
+            logs.add("\n".join(named))
+        self.assertEqual(len(logs), 1)
+
+    def test_vanishing_volumes_are_named(self):
+        bodies = [_mpm.block("left", (1, 2, 2), (6, 4, 4), (20, 0, 0)),
+                  _mpm.block("right", (8, 2, 2), (6, 4, 4), (-20, 0, 0))]
+        text = scene(bodies, '<Warn type="vol" level="1"/>').replace(_mpm.material(), fluid_of(1))
+        self.write(text.replace('<TimeStep factor="0.5"/>', '<TimeStep specified="0.1"/>'))
+        logs = set()
+        for ranks in (1, 3):
+            outcome = _mpm.run([self.folder / "case.xmp", "--output-dir", self.folder / "out"], ranks=ranks)
+            named = [line for line in outcome.out.splitlines() if line.startswith("warning: ")]
+            self.assertRegex(named[0], r'warning: step \d+, time \S+: particle \d+ of body "(left|right)" at \([^)]*\) '
+                                       "whose volume would have vanished")
+            logs.add("\n".join(named))
+        self.assertEqual(len(logs), 1)
 
     def test_stop_near_the_boundary(self):
         for ranks in (1, 2):

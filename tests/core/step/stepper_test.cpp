@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <omp.h>
 
+#include "core/step/finite.hpp"
 #include "core/step/totals.hpp"
 #include "tests/core/step/case.hpp"
 
@@ -265,4 +266,34 @@ TEST_CASE("Particles beyond a free face and those below the volume of erosion ar
         Approx(before.kinetic).epsilon(1e-12));
   const std::vector<std::int64_t> rest = run.order();
   CHECK(std::find(rest.begin(), rest.end(), 400) == rest.end());
+}
+
+TEST_CASE("A step that does not advance the time ends the run, before anything has moved") {
+  for (const ReferenceScheme scheme : schemes) {
+    for (const double critical : {0.0, 1e-12}) {
+      SmallRun run(tumbling(scheme));
+      run.step(3);
+      const auto before = run.columns();
+      run.model.clock.critical_dt = critical;
+      if (critical > 0) run.model.clock.time = 1e5;
+      CHECK_THROWS_WITH(run.step(),
+                        Catch::Contains("step 4, time") &&
+                            Catch::Contains("does not advance the time any more; the fastest: particle ") &&
+                            Catch::Contains("of body \"body\" at ("));
+      CHECK(run.columns() == before);
+    }
+  }
+}
+
+TEST_CASE("A state of numbers whose energy is none is told with its particle") {
+  SmallRun run(tumbling(ReferenceScheme::musl));
+  CHECK_NOTHROW(require_finite(run.model, run.solo));
+  Brick& brick = run.model.grid->brick(0);
+  BlockPool& pool = *run.model.bodies[0].pool;
+  double* block = pool.block(brick.cohorts[0].blocks[0]);
+  block[pool.layout().offset(Column::velocity_y)] = 1e170;
+  const auto identity = static_cast<long>(block[pool.layout().offset(Column::identity)]);
+  CHECK_THROWS_WITH(require_finite(run.model, run.solo),
+                    Catch::Contains("particle " + std::to_string(identity) + " of body") &&
+                        Catch::Contains("velocity_y=1e+170"));
 }

@@ -112,6 +112,13 @@ TEST_CASE("Totals add up what the particles are and do") {
   const Energies e = compute_energies(model, solo);
   CHECK(e.kinetic == t.kinetic);
   CHECK(e.internal == t.internal);
+  model.books.removed_kinetic.add(0.1);
+  model.books.removed_internal.add(0.3);
+  const EnergyBalance every = energy_balance(compute_energy_totals(model, solo), 7);
+  const EnergyBalance reported = energy_balance(compute_totals(model, solo), 7);
+  CHECK(every.total == reported.total);
+  CHECK(every.relative_drift == reported.relative_drift);
+  CHECK(every.relative_drift != 0);
   CHECK(occupied_cells(model, solo) == 4);
 }
 

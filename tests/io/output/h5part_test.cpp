@@ -1,7 +1,10 @@
 #include "io/output/h5part.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -90,6 +93,41 @@ TEST_CASE("Reals are in double precision when asked for") {
   const hdf5::Handle file = hdf5::open_file(folder / "a.h5part", hdf5::Access::read);
   const std::vector<double> id = column(file, 0, "id"), y = column(file, 0, "y");
   CHECK(y[0] == small_particle(model.bodies[0].pool->layout(), static_cast<std::uint64_t>(id[0]))[1]);
+}
+
+TEST_CASE("What a 32-bit real does not hold is cut, counted and said once") {
+  const Folder folder("h5part_cut");
+  core::SoloExchange solo;
+  core::Model model = small_model(solo);
+  const core::ColumnLayout& layout = model.bodies[0].pool->layout();
+  core::Cohort* cohort = nullptr;
+  for (core::Brick& brick : model.grid->bricks()) {
+    if (!brick.cohorts.empty() && brick.cohorts[0].body == 0) cohort = &brick.cohorts[0];
+  }
+  double* block = model.bodies[0].pool->block(cohort->blocks[0]);
+  const auto id = static_cast<std::int64_t>(block[layout.offset(core::Column::identity)]);
+  block[layout.offset(core::Column::pressure)] = -1e300;
+  block[layout.offset(core::Column::s_xx)] = 1e200;  // whose square is beyond all numbers
+  for (const bool double_precision : {false, true}) {
+    io::H5PartWriter writer(
+        {folder / "a.h5part", io::variables_of({"pres", "seqv", "tria", "epef"}), double_precision, {}},
+        model, solo);
+    writer.write(model, solo);
+    CHECK_THAT(writer.warning(), Catch::Contains("step 120") && Catch::Contains("1 value(s) of seqv") &&
+                                     !Catch::Contains("epef"));
+    CHECK((writer.warning().find("of pres") == std::string::npos) == double_precision);
+    writer.write(model, solo);
+    CHECK(writer.warning().empty());
+    CHECK_THAT(writer.cut_values().total("a"), Catch::Contains("2 value(s) of seqv"));
+
+    const hdf5::Handle file = hdf5::open_file(folder / "a.h5part", hdf5::Access::read);
+    for (const char* name : {"pres", "seqv", "tria", "epef"}) {
+      for (const double value : column(file, 0, name)) CHECK(std::isfinite(value));
+    }
+    const std::vector<double> ids = column(file, 0, "id"), pressure = column(file, 0, "pres");
+    const auto at = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
+    CHECK(pressure[at] == (double_precision ? -1e300 : -double{std::numeric_limits<float>::max()}));
+  }
 }
 
 TEST_CASE("Bodies without output are left out, and no particles at all are no error") {

@@ -1,9 +1,11 @@
 #include "io/output/history_file.hpp"
 
+#include <cmath>
 #include <sstream>
 
 #include <catch2/catch.hpp>
 
+#include "core/step/stepper.hpp"
 #include "core/step/totals.hpp"
 #include "io/output/file.hpp"
 #include "tests/io/output/small_model.hpp"
@@ -71,7 +73,8 @@ TEST_CASE("Histories follow the nearest particles, and points average their cell
   core::Model model = three_particles(solo, at_start);
   io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
   // Both particles of the first cell are as near to the first point: the lower identity wins.
-  CHECK(file.tracked() == std::vector<std::uint64_t>{9, 8});
+  const auto memory = file.tracked();  // identity, present, two values
+  CHECK(memory == std::vector<std::uint64_t>{9, 1, 0, 0, 8, 1, 0, 0});
   file.add(model, solo);
   file.flush(solo);
 
@@ -79,7 +82,7 @@ TEST_CASE("Histories follow the nearest particles, and points average their cell
   const core::Energies energies = core::compute_energies(model, solo);
   // Weights 1 * 1 and 2 * 0.5 at the first point; nothing near the second; the third is outside.
   const std::vector<double> expected{
-      0, 0, energies.kinetic, energies.internal, 2, 0.75, 3, 10, 1.5, 0.5, 0, 0, 0, 0};
+      0, 0, energies.kinetic, energies.internal, 2, 0.75, 1, 3, 10, 1, 1.5, 0.5, 0, 0, 0, 0};
   CHECK(row == expected);
   CHECK_THAT(io::read_file(folder / "a_curv.dat"),
              Catch::Contains("pres[particle2]") && Catch::Contains("posx[point3]") &&
@@ -103,12 +106,75 @@ TEST_CASE("A particle is followed into other bricks, and lost when it is gone") 
   const auto rows = rows_of(folder / "a_curv.dat");
   REQUIRE(rows.size() == 4);
   CHECK(rows[1][5] == 4.5);
-  CHECK(rows[1][6] == 3);
-  CHECK(rows[1][7] == 1);
-  CHECK(std::isnan(rows[2][6]));
-  CHECK(std::isnan(rows[3][7]));
-  CHECK(rows[3][5] == 4.5);
-  CHECK(file.tracked() == std::vector<std::uint64_t>{9, io::no_identity});
+  CHECK(rows[1][6] == 1);
+  CHECK(rows[1][7] == 3);
+  CHECK(rows[1][8] == 1);
+  CHECK(rows[1][9] == 1);
+  for (const std::size_t gone : {std::size_t{2}, std::size_t{3}}) {
+    CHECK(rows[gone][7] == 3);  // what it was
+    CHECK(rows[gone][8] == 1);
+    CHECK(rows[gone][9] == 0);
+    CHECK(rows[gone][5] == 4.5);
+    CHECK(rows[gone][6] == 1);
+  }
+}
+
+TEST_CASE("A particle that is gone stays so through a restart, and the log learns of it once") {
+  const Folder folder("curv_gone");
+  core::SoloExchange solo;
+  core::Model model = three_particles(solo, at_start);
+  std::vector<std::uint64_t> tracked;
+  {
+    io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
+    file.add(model, solo);
+    CHECK(file.gone().empty());
+    core::Cohort& cohort = model.grid->bricks()[0].cohorts[0];
+    core::remove_swapping(*model.bodies[0].pool, cohort, 1);  // identity 9
+    model.clock.step = 1;
+    file.add(model, solo);
+    REQUIRE(file.gone().size() == 1);
+    CHECK_THAT(file.gone()[0],
+               Catch::Contains("step 1") && Catch::Contains("particle1") && Catch::Contains("(identity 9)"));
+    file.add(model, solo);
+    CHECK(file.gone().empty());
+    tracked = file.tracked();
+  }
+  model.clock.step = 2;
+  io::HistoryFile file(folder / "a_curv.dat", model, io::HistoryFile::Continuation{1, tracked}, solo);
+  CHECK(file.tracked() == tracked);
+  file.add(model, solo);
+  file.flush(solo);
+  CHECK(file.gone().empty());
+  const auto rows = rows_of(folder / "a_curv.dat");
+  const std::vector<double> last(rows.back().begin() + 4, rows.back().begin() + 7);
+  CHECK(last == std::vector<double>{2, 0.75, 0});
+}
+
+TEST_CASE("Without histories the file has the energies, and values beyond all numbers are cut") {
+  const Folder folder("curv_energies");
+  core::SoloExchange solo;
+  const core::Model plain = small_model(solo);
+  io::HistoryFile energies(folder / "b_curv.dat", plain, {}, solo);
+  CHECK_FALSE(energies.each_step());
+  energies.add(plain, {3, 4}, solo);
+  energies.flush(solo);
+  CHECK(rows_of(folder / "b_curv.dat") == std::vector<std::vector<double>>{{120, 0.25, 3, 4}});
+
+  core::Model model = three_particles(solo, at_start);
+  io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
+  CHECK(file.each_step());
+  core::Cohort& cohort = model.grid->bricks()[0].cohorts[0];
+  core::BlockPool& pool = *model.bodies[0].pool;
+  for (int lane = 0; lane < 2; ++lane)
+    pool.block(cohort.blocks[0])[pool.layout().offset(Column::pressure) + lane] = 1.7e308;
+  file.add(model, solo);
+  pool.block(cohort.blocks[0])[pool.layout().offset(Column::velocity_x)] = 1e200;
+  CHECK_THROWS_AS(file.add(model, solo), core::NumericalFailure);
+  file.flush(solo);
+  const auto rows = rows_of(folder / "a_curv.dat");
+  REQUIRE(rows.size() == 1);
+  for (const double value : rows[0]) CHECK(std::isfinite(value));
+  CHECK(rows[0][4] == 1.7e308);
 }
 
 TEST_CASE("Histories of a run that goes on follow the same particles") {

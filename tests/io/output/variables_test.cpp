@@ -110,6 +110,14 @@ TEST_CASE("What a body does not carry is 0, and is known to be absent") {
   }
 }
 
+TEST_CASE("Components count from 1, bodies and materials from 0") {
+  core::SoloExchange solo;
+  const core::Model model = tests::small_model(solo);
+  const io::BodyFacts first = io::facts_of(model, 0), last = io::facts_of(model, 2);
+  CHECK((first.component == 1 && first.body == 0 && first.material == 0));
+  CHECK((last.component == 2 && last.body == 2));
+}
+
 TEST_CASE("The log says which body lacks what") {
   core::SoloExchange solo;
   const core::Model model = tests::small_model(solo);

@@ -74,6 +74,26 @@ struct Vtu {
 
 }  // namespace
 
+TEST_CASE("What a 32-bit real does not hold is cut in grids, too") {
+  const Folder folder("vtu_cut");
+  core::SoloExchange solo;
+  core::Model model = small_model(solo);
+  for (core::Brick& brick : model.grid->bricks()) {
+    for (core::Cohort& cohort : brick.cohorts) {
+      if (cohort.body != 0) continue;
+      core::BlockPool& pool = *model.bodies[0].pool;
+      for (const core::BlockIndex b : cohort.blocks)
+        std::fill_n(pool.block(b) + pool.layout().offset(core::Column::pressure), core::block_lanes, 1e39);
+    }
+  }
+  io::VtuWriter writer({folder.path(), "small", false, io::variables_of({"pres"}), false, {}}, model, solo);
+  writer.write(model, solo);
+  CHECK_THAT(writer.warning(), Catch::Contains("small.pvd") && Catch::Contains("300 value(s) of pres"));
+  const Vtu piece(folder / "small_vtu/small_120_0.vtu");
+  const auto pressure = piece.values<float>("pres");
+  CHECK(std::count(pressure.begin(), pressure.end(), std::numeric_limits<float>::max()) == 300);
+}
+
 TEST_CASE("One set of grids per time: well-formed, complete, listed") {
   const Folder folder("vtu");
   core::SoloExchange solo;

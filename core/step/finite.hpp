@@ -1,0 +1,26 @@
+// What ends a run whose state is no longer made of finite numbers, before anything of it is written.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/model.hpp"
+#include "core/step/exchange.hpp"
+#include "core/step/witness.hpp"
+
+namespace mpm::core {
+
+/// The rank's particle with the smallest identity whose state or energy is not all finite; empty if none. The
+/// words list its columns. `body`, if there is one, becomes the number of its body.
+Witness first_not_finite(const Model& model, int* body = nullptr);
+
+/// The fastest particle of all ranks and its speed, in words; empty without particles. Collective.
+std::string fastest_in_words(const Model& model, Exchange& exchange);
+
+/// `totals`: sums over all particles, the same on all ranks. Throws NumericalFailure on every rank if one of
+/// them is not finite. Collective.
+void require_finite(const Model& model, std::span<const double> totals, Exchange& exchange);
+/// The same for the energies of the present state. Collective.
+void require_finite(const Model& model, Exchange& exchange);
+
+}  // namespace mpm::core
