@@ -50,7 +50,7 @@ Case parsed(const std::string& bytes, const std::string& path) {
   Case c;
   c.bytes = bytes;
   c.scene = std::make_shared<const core::Scene>(
-      io::parse_scene(bytes, path, physics::catalogue(), {.check_files = false}));
+      io::parse_scene(bytes, path, physics::catalogue(), {.check_files = false, .notes = &c.notes}));
   return c;
 }
 
@@ -103,13 +103,14 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
     }
   }
   then.detonations = old.detonations;
-  compare(
-      now.detonations.empty() ? core::SourceLocation{now.provenance.path, 0} : now.detonations.front().source,
-      "Detonation", "");
+  // One that is missing has no line; where it would stand is before the Grid.
+  compare(now.detonations.empty() ? now.grid.source : now.detonations.front().source, "Detonation", "");
   if (!complaints.empty()) throw core::InputErrors(complaints);
 }
 
 }  // namespace
+
+std::string to_line(const core::Diagnostic& note) { return "note       " + to_text(note); }
 
 Case load_case(const RunOptions& options, const parallel::Communicator& world) {
   if (!is_restart(options.job)) {

@@ -16,6 +16,7 @@
 #include "apps/common/resources.hpp"
 #include "apps/common/stop.hpp"
 #include "apps/common/watch.hpp"
+#include "core/scene/limits.hpp"
 #include "core/setup/build_model.hpp"
 #include "core/setup/memory.hpp"
 #include "core/simd/denormals.hpp"
@@ -35,16 +36,15 @@ namespace mpm::apps {
 
 namespace {
 
-constexpr int most_threads = 1024;  // per rank; the system refuses very many by ending the program
-
 /// Threads per rank: the scene's word, else the environment's, else one; so many ranks on few cores stay
 /// quick.
 int choose_threads(const core::Scene& scene) {
   const bool environment = std::getenv("OMP_NUM_THREADS") != nullptr;
   const int threads = scene.solution.threads.value_or(environment ? omp_get_max_threads() : 1);
-  if (threads > most_threads) {
-    throw core::InputErrors(scene.solution.source, "OpenMPSetting",
-                            fmt::format("{} threads per rank are more than {}", threads, most_threads));
+  if (threads > core::most_threads) {
+    throw core::InputErrors(core::SourceLocation{}, {},
+                            fmt::format("{} threads per rank are more than {}: set OMP_NUM_THREADS lower",
+                                        threads, core::most_threads));
   }
   omp_set_num_threads(threads);
   return threads;
@@ -115,15 +115,6 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
           model.scene->solution.end_time);
 }
 
-/// What the input asks for that makes no difference to this run: said, so that nobody waits for it.
-void say_what_is_idle(const core::Scene& scene, io::Log& log) {
-  if (!scene.frictions.empty() && !scene.contact.enable)
-    log.note("note       Friction acts in contact only, and Contact is off");
-  if (scene.grid.dynamic_cell.enable)
-    log.note("note       DynamicCell changes nothing: only cells with particles are ever stored");
-  if (!scene.output.summary) log.note("note       no summary file: Summary enable=\"0\"");
-}
-
 /// One run in its stages; the members are in the order in which they come to life.
 class Run {
  public:
@@ -153,7 +144,7 @@ class Run {
                 model_.clock.time);
     stepper_.emplace(model_, exchange_);
     describe(model_, *stepper_, exchange_, threads_, *log_);
-    say_what_is_idle(*case_.scene, *log_);
+    for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
     setup_seconds_ = clock_.seconds();
   }
 

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include "core/simd/denormals.hpp"
+
 namespace mpm::core {
 
 namespace {
@@ -127,6 +129,10 @@ ParsedLine parse_point_line(std::string_view line) {
     if (word.empty()) return wrong(fmt::format("expected four numbers, mass x y z, found {}", n));
     if (!to_number(word, parsed.values[n]))
       return wrong(fmt::format("{}: expected a number, found `{}`", names[n], printable(word)));
+    if (is_subnormal(parsed.values[n]))
+      return wrong(
+          fmt::format("{}: {} is too small to be kept with full precision; write 0, or choose other units",
+                      names[n], printable(word)));
   }
   const std::string_view extra = take_word(rest);
   if (!extra.empty())

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "core/discretise/seeds.hpp"
+#include "core/scene/limits.hpp"
 #include "core/setup/first_step.hpp"
 #include "core/setup/memory.hpp"
 #include "core/step/conduction.hpp"
@@ -22,11 +23,8 @@ namespace mpm::core {
 
 namespace {
 
-constexpr std::int64_t most_cells = std::int64_t{brick_cells}
-                                    << 20;             // brick coordinates have 21 bits, one of them spare
-constexpr std::uint64_t units_in_run = 16;             // of a body, next to each other, that one rank makes
-constexpr std::size_t seeds_in_piece = 1 << 14;        // seeds that a rank makes between two sends
-constexpr double exact_integers = 9007199254740992.0;  // identities are kept in doubles, 2^53
+constexpr std::uint64_t units_in_run = 16;       // of a body, next to each other, that one rank makes
+constexpr std::size_t seeds_in_piece = 1 << 14;  // seeds that a rank makes between two sends
 
 /// This rank's share of a body's units, in pieces: f(seeds). Every ranks-th run of units is ours.
 template <class F>
@@ -71,10 +69,11 @@ struct Census {
   std::string first_outside;
 };
 
-Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSource>>& sources,
-                   const std::vector<const BodyInput*>& inputs, const Exchange& exchange) {
+/// Without a model only those outside the grid are counted.
+Census take_census(const GridGeometry& geometry, const std::vector<std::unique_ptr<SeedSource>>& sources,
+                   const std::vector<const BodyInput*>& inputs, const Exchange& exchange,
+                   const Model* model) {
   Census census;
-  const GridGeometry& geometry = model.grid->geometry();
   std::map<BrickKey, std::int64_t> bricks;  // of one body
   for (std::size_t b = 0; b < sources.size(); ++b) {
     bricks.clear();
@@ -82,7 +81,7 @@ Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSou
       for (const Seed& s : seeds) {
         const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
         if (geometry.contains(x)) {
-          ++bricks[key_of(geometry.brick_at(x))];
+          if (model != nullptr) ++bricks[key_of(geometry.brick_at(x))];
           continue;
         }
         ++census.outside;
@@ -93,8 +92,9 @@ Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSou
         }
       }
     });
+    if (model == nullptr) continue;
     const auto block =
-        static_cast<std::int64_t>(sizeof(double)) * model.bodies[b].pool->layout().block_doubles();
+        static_cast<std::int64_t>(sizeof(double)) * model->bodies[b].pool->layout().block_doubles();
     for (const auto& [key, n] : bricks) {
       census.bricks[key] += n;
       census.block_bytes += (n + block_lanes - 1) / block_lanes * block;
@@ -103,22 +103,43 @@ Census take_census(const Model& model, const std::vector<std::unique_ptr<SeedSou
   return census;
 }
 
-void refuse_outside(const Model& model, const Census& census, Exchange& exchange) {
+void refuse_outside(const Scene& scene, const GridGeometry& g, const Census& census, Exchange& exchange) {
   std::int64_t outside[1] = {census.outside};
   exchange.sum(std::span<std::int64_t>(outside));
   if (outside[0] == 0) return;
-  const GridGeometry& g = model.grid->geometry();
   std::string first;
   for (const std::string& line : exchange.gather(census.first_outside)) {
     if (first.empty()) first = line;
   }
   throw InputErrors(
-      model.scene->grid.source, "Grid",
+      scene.grid.source, "Grid",
       fmt::format("{} particles lie outside the grid [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]; "
                   "enlarge the grid or move the body. The first: {}",
                   outside[0], g.origin.x, g.origin.x + double(g.cells[0]) * g.cell.x, g.origin.y,
                   g.origin.y + double(g.cells[1]) * g.cell.y, g.origin.z,
                   g.origin.z + double(g.cells[2]) * g.cell.z, first));
+}
+
+/// Throws InputErrors where the bodies' identities together cannot be numbered; names the largest body.
+void refuse_uncounted(const std::vector<std::unique_ptr<SeedSource>>& sources,
+                      const std::vector<const BodyInput*>& inputs) {
+  double identities = 0, particles = 0;
+  std::size_t largest = 0;
+  for (std::size_t b = 0; b < sources.size(); ++b) {
+    identities += static_cast<double>(sources[b]->identities());
+    particles += sources[b]->expected_particles();
+    if (sources[b]->identities() > sources[largest]->identities()) largest = b;
+  }
+  if (identities < static_cast<double>(identity_limit)) return;
+  throw InputErrors(
+      inputs[largest]->source, "Body",
+      fmt::format(
+          "the lattices of the bodies, body `{}`'s above all, have {} places to number, more than can "
+          "be told apart (2^53), for about {:.3g} particles; use a larger dp",
+          inputs[largest]->name,
+          sources[largest]->identities() >= identity_limit ? "at least 9.01e+15"
+                                                           : fmt::format("{:.3g}", identities),
+          particles));
 }
 
 /// Throws InputErrors on every rank if one of them needs more bytes than it can have. `reserved`: of these,
@@ -141,14 +162,7 @@ void refuse_above(double needed, double reserved, const ModelPlan& plan, const M
                   plan.particles, -shortest[1] / 1073741824.0, shortest[2] / 1073741824.0));
 }
 
-void refuse_too_large(const Model& model, const ModelPlan& plan, double identities, Exchange& exchange) {
-  if (identities >= exact_integers) {
-    throw InputErrors(
-        model.scene->components.front().source, "Component",
-        fmt::format("the bodies ask for about {:.3g} particles, more than can be told apart (2^53); "
-                    "use a larger dp",
-                    plan.particles));
-  }
+void refuse_too_large(const Model& model, const ModelPlan& plan, Exchange& exchange) {
   // Particles, and half as much again for nodes and what is on its way.
   refuse_above(1.5 * plan.state_bytes / exchange.size(), 0, plan, model, exchange);
 }
@@ -247,11 +261,11 @@ GridGeometry geometry_of(const Scene& scene) {
     g.cells[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(axis.cells);
     g.boundary[static_cast<std::size_t>(2 * a)] = axis.lower;
     g.boundary[static_cast<std::size_t>(2 * a + 1)] = axis.upper;
-    if (static_cast<std::int64_t>(axis.cells) > most_cells) {
+    if (static_cast<std::int64_t>(axis.cells) > most_cells_per_axis) {
       throw InputErrors(
           scene.grid.source, "Grid",
           fmt::format("{} cells along {} are more than the {} that a grid may have; use larger cells",
-                      axis.cells, "xyz"[a], most_cells));
+                      axis.cells, "xyz"[a], most_cells_per_axis));
     }
   }
   g.mass_cutoff = scene.grid.mass_cutoff * density * g.cell_volume();
@@ -263,6 +277,18 @@ bool made_of_bars(const Geometry& geometry) {
          std::holds_alternative<BarLinesGeometry>(geometry) ||
          std::holds_alternative<BarNetGeometry>(geometry);
 }
+
+namespace {
+
+void refuse_bar_material(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
+  if (!material.uniaxial() || made_of_bars(input.geometry)) return;
+  throw InputErrors(input.source, "Body",
+                    fmt::format("material `{}` is for bars, and body `{}` of type \"{}\" has none: give it a "
+                                "material without _1D",
+                                scene.materials[input.material].name, input.name, input.type));
+}
+
+}  // namespace
 
 Model prepare_model(std::shared_ptr<const Scene> scene,
                     std::vector<std::unique_ptr<ConstitutiveModel>> materials,
@@ -286,13 +312,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     body.material = static_cast<int>(input.material);
     body.model = model.materials[input.material].get();
     body.rigid = body.model->rigid();
-    if (body.model->uniaxial() && !made_of_bars(input.geometry)) {
-      throw InputErrors(
-          input.source, "Body",
-          fmt::format("material `{}` is for bars, and body `{}` of type \"{}\" has none: give it a "
-                      "material without _1D",
-                      scene->materials[input.material].name, input.name, input.type));
-    }
+    refuse_bar_material(*scene, input, *body.model);
     body.no_output = input.no_output;
     if (input.prescribed_velocity) { body.prescribed_velocity = to_vec(*input.prescribed_velocity); }
     ColumnSet columns = ColumnSet::mechanics();
@@ -329,18 +349,48 @@ ModelPlan plan_of(const Model& model) {
   return plan;
 }
 
+double check_setup(const Scene& scene, const std::vector<std::unique_ptr<ConstitutiveModel>>& materials) {
+  Complaints wrong;
+  const std::vector<const BodyInput*> inputs = active_bodies(scene);
+  std::vector<std::unique_ptr<SeedSource>> sources;
+  double particles = 0;
+  for (const BodyInput* input : inputs) {
+    wrong.collect([&] { refuse_bar_material(scene, *input, *materials[input->material]); });
+    wrong.collect([&] {
+      sources.push_back(make_seed_source(scene, *input));
+      particles += sources.back()->expected_particles();
+    });
+  }
+  wrong.raise_if_any();
+  refuse_uncounted(sources, inputs);
+  const GridGeometry geometry = geometry_of(scene);
+  // Whose box is inside has no particle outside; of the others every particle is looked at, in a few seconds.
+  constexpr double most_looked_at = 1 << 30;
+  std::vector<std::unique_ptr<SeedSource>> doubtful;
+  std::vector<const BodyInput*> owners;
+  for (std::size_t b = 0; b < sources.size(); ++b) {
+    const auto [lower, upper] = sources[b]->bounds();
+    const bool inside = geometry.contains({lower[0], lower[1], lower[2]}) &&
+                        geometry.contains({upper[0], upper[1], upper[2]});
+    if (inside || sources[b]->expected_particles() > most_looked_at) continue;
+    doubtful.push_back(std::move(sources[b]));
+    owners.push_back(inputs[b]);
+  }
+  SoloExchange alone;
+  refuse_outside(scene, geometry, take_census(geometry, doubtful, owners, alone, nullptr), alone);
+  return particles;
+}
+
 void discretise(Model& model, Exchange& exchange) {
   const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
   std::vector<std::unique_ptr<SeedSource>> sources;
-  double identities = 0;
-  for (const BodyInput* input : inputs) {
-    sources.push_back(make_seed_source(*model.scene, *input));
-    identities += static_cast<double>(sources.back()->identities());
-  }
+  for (const BodyInput* input : inputs) sources.push_back(make_seed_source(*model.scene, *input));
+  refuse_uncounted(sources, inputs);
   const ModelPlan plan = plan_of(model);
-  refuse_too_large(model, plan, identities, exchange);
-  const Census census = take_census(model, sources, inputs, exchange);
-  refuse_outside(model, census, exchange);
+  refuse_too_large(model, plan, exchange);
+  const GridGeometry& geometry = model.grid->geometry();
+  const Census census = take_census(geometry, sources, inputs, exchange, &model);
+  refuse_outside(*model.scene, geometry, census, exchange);
   std::vector<BrickCount> counts;
   for (const auto& [key, n] : census.bricks) counts.push_back({brick_of_key(key), n});
   exchange.partition(*model.grid, counts, model.scene->decomposition);

@@ -2,10 +2,11 @@
 // is that small, and the processor then takes a hundred times longer for each operation on it.
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 #if defined(__SSE2__)
 #include <immintrin.h>
-#elif defined(__aarch64__)
-#include <cstdint>
 #endif
 
 namespace mpm::core {
@@ -19,6 +20,13 @@ inline void flush_denormals_to_zero() {
   asm volatile("mrs %0, fpcr" : "=r"(control));
   asm volatile("msr fpcr, %0" : : "r"(control | (std::uint64_t{1} << 24)));
 #endif
+}
+
+/// Whether the number is one that flush_denormals_to_zero() makes 0; right before and after it.
+inline bool is_subnormal(double x) {
+  constexpr std::uint64_t exponent = 0x7FF0000000000000, mantissa = 0x000FFFFFFFFFFFFF;
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  return (bits & exponent) == 0 && (bits & mantissa) != 0;
 }
 
 }  // namespace mpm::core

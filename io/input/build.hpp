@@ -28,7 +28,7 @@ std::vector<core::FrictionPair> build_frictions(const Node& root,
                                                 const std::vector<core::MaterialInput>& materials,
                                                 const BuildContext& context);
 std::vector<core::WorkPlane> build_work_planes(const Node& root, const BuildContext& context);
-/// Uses the materials, work planes and grid of `scene`.
+/// Uses the materials, work planes, grid and contact of `scene`.
 std::vector<core::ComponentInput> build_components(const Node& root, const core::Scene& scene,
                                                    const BuildContext& context);
 /// All alternatives but BoolGeometry, whose operands are bodies.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "io/input/boxes.hpp"
 #include "io/input/build.hpp"
 #include "io/input/text.hpp"
 
@@ -51,58 +52,11 @@ core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) 
   return plane;
 }
 
-struct Box {
-  Vector lower{INFINITY, INFINITY, INFINITY};
-  Vector upper{-INFINITY, -INFINITY, -INFINITY};
-
-  void include(const Vector& p) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      lower[i] = std::fmin(lower[i], p[i]);
-      upper[i] = std::fmax(upper[i], p[i]);
-    }
-  }
-};
-
-/// A box in local axes around the body; empty for shapes that are read from files or made later.
-Box local_box(const core::Geometry& geometry) {
-  Box box;
-  const auto around = [&](const Vector& base, double radius, double below, double above) {
-    box.include({base[0] - radius, base[1] - radius, base[2] - below});
-    box.include({base[0] + radius, base[1] + radius, base[2] + above});
-  };
-  if (const auto* points = std::get_if<core::PointGeometry>(&geometry))
-    for (const core::PointMass& p : points->points) box.include(p.position);
-  if (const auto* b = std::get_if<core::BlockGeometry>(&geometry)) {
-    box.include(b->origin);
-    box.include({b->origin[0] + b->size[0], b->origin[1] + b->size[1], b->origin[2] + b->size[2]});
-  }
-  if (const auto* s = std::get_if<core::SphereGeometry>(&geometry))
-    around(s->centre, s->outer_radius, s->outer_radius, s->outer_radius);
-  if (const auto* c = std::get_if<core::CylinderGeometry>(&geometry))
-    around(c->base_centre, std::max(c->bottom_outer_radius, c->top_outer_radius), 0, c->height);
-  return box;
-}
-
-Box global_box(const Box& local, const core::WorkPlane* plane) {
-  if (!plane || local.lower[0] > local.upper[0]) return local;
-  Box box;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vector p = plane->origin;
-    const Vector r{corner & 1 ? local.upper[0] : local.lower[0], corner & 2 ? local.upper[1] : local.lower[1],
-                   corner & 4 ? local.upper[2] : local.lower[2]};
-    for (std::size_t i = 0; i < 3; ++i)
-      p[i] += r[0] * plane->x_axis[i] + r[1] * plane->y_axis[i] + r[2] * plane->z_axis[i];
-    box.include(p);
-  }
-  return box;
-}
-
 /// Refuses a body no part of which can be in the grid; particles are checked one by one when they are made.
 void check_inside(const Node& node, const core::BodyInput& body, const core::Scene& scene,
                   const BuildContext& context) {
   if (body.for_bool || body.deactivated) return;
-  const core::WorkPlane* plane = body.work_plane ? &scene.work_planes[*body.work_plane] : nullptr;
-  const Box box = global_box(local_box(body.geometry), plane);
+  const Box box = box_of(body, scene);
   for (std::size_t i = 0; i < 3; ++i) {
     const core::GridAxis& axis = scene.grid.axes[i];
     if (std::isinf(box.lower[i]) || !(axis.min < axis.max)) continue;
@@ -209,6 +163,32 @@ void check_held(const core::BodyInput& body, const Node& node, const BuildContex
     refuse("Traction", "has no effect on a body whose velocity is prescribed or held");
 }
 
+/// A rigid body acts on others through contact alone: in the one velocity field of all bodies it would push
+/// nothing, so it may not stand beside bodies that deform.
+void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<Node>& nodes,
+                 const core::Scene& scene, const BuildContext& context) {
+  const auto takes_part = [](const core::BodyInput& b) { return !b.deactivated && !b.for_bool; };
+  const auto rigid = [&](const core::BodyInput& b) {
+    return b.material < scene.materials.size() && scene.materials[b.material].strength.type == "Rigid";
+  };
+  const core::BodyInput* deformable = nullptr;
+  for (const core::BodyInput* b : bodies)
+    if (takes_part(*b) && !rigid(*b)) deformable = deformable == nullptr ? b : deformable;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!takes_part(*bodies[i]) || !rigid(*bodies[i])) continue;
+    for (const Node& load : nodes[i].children("Traction"))
+      load.complain(context.diagnostics, "has no effect on a rigid body; use PrescribedAcceleration");
+    if (deformable == nullptr || scene.contact.enable) continue;
+    nodes[i].complain(
+        context.diagnostics, "material",
+        fmt::format("a rigid body acts on others through contact, which this version does not have: it would "
+                    "pass through '{}' and push nothing. Give the body a material that deforms, with "
+                    "PrescribedVelocity where its motion is known (that pushes), or leave it out; rigid "
+                    "bodies by themselves may run",
+                    deformable->name));
+  }
+}
+
 core::BodyInput build_body(const Node& node, const core::Scene& scene, const BuildContext& context) {
   core::BodyInput body;
   body.name = node.word("name");
@@ -283,6 +263,7 @@ std::vector<core::ComponentInput> build_components(const Node& root, const core:
     for (core::BodyInput& body : component.bodies) bodies.push_back(&body);
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (bodies[i]->type == "Bool") build_bool(*bodies[i], body_nodes[i], bodies, context);
+  check_rigid(bodies, body_nodes, scene, context);
   return components;
 }
 

@@ -5,14 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "core/scene/limits.hpp"
 #include "io/input/build.hpp"
 
 namespace mpm::io {
 
 namespace {
 
-constexpr double most_cells_per_axis = 0x1p31;  // cells are numbered with 32 bits along an axis ...
-constexpr double most_cells = 0x1p62;           // ... and with 64 bits altogether
+constexpr double most_cells = 0x1p62;  // they are numbered with 64 bits
 
 core::ShapeFunction shape_function(std::string_view word) {
   using enum core::ShapeFunction;
@@ -54,10 +54,11 @@ void count_cells(core::GridAxis& axis, const Node& max, const Node& size, std::s
   const double length = axis.max - axis.min;
   if (!(length > 0) || !(axis.cell_size > 0)) return;
   const double cells = length / axis.cell_size;
-  if (cells > most_cells_per_axis)
+  if (cells > static_cast<double>(core::most_cells_per_axis))
     return size.complain(
         context.diagnostics, attribute,
-        fmt::format("this makes {:.3g} cells along the axis; at most 2^31 are possible", cells));
+        fmt::format("this makes {:.7g} cells along the axis; at most {} are possible: use larger cells",
+                    std::ceil(cells), core::most_cells_per_axis));
   constexpr double round_off = 1e-6;  // of a cell
   const double whole = std::round(cells);
   if (whole < 1 || (whole == 1 && cells < 1 - round_off))

@@ -17,6 +17,17 @@ void Diagnostics::add(int line, std::string_view element, std::string_view attri
       {file_, line, std::string(element), std::string(attribute), std::string(value), std::move(message)});
 }
 
+void Diagnostics::merge(const Diagnostics& other) {
+  const std::vector<core::Diagnostic> mine = found_;
+  for (const core::Diagnostic& d : other.found_) {
+    const auto same = [&](const core::Diagnostic& m) {
+      return m.line == d.line && m.element == d.element && m.attribute == d.attribute;
+    };
+    if (std::ranges::none_of(mine, same)) found_.push_back(d);
+  }
+  left_out_ += other.left_out_;
+}
+
 void Diagnostics::raise_if_any() {
   if (found_.empty()) return;
   std::ranges::stable_sort(found_, {}, &core::Diagnostic::line);

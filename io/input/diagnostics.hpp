@@ -19,6 +19,9 @@ class Diagnostics {
   void add(int line, std::string_view element, std::string_view attribute, std::string_view value,
            std::string message);
 
+  /// Adds what `other` says about places that nothing was said about.
+  void merge(const Diagnostics& other);
+
   bool empty() const { return found_.empty(); }
   const std::string& file() const { return file_; }
 

@@ -42,6 +42,9 @@ std::string complaint_about_one(const AttributeSpec& a, std::string_view value) 
     }
     case ValueType::real: {
       const std::optional<double> number = parse_real(value);
+      if (!number && is_written_real(value))
+        return "beyond the range of numbers, which is 0 and 2.3e-308 to 1.7e308 in size; write 0, or choose "
+               "other units";
       if (!number) return expected(a, value) + ", written like 1.5e-3";
       return allowed(a, *number) ? std::string() : expected(a, value);
     }

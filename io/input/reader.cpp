@@ -11,9 +11,11 @@
 #include "io/input/checker.hpp"
 #include "io/input/document.hpp"
 #include "io/input/file_access.hpp"
+#include "io/input/idle.hpp"
 #include "io/input/library.hpp"
 #include "io/input/specification.hpp"
 #include "io/input/text.hpp"
+#include "io/input/user_specification.hpp"
 
 namespace mpm::io {
 
@@ -46,9 +48,9 @@ core::Scene build(const Node& root, const BuildContext& context) {
   scene.frictions = build_frictions(root, scene.materials, context);
   scene.work_planes = build_work_planes(root, context);
   scene.grid = build_grid(root, context);
+  scene.contact = build_contact(root);
   scene.components = build_components(root, scene, context);
   scene.detonations = build_detonations(root, context);
-  scene.contact = build_contact(root);
   scene.solution = build_solution(root, context);
   scene.output = build_output(root, scene.solution.end_time, context);
   scene.decomposition = build_decomposition(root, context);
@@ -58,11 +60,13 @@ core::Scene build(const Node& root, const BuildContext& context) {
 }  // namespace
 
 std::filesystem::path find_input(const std::filesystem::path& job) {
+  if (job.empty()) refuse({}, "the name of the job is empty: name an input file, Job.xmp");
   std::error_code ignored;
   std::filesystem::path with_extension = job;
   with_extension += ".xmp";
   const bool named_fully = job.extension() == ".xmp";
-  if (!named_fully && std::filesystem::exists(with_extension, ignored)) return with_extension;
+  if (!named_fully && job.has_filename() && std::filesystem::exists(with_extension, ignored))
+    return with_extension;
   if (std::filesystem::exists(job, ignored)) return job;
   if (named_fully) refuse(job, "no such file");
   refuse(job, fmt::format("no such file, nor {}", with_extension.string()));
@@ -100,13 +104,21 @@ core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& fil
   } else {
     fill_in_from_library(document, library(), diagnostics);
     check(document, root, options.accept_later, diagnostics);
+    Diagnostics by_users(file.string());
+    if (options.users) check(document, options.users->root, true, by_users);
+    diagnostics.merge(by_users);
   }
   core::Scene scene;
   if (!error && document.elements().front().name == root.name)
     scene = build(Node(document, 0, root, {}), {diagnostics, file.parent_path(), options.check_files});
-  diagnostics.raise_if_any();
   const std::filesystem::path name = file.extension() == ".xmp" ? file.stem() : file.filename();
+  if (name.empty() || name == ".xmp")
+    diagnostics.add(0, {},
+                    "the file's name has nothing before .xmp, so no name for the job: rename the file");
+  diagnostics.raise_if_any();
   scene.provenance = {file.string(), name.string(), fnv1a_hex(bytes)};
+  if (options.foreign) *options.foreign = foreign_names(Node(document, 0, root, {}), file.string());
+  if (options.notes) *options.notes = idle_settings(Node(document, 0, root, {}), scene);
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/scene/catalogue.hpp"
 #include "core/scene/scene.hpp"
@@ -12,10 +13,15 @@
 namespace mpm::io {
 
 struct ElementSpec;
+struct UserSpecification;
 
 struct ReadOptions {
   bool check_files = true;    ///< look whether the files that the input names can be read
   bool accept_later = false;  ///< let pass what the language has and the program has not yet
+  std::vector<core::Diagnostic>* notes = nullptr;  ///< gets what the input states without effect (idle.hpp)
+  const UserSpecification* users = nullptr;        ///< what the input must conform to as well
+  /// Gets what `users` allows and this program has not; without it such names are complained about.
+  std::vector<core::Diagnostic>* foreign = nullptr;
 };
 
 /// The input of a job that is named with or without `.xmp`; throws when there is none.

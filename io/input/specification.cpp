@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/embedded/specification.hpp"
+#include "io/input/diagnostics.hpp"
 #include "io/input/document.hpp"
 #include "io/input/text.hpp"
 
@@ -20,8 +21,14 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
+/// Caught where the line is known.
+class Mistake : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
 [[noreturn]] void mistake(std::string_view where, std::string_view what) {
-  throw std::logic_error(fmt::format("Specification.xml: {}: {}", where, what));
+  throw Mistake(fmt::format("{}: {}", where, what));
 }
 
 /// The items of spec= and attributeN=, separated by commas, with `ForTypes: A|B` taken out of the last.
@@ -36,13 +43,17 @@ struct Items {
     items.pop_back();
   }
   std::string_view at(std::size_t i) const { return i < items.size() ? items[i] : std::string_view(); }
+  void at_most(std::size_t most) const {
+    if (items.size() > most)
+      mistake(items[most], fmt::format("one item too many; expected at most {}, and ForTypes: last", most));
+  }
 };
 
 double bound(std::string_view text) {
   if (text == "inf") return std::numeric_limits<double>::infinity();
   if (text == "-inf") return -std::numeric_limits<double>::infinity();
   const std::optional<double> value = parse_real(text);
-  if (!value) mistake(text, "not a bound");
+  if (!value) mistake(text, "not a bound; expected a number, inf or -inf, as in 0:1");
   return *value;
 }
 
@@ -71,7 +82,9 @@ Range parse_range(std::string_view text, ValueType type) {
 void parse_occurrence(std::string_view text, bool& required, bool& multiple) {
   required = text.starts_with("REQUIRED");
   multiple = text.ends_with("_MULTIPLE");
-  if (!required && !text.starts_with("OPTIONAL")) mistake(text, "not an occurrence");
+  const std::string_view bare = multiple ? text.substr(0, text.size() - 9) : text;
+  if (bare != "REQUIRED" && bare != "OPTIONAL")
+    mistake(text, "not an occurrence; expected REQUIRED, OPTIONAL, REQUIRED_MULTIPLE or OPTIONAL_MULTIPLE");
 }
 
 ValueType parse_type(std::string_view text) {
@@ -79,13 +92,15 @@ ValueType parse_type(std::string_view text) {
   if (text == "DOUBLE") return ValueType::real;
   if (text == "INTEGER") return ValueType::integer;
   if (text == "BOOLEAN") return ValueType::boolean;
-  mistake(text, "not a data type");
+  mistake(text, "not a data type; expected STRING, DOUBLE, INTEGER or BOOLEAN");
 }
 
 AttributeSpec parse_attribute(std::string_view text) {
   const Items items(text);
+  items.at_most(4);
   AttributeSpec a;
   a.name = items.at(0);
+  if (a.name.empty()) mistake(text, "names no attribute");
   parse_occurrence(items.at(1), a.required, a.multiple);
   a.type = parse_type(items.at(2));
   a.range = parse_range(items.at(3), a.type);
@@ -137,7 +152,8 @@ void parse_key(ElementSpec& spec, std::string_view name, std::string_view value)
   const auto [key, number] = numbered(name);
   if (key == "attribute") {
     if (number != spec.attributes.size() + 1) mistake(name, "attributes are numbered from 1 without gaps");
-    spec.attributes.push_back(parse_attribute(value));
+    spec.attributes.emplace_back();  // stays, so that a mistake in one brings none about the next
+    spec.attributes.back() = parse_attribute(value);
   } else if (key == "together") {
     const Items items(value);
     spec.together.push_back({words_of(items.at(0)), items.for_types});
@@ -146,7 +162,10 @@ void parse_key(ElementSpec& spec, std::string_view name, std::string_view value)
     parse_detail(spec.attributes[number - 1], key, value);
   } else if (key == "spec") {
     const Items items(value);
+    items.at_most(3);
     parse_occurrence(items.at(0), spec.required, spec.multiple);
+    if (!items.at(1).empty() && items.at(1) != "NO_DATA")
+      mistake(items.at(1), "no element of an input holds text; expected NO_DATA");
     spec.for_types = items.for_types;
   } else if (key == "meaning") {
     spec.meaning = value;
@@ -161,12 +180,23 @@ void parse_key(ElementSpec& spec, std::string_view name, std::string_view value)
   }
 }
 
-ElementSpec parse_element(const Document& document, const XmlElement& element) {
+ElementSpec parse_element(const Document& document, const XmlElement& element, Diagnostics& mistakes) {
   ElementSpec spec;
   spec.name = element.name;
-  for (const XmlAttribute& a : document.attributes(element)) parse_key(spec, a.name, a.value);
-  for (std::uint32_t i = element.first_child; i != 0; i = document.elements()[i].next_sibling)
-    spec.children.push_back(parse_element(document, document.elements()[i]));
+  bool has_spec = false;
+  for (const XmlAttribute& a : document.attributes(element)) {
+    has_spec = has_spec || a.name == "spec";
+    try {
+      parse_key(spec, a.name, a.value);
+    } catch (const Mistake& mistake) { mistakes.add(a.line, element.name, a.name, a.value, mistake.what()); }
+  }
+  if (!has_spec) mistakes.add(element.line, element.name, "attribute 'spec' is missing");
+  for (std::uint32_t i = element.first_child; i != 0; i = document.elements()[i].next_sibling) {
+    const XmlElement& child = document.elements()[i];
+    if (spec.child(child.name))
+      mistakes.add(child.line, child.name, fmt::format("described twice in <{}>", spec.name));
+    spec.children.push_back(parse_element(document, child, mistakes));
+  }
   return spec;
 }
 
@@ -202,11 +232,17 @@ const AttributeSpec* ElementSpec::attribute(std::string_view attribute_name,
   return nullptr;
 }
 
-ElementSpec parse_specification(std::string_view xml) {
+ElementSpec parse_specification(std::string_view xml, const std::string& file) {
+  Diagnostics mistakes(file);
   std::optional<XmlError> error;
   const Document document = parse_document(xml, error);
-  if (error) mistake(fmt::format("line {}", error->line), error->message);
-  return parse_element(document, document.elements().front());
+  ElementSpec root;
+  if (error)
+    mistakes.add(error->line, {}, error->message);
+  else
+    root = parse_element(document, document.elements().front(), mistakes);
+  mistakes.raise_if_any();
+  return root;
 }
 
 const ElementSpec& specification() {

@@ -44,6 +44,8 @@ struct AttributeSpec {
   std::pair<std::string, std::string> also_word;  ///< accepted spelling of a word, and the word
   std::string twice;                              ///< what is meant where the attribute stands twice
   std::string word;                               ///< accepted in place of a number
+  bool foreign = false;                           ///< a user's Specification has it, this program has not
+  std::vector<std::string> foreign_words;         ///< words that only a user's Specification has
 
   bool applies_to(std::string_view element_type) const;
 };
@@ -65,6 +67,7 @@ struct ElementSpec {
   bool later = false;
   std::string instead_of;
   LawFamily laws = LawFamily::none;
+  bool foreign = false;  ///< a user's Specification has it, this program has not
   std::vector<TogetherSpec> together;
   std::vector<AttributeSpec> attributes;
   std::vector<ElementSpec> children;
@@ -75,8 +78,8 @@ struct ElementSpec {
   const AttributeSpec* attribute(std::string_view attribute_name, std::string_view element_type) const;
 };
 
-/// Reads the notation; throws std::logic_error on a mistake in it, for it is part of the program.
-ElementSpec parse_specification(std::string_view xml);
+/// Reads the notation. Throws core::InputErrors with every mistake in it, which `file` is named for.
+ElementSpec parse_specification(std::string_view xml, const std::string& file = "Specification.xml");
 
 /// The built-in Specification.xml; the root is PeneBlast.
 const ElementSpec& specification();

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/simd/denormals.hpp"
+
 namespace mpm::io {
 
 namespace {
@@ -93,9 +95,12 @@ std::optional<double> parse_real(std::string_view text) {
   if (text.front() == '+') text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  if (!std::isfinite(value) || core::is_subnormal(value)) return {};
   return value;
 }
+
+bool is_written_real(std::string_view text) { return is_c_real(trim(text)); }
 
 std::optional<std::int64_t> parse_integer(std::string_view text) {
   text = trim(text);

@@ -21,8 +21,12 @@ std::string shortened(std::string_view text, std::size_t bytes);
 std::string join(const std::vector<std::string>& words, std::string_view separator);
 
 /// A finite real in C notation with full double precision: `.5`, `1.`, `+2e-3`. Nothing for `1d3`, `nan`,
-/// `inf`, `0x1p3`, trailing text, or a value beyond the range of double.
+/// `inf`, `0x1p3`, trailing text, a value beyond the range of double, or one that is not 0 and too small to
+/// be kept with full precision (below 2.3e-308: the programs count such numbers as 0).
 std::optional<double> parse_real(std::string_view text);
+
+/// Whether the text is a real in C notation, of any size.
+bool is_written_real(std::string_view text);
 
 /// A whole number in decimal digits with an optional sign.
 std::optional<std::int64_t> parse_integer(std::string_view text);

@@ -11,7 +11,8 @@ FileError system_error(const std::string& doing, const std::string& path, int er
   std::string text = fmt::format("cannot {} '{}': {}", doing, path, std::generic_category().message(error));
   if (error == ENOSPC || error == EDQUOT) {
     text +=
-        "; free some space, or choose another folder with --output-dir, and restart from the last .pe file";
+        "; free some space, or choose another folder with --output-dir, and start again: from the newest .pe "
+        "file where there is one";
   } else if (error == EFBIG) {
     text += "; raise the limit on the size of files (ulimit -f)";
   }

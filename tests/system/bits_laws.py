@@ -1,4 +1,4 @@
-"""One scene with every law of the manual: the same on any ranks and threads, and a restart keeps it, to the last bit.
+"""Every law of the manual: one scene with those that deform, one of rigid bodies. The same on any ranks and threads, and a restart keeps it, to the last bit.
 
 Each material has two small blocks, side by side over a wall that both are thrown at; the second is turned a little off
 its way, so that every law meets compression, release and shear. Units: m, kg, s."""
@@ -55,20 +55,20 @@ MATERIALS = {
     "concrete": (2440, f'type="HolmquistJohnsonCook" {CONCRETE}', CRUSHED, ""),
     "porous": (2314, f'type="RHT" {RHT}', P_ALPHA, ""),
     "ceramic": (3163, f'type="JH2" {CERAMIC}', None, ""),
-    "rigid": (7830, 'type="Rigid"', None, ""),
 }
+RIGID = {"rigid": (7830, 'type="Rigid"', None, ""), "light": (1000, 'type="Rigid"', None, "")}
 # Bars have no bodies of particles; and the word for no failure model.
 NONE = {"Elastic_1D", "LinHarElaPlastic_1D", "none"}
 
 
 def material(name):
-    density, strength, eos, more = MATERIALS[name]
+    density, strength, eos, more = {**MATERIALS, **RIGID}[name]
     return _mpm.material(name, density, strength, (f"<EquationOfState {eos}/>" if eos else "") + more)
 
 
-def bodies():
+def bodies(materials):
     made = []
-    for i, name in enumerate(MATERIALS):
+    for i, name in enumerate(materials):
         x, y = 5 * (i % 5) + 1.2, 8 * (i // 5) + 1.4
         for j, side in enumerate((0, 60)):
             lower = [c * CELL for c in (x, y + 4 * j, 0.6)]
@@ -76,11 +76,11 @@ def bodies():
     return made
 
 
-def scene(output=""):
+def scene(output="", materials=tuple(MATERIALS)):
     upper = [c * CELL for c in (26, 34, 8)]
     lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-1"/></Detonation>'
-    return _mpm.scene(bodies(), _mpm.grid((0, 0, 0), upper, "000020", CELL), _mpm.solution(END),
-                      [material(name) for name in MATERIALS], f'<Console print_time="{END / 10}"/>{output}', lit)
+    return _mpm.scene(bodies(materials), _mpm.grid((0, 0, 0), upper, "000020", CELL), _mpm.solution(END),
+                      [material(name) for name in materials], f'<Console print_time="{END / 10}"/>{output}', lit)
 
 
 END = 6e-6
@@ -90,7 +90,7 @@ class EveryLaw(Case):
     def test_the_scene_has_every_law(self):
         """By the reference of the language: a law that joins it is missed here."""
         reference = subprocess.run([_mpm.BIN / "mpm_check", "--reference"], capture_output=True, text=True, check=True)
-        text = scene()
+        text = scene() + scene(materials=tuple(RIGID))
         for element in ("StrengthModel", "EquationOfState", "FailureModel"):
             section = reference.stdout.split(f"### Material / {element}\n")[1].split("\n### ")[0]
             types = re.search(r"\| `type` \|[^|]*\|([^|]*)\|", section)[1]
@@ -101,7 +101,14 @@ class EveryLaw(Case):
                     self.assertTrue(f'type="{law}"' in text)
 
     def test_any_ranks_threads_and_restart(self):
-        self.write(scene(f'<Restart time_interval="{END / 2}"/>'))
+        self.same_bits(tuple(MATERIALS))
+
+    def test_rigid_bodies(self):
+        """In a scene of their own: without contact they may not stand beside bodies that deform."""
+        self.same_bits(tuple(RIGID))
+
+    def same_bits(self, materials):
+        self.write(scene(f'<Restart time_interval="{END / 2}"/>', materials))
         case = self.folder / "case.xmp"
         expected = self.run_in("alone", [case]).state
         for ranks, threads in [(2, 1), (3, 2)]:

@@ -65,6 +65,16 @@ SCENES = [
     ("two bodies of one name", _mpm.scene([BODY, BODY], ROOMY, SHORT), ["cube", "already"]),
     ("known, but not implemented", changed("<Output>", '<Contact enable="1"/><Output>'),
      ["Contact", "not implemented"]),
+    ("twelve million cells along an axis", in_grid(_mpm.grid((0, 0, 0), (8, 8, 8), cell=8 / 12e6)),
+     ["DCell", "1.2e+07 cells", "at most 4194304"]),
+    ("a number that would become 0", changed('vx="0"', 'vx="1e-310"'), ["vx", "1e-310", "beyond the range", "write 0"]),
+    ("particles of no mass", one_body(_mpm.block("cube", (2, 2, 2), (1e-120,) * 3, dp=1e-120)), ["dp", "1e-120", "other units"]),
+    ("a material for bars", changed("IsoElastic", "Elastic_1D"), ["case.xmp:", "Body", "for bars", "without _1D"]),
+    ("a rigid body beside others", _mpm.scene([BODY, cube("ram", 1, of="iron")], ROOMY, SHORT,
+                                              [_mpm.material(), _mpm.material("iron", 8.0, 'type="Rigid"')]),
+     ['material="iron"', "through contact", "pass through 'cube'"]),
+    ("an explosive that is not lit", changed('type="IsoElastic" Young="1000" Poisson="0.3"', 'type="HighExpBurn" D="6930"'),
+     ["HighExpBurn", "add a Detonation"]),
     ("a particle file that is not there", one_body(GRAINS), ["grains.txt", "no such file"]),
 ]
 SCENES_ON_TWO_RANKS_TOO = [
@@ -84,10 +94,15 @@ SCENES_ON_TWO_RANKS_TOO = [
      ["dimension0", "= 6", "number of ranks"]),
 ]
 
+# Reasons of the machine, not of the input: mpm_check lets them pass.
+MACHINES = {"more particles than memory", "dimensions that are not the number of ranks"}
+
 # Name, the command line behind the program's name, exit code, what the message has to say. {} is the test's folder,
 # which holds good.xmp and a file named `file`.
 LINES = [
     ("nothing", [], INPUT_ERROR, ["job"]),
+    ("an empty name", [""], INPUT_ERROR, ["name of the job is empty", "Job.xmp"]),
+    ("a file named .xmp", ["{}/hidden/.xmp"], INPUT_ERROR, [".xmp", "nothing before .xmp", "rename"]),
     ("missing file", ["{}/none.xmp"], INPUT_ERROR, ["none.xmp", "no such file"]),
     ("missing file, no ending", ["{}/none"], INPUT_ERROR, ["none", "no such file"]),
     ("a folder", ["{}"], INPUT_ERROR, []),
@@ -120,6 +135,13 @@ class BadInput(Case):
         self.assertEqual(len(complaints), len(set(complaints)), f"said more than once: {outcome}")
         self.assertLess(len(complaints), 5, outcome)
 
+    def same_verdict(self, name, words):
+        """mpm_check finds what a run refuses, and says the same."""
+        outcome = _mpm.run([self.folder / "case.xmp"], program="mpm_check", timeout=20)
+        self.assertEqual(outcome.code, _mpm.DONE if name in MACHINES else INPUT_ERROR, outcome)
+        for word in words if outcome.code == INPUT_ERROR else []:
+            self.assertIn(word.lower(), outcome.err.lower())
+
     def nothing_left(self, names):
         found = _mpm.names(self.folder)
         shutil.rmtree(self.folder / "out", ignore_errors=True)
@@ -127,6 +149,8 @@ class BadInput(Case):
 
     def check_scene(self, name, text, words, all_ranks=(1, 2)):
         self.write(text)
+        with self.subTest(name, program="mpm_check"):
+            self.same_verdict(name, words)
         for ranks in all_ranks:
             with self.subTest(name, ranks=ranks):
                 self.expect([self.folder / "case.xmp", "--output-dir", self.folder / "out"], INPUT_ERROR, words, ranks)
@@ -149,6 +173,8 @@ class BadInput(Case):
         here = str(self.folder)
         self.write(GOOD, "good.xmp")
         self.write("", "file")
+        (self.folder / "hidden").mkdir()
+        self.write(GOOD, "hidden/.xmp")
         for name, line, code, words in LINES:
             for ranks in (1, 2) if name in ("missing file", "unknown option", "output folder is a file") else (1,):
                 with self.subTest(name, ranks=ranks):
@@ -156,7 +182,7 @@ class BadInput(Case):
                     if "--output-dir" not in line:
                         arguments += ["--output-dir", f"{here}/out"]
                     self.expect(arguments, code, [word.format(here) for word in words], ranks)
-                    self.nothing_left(["file", "good.xmp"])
+                    self.nothing_left(["file", "good.xmp", "hidden", "hidden/.xmp"])
 
     def test_folders_without_permission(self):
         if os.geteuid() == 0:
@@ -171,6 +197,7 @@ class BadInput(Case):
         self.write(one_body(GRAINS))
         for name, lines, words in [("not a number", "1 2 2 2\n1 3 nan 2\n", ["grains.txt:2"]),
                                    ("too few", "1 2 2 2\n1 3 2\n", ["grains.txt:2"]),
+                                   ("too small", "1 2 2 2\n1 1e-310 2 2\n", ["grains.txt:2", "1e-310", "write 0"]),
                                    ("mass below zero", "-1 2 2 2\n", ["grains.txt:1"]),
                                    ("empty", "", ["grains.txt"]),
                                    ("outside", "1 2 2 2\n1 30 2 2\n", ["grains", "outside"])]:
@@ -178,8 +205,61 @@ class BadInput(Case):
                 with self.subTest(name, ranks=ranks):
                     self.write(lines, "grains.txt")
                     line = [self.folder / "case.xmp", "--output-dir", self.folder / "out"]
+                    self.same_verdict(name, words)
                     self.expect(line, INPUT_ERROR, words, ranks)
                     self.nothing_left(["case.xmp", "grains.txt"])
+
+    def test_what_has_no_effect_is_said(self):
+        """In the log and by mpm_check, in the same words."""
+        more = ('<Contact enable="0" contact_type="2"/><Friction><Coefficient value="0.1" mat1="soft" mat2="soft"/></Friction>')
+        two = _mpm.scene([BODY], ROOMY, SHORT, more=more).replace("</Component>", '</Component><Component name="other">'
+                                                                   + _mpm.block("lid", (2, 2, 6), (4, 4, 1)) + "</Component>")
+        self.write(two)
+        checked = _mpm.run([self.folder / "case.xmp"], program="mpm_check")
+        self.assertEqual(checked.code, _mpm.DONE, checked)
+        notes = [line for line in checked.out.splitlines() if line.startswith("note ")]
+        for words in (['<Contact contact_type="2">', "Contact is off"], ["<Friction>", "acts in contact only"],
+                      ["<Component>", "bodies 'cube' and 'lid' touch at the start", "stick"]):
+            self.assertEqual(len([line for line in notes if all(word in line for word in words)]), 1, (words, checked.out))
+        self.assertEqual(len(notes), 3, checked.out)
+        for ranks in (1, 2):
+            outcome = self.run_in("out", [self.folder / "case.xmp"], ranks=ranks)
+            log = (self.folder / "out/case.out").read_text()
+            for note in notes:
+                self.assertEqual((outcome.out.count(note), log.count(note)), (1, 1), note)
+
+    def test_specification_of_the_users(self):
+        good = self.write(GOOD, "good.xmp")
+        text = (_mpm.SOURCE / "io/input/Specification.xml").read_text()
+        mine = self.write(text.replace('<InitialVelocity spec=', '<Magnet spec="OPTIONAL, NO_DATA" attribute1="strength, '
+                                       'REQUIRED, DOUBLE, 0:3"/>\n      <InitialVelocity spec='), "mine.xml")
+        magnet = self.write(GOOD.replace("<InitialVelocity", '<Magnet strength="2"/><InitialVelocity'), "magnet.xmp")
+
+        def check(specification, *files):
+            return _mpm.run(["--specification", specification, *files], program="mpm_check")
+
+        outcome = check(mine, good, magnet)
+        self.assertEqual(outcome.code, _mpm.DONE, outcome)
+        self.assertIn(f", by {mine}", outcome.out)
+        self.assertRegex(outcome.out, r"note .*magnet.xmp:\d+: <Magnet>: the Specification has it, this program has not")
+        self.assertEqual(_mpm.run([magnet], program="mpm_check").code, INPUT_ERROR)
+        self.write(magnet.read_text().replace('"2"', '"4"'), "magnet.xmp")
+        outcome = check(mine, magnet)
+        self.assertEqual(outcome.code, INPUT_ERROR, outcome)
+        self.assertIn('<Magnet strength="4">: expected a number in [0, 3]', outcome.err)
+        self.write(mine.read_text().replace("DOUBLE, 0:3", "FLOAT"), "mine.xml")
+        outcome = check(mine, good)
+        self.assertEqual(outcome.code, INPUT_ERROR, outcome)
+        line = next(n for n, text in enumerate(mine.read_text().splitlines(), 1) if "FLOAT" in text)
+        self.assertIn(f"{mine}:{line}: <Magnet attribute1=", outcome.err)
+        # The one beside the program is read by itself.
+        beside = self.folder / "bin"
+        beside.mkdir()
+        shutil.copy(_mpm.BIN / "mpm_check", beside)
+        shutil.copy(mine, beside / "Specification.xml")
+        outcome = _mpm.run([good], program=beside / "mpm_check")
+        self.assertEqual(outcome.code, INPUT_ERROR, outcome)
+        self.assertIn("bin/Specification.xml:", outcome.err)
 
     def test_files_of_an_earlier_run_stay(self):
         """Bad input must not cost the results of the good input before it."""

@@ -130,8 +130,8 @@ TEST_CASE("absurd numbers of particles are answered without making them", "[disc
                                                         {rings, pi * 1e27},
                                                         // integral of pi/h^3 over the height
                                                         {graded, pi * 3 / 8 * 1e27},
-                                                        {ball(1e-300, 1e300), -1},
-                                                        {block(1e-300, {0, 0, 0}, {1, 1, 1}), -1}};
+                                                        {ball(1e-100, 1e300), -1},
+                                                        {block(1e-100, {0, 0, 0}, {1, 1, 1}), -1}};
   for (const auto& [geometry, expected] : absurd) {
     INFO(geometry.index());
     const auto from = source(geometry);
@@ -144,6 +144,13 @@ TEST_CASE("absurd numbers of particles are answered without making them", "[disc
     if (expected > 0) CHECK(from->expected_particles() == Approx(expected).epsilon(1e-3));
     if (expected < 0) CHECK(from->expected_particles() > 1e100);
   }
+}
+
+TEST_CASE("a spacing whose particles would have no volume or no mass is refused", "[discretise]") {
+  for (const Geometry& geometry :
+       std::vector<Geometry>{block(1e-103, {0, 0, 0}, {1, 1, 1}), block(1e103, {0, 0, 0}, {1e103, 1, 1}),
+                             ball(1e-300, 1), cylinder(1e-300, 1, 1)})
+    CHECK_THROWS_AS(source(geometry), InputErrors);
 }
 
 TEST_CASE("a large body is numbered and estimated at once, and any unit of it is made at once",

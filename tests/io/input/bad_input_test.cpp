@@ -111,6 +111,9 @@ TEST_CASE("spellings of the manual that are refused") {
 }
 
 TEST_CASE("values") {
+  const std::string beyond =
+      "beyond the range of numbers, which is 0 and 2.3e-308 to 1.7e308 in size; write 0, or choose other "
+      "units";
   check_table({
       {"value=\"8.93e-3\"",
        "value=\"-8.93e-3\"",
@@ -118,9 +121,11 @@ TEST_CASE("values") {
       {"value=\"8.93e-3\"",
        "value=\"nan\"",
        {"line 5: <ReferenceDensity value=\"nan\">: expected a number greater than 0, written like 1.5e-3"}},
-      {"value=\"8.93e-3\"",
-       "value=\"1e999\"",
-       {"line 5: <ReferenceDensity value=\"1e999\">: expected a number greater than 0, written like 1.5e-3"}},
+      {"value=\"8.93e-3\"", "value=\"1e999\"", {"line 5: <ReferenceDensity value=\"1e999\">: " + beyond}},
+      {"value=\"8.93e-3\"", "value=\"1e-310\"", {"line 5: <ReferenceDensity value=\"1e-310\">: " + beyond}},
+      {"vz=\"-190\"", "vz=\"-4.9e-324\"", {"line 14: <InitialVelocity vz=\"-4.9e-324\">: " + beyond}},
+      {"vz=\"-190\"", "vz=\"1e-400\"", {"line 14: <InitialVelocity vz=\"1e-400\">: " + beyond}},
+      {"vz=\"-190\"", "vz=\"2.3e-308\"", {"ok"}},
       {"vz=\"-190\"",
        "vz=\"-1d3\"",
        {"line 14: <InitialVelocity vz=\"-1d3\">: expected a number, written like 1.5e-3"}},
@@ -146,10 +151,10 @@ TEST_CASE("values") {
        {"line 25: <TimeStep factor=\"0\">: expected a number in (0, 1]"}},
       {"<EndTime",
        "<OpenMPSetting nthread=\"0\"/><EndTime",
-       {"line 25: <OpenMPSetting nthread=\"0\">: expected a whole number greater than 0"}},
+       {"line 25: <OpenMPSetting nthread=\"0\">: expected a whole number in [1, 1024]"}},
       {"<EndTime",
        "<OpenMPSetting nthread=\"99999999999\"/><EndTime",
-       {"line 25: <OpenMPSetting nthread=\"99999999999\">: expected a whole number greater than 0"}},
+       {"line 25: <OpenMPSetting nthread=\"99999999999\">: expected a whole number in [1, 1024]"}},
       {"value=\"0.08\"", "value=\"0\"", {"line 25: <EndTime value=\"0\">: expected a number greater than 0"}},
       {"<EndTime",
        "<Warn type=\"ie|vole\"/><EndTime",
@@ -399,14 +404,18 @@ TEST_CASE("the grid") {
        {"line 19: <XMax value=\"0\">: expected more than XMin, 0"}},
       {"dx=\"0.76\"",
        "dx=\"1e-12\"",
-       {"line 22: <DCell dx=\"1e-12\">: this makes 1.14e+13 cells along the axis; at most 2^31 are "
-        "possible"}},
+       {"line 22: <DCell dx=\"1e-12\">: this makes 1.14e+13 cells along the axis; at most 4194304 "
+        "are possible: use larger cells"}},
+      {"dx=\"0.76\"",
+       "dx=\"9.5e-7\"",  // twelve million
+       {"line 22: <DCell dx=\"9.5e-7\">: this makes 1.2e+07 cells along the axis; at most 4194304 are "
+        "possible: use larger cells"}},
       {"dx=\"0.76\"",
        "dx=\"20\"",
        {"line 22: <DCell dx=\"20\">: a cell is larger than the grid, which is 11.4 long"}},
       {"dx=\"0.76\" dy=\"0.76\" dz=\"0.76\"",
-       "dx=\"1e-8\" dy=\"1e-8\" dz=\"1e-7\"",
-       {"line 18: <Cell>: 3.46e+26 cells cannot be numbered; expected fewer than 2^62"}},
+       "dx=\"2.85e-6\" dy=\"2.85e-6\" dz=\"6.65e-6\"",
+       {"line 18: <Cell>: 6.4e+19 cells cannot be numbered; expected fewer than 2^62"}},
       {"<XMax value=\"11.4\" boundary=\"0\"",
        "<XMax value=\"11.5\" boundary=\"1\"",
        {"line 19: <XMax value=\"11.5\">: a wall must lie on a face of cells: 15.131578947368421 cells of "

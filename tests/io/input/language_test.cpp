@@ -53,8 +53,10 @@ TEST_CASE("mistakes in the specification are found when it is read") {
        {"<E spec='SOMETIMES'/>", "<E spec='REQUIRED' attribute2='a, REQUIRED, DOUBLE'/>",
         "<E spec='REQUIRED' attribute1='a, REQUIRED, FLOAT'/>",
         "<E spec='REQUIRED' attribute1='a, REQUIRED, DOUBLE, x:y'/>", "<E spec='REQUIRED' default1='1'/>",
-        "<E spec='REQUIRED' colour='red'/>", "<E"})
-    CHECK_THROWS_AS(io::parse_specification(wrong), std::logic_error);
+        "<E spec='REQUIRED' colour='red'/>", "<E", "<E/>", "<E spec='REQUIREDX'/>",
+        "<E spec='REQUIRED, STRING'/>", "<E spec='REQUIRED' attribute1='a, REQUIRED, DOUBLE, 0:1, 2:3'/>",
+        "<E spec='REQUIRED'><F spec='OPTIONAL'/><F spec='OPTIONAL'/></E>"})
+    CHECK_THROWS_AS(io::parse_specification(wrong), core::InputErrors);
 }
 
 TEST_CASE("laws' tables replace the rows of the types that they implement") {

@@ -1,0 +1,413 @@
+#include "io/input/idle.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "io/input/boxes.hpp"
+#include "io/input/text.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+using core::MaterialInput;
+using core::Scene;
+
+/// Where the walk through the input is: the element, and the material or body that it belongs to.
+struct Place {
+  const Scene& scene;
+  const Node& node;
+  const MaterialInput* material = nullptr;
+  const core::BodyInput* body = nullptr;
+
+  const core::LawInput& strength() const { return material->strength; }
+  double eos(std::string_view name) const { return material->eos ? material->eos->value_or(name, 0) : 0; }
+};
+
+bool contact_is_off(const Place& at) { return !at.scene.contact.enable; }
+
+const MaterialInput& material_of(const Scene& scene, const core::BodyInput& body) {
+  return scene.materials[body.material];
+}
+
+template <class Test>
+bool any_body(const Scene& scene, Test test) {
+  return std::ranges::any_of(scene.components, [&](const core::ComponentInput& component) {
+    return std::ranges::any_of(component.bodies, test);
+  });
+}
+
+bool unused_material(const Place& at) {
+  const auto number = static_cast<std::size_t>(at.material - at.scene.materials.data());
+  return !any_body(at.scene, [&](const core::BodyInput& body) { return body.material == number; });
+}
+
+bool unused_plane(const Place& at) {
+  const std::string name = at.node.word("name");
+  return !any_body(at.scene, [&](const core::BodyInput& body) {
+    return body.work_plane && at.scene.work_planes[*body.work_plane].name == name;
+  });
+}
+
+bool rigid(const MaterialInput& material) { return material.strength.type == "Rigid"; }
+
+/// Whether the law itself carries damage.
+bool has_damage(const Place& at) {
+  const std::string& type = at.strength().type;
+  return type == "HolmquistJohnsonCook" || type == "RHT" || type == "JH2" ||
+         (type == "JohnsonCook" && at.strength().has("D1"));
+}
+
+bool can_fail(const Place& at) {
+  const std::string& type = at.strength().type;
+  return !at.material->failures.empty() || has_damage(at) || type == "DruckerPrager" || type == "DFFoam" ||
+         type == "Gurson";
+}
+
+bool failed_type_is_not(const Place& at, int type) { return at.strength().value_or("FailedType", 0) != type; }
+
+bool no_damage_rule(const Place& at) { return contact_is_off(at) || !at.scene.contact.failed_to_component; }
+
+bool all_zero(const Place& at) {
+  return at.node.word("type") != "none" &&
+         std::ranges::all_of(at.node.spec().attributes, [&](const AttributeSpec& row) {
+           return row.type != ValueType::real || !row.applies_to(at.node.type()) ||
+                  at.node.real(row.name) == 0;
+         });
+}
+
+bool nothing_explodes(const Place& at) {
+  return !any_body(at.scene, [&](const core::BodyInput& body) {
+    const core::LawInput& law = material_of(at.scene, body).strength;
+    return law.type == "HighExpBurn" && law.value_or("beta", 2) != 1;
+  });
+}
+
+bool no_free_face(const Place& at) {
+  return std::ranges::none_of(at.scene.grid.axes, [](const core::GridAxis& axis) {
+    return axis.lower == core::Boundary::free || axis.upper == core::Boundary::free;
+  });
+}
+
+bool all_rigid(const Place& at) {
+  return !any_body(at.scene,
+                   [&](const core::BodyInput& body) { return !rigid(material_of(at.scene, body)); });
+}
+
+bool no_pictures(const Place& at) {
+  const auto& post = at.scene.output.post_processing;
+  return !post || (!post->h5part && post->vtk == core::PostProcessingInput::Vtk::none);
+}
+
+using Random = core::RandomFailureInput;
+const Random& random(const Place& at) { return at.material->random_failure; }
+
+/// One kind of setting that may be without effect.
+struct Rule {
+  std::string_view path;  ///< of the element
+  /// Any of these that is given with another value than its default; none: the element itself; "*": all but
+  /// the first of the element's, its switch.
+  std::vector<std::string_view> attributes;
+  bool (*idle)(const Place&);
+  std::string_view why;
+};
+
+const std::vector<Rule>& rules() {
+  static constexpr std::string_view no_contact = "acts in contact only, and Contact is off";
+  static const std::vector<Rule> table{
+      {"Material", {}, unused_material, "no body is made of this material"},
+      {"Material/StrengthModel",
+       {"TensileCutoff"},
+       [](const Place& at) { return failed_type_is_not(at, 2); },
+       "acts with FailedType=\"2\" only"},
+      {"Material/StrengthModel",
+       {"FailedType", "FailViscosity"},
+       [](const Place& at) { return !can_fail(at); },
+       "acts on failed particles only, and nothing lets this material fail"},
+      {"Material/StrengthModel",
+       {"FailureDamageThreshold"},
+       no_damage_rule,
+       "acts with Contact failure_to_component=\"1\" only, and Contact is off"},
+      {"Material/StrengthModel",
+       {"PlasticWorkCoefficient"},
+       [](const Place& at) { return !at.strength().has("SpecHeat"); },
+       "heats only with SpecHeat, which is not given"},
+      {"Material/StrengthModel",
+       {"roomt"},
+       [](const Place& at) { return !at.strength().has("SpecHeat"); },
+       "there is no temperature without SpecHeat"},
+      {"Material/StrengthModel",
+       {"SpecHeat"},
+       [](const Place& at) {
+         return at.node.spec().attribute("PlasticWorkCoefficient", at.node.type()) == nullptr &&
+                at.strength().value_or("TemperatureCoefficient", 0) == 0 &&
+                at.strength().value_or("CoefficientOfThermalConductivity", 0) == 0;
+       },
+       "nothing heats this material"},
+      {"Material/StrengthModel",
+       {"*"},
+       [](const Place& at) { return rigid(*at.material); },
+       "a rigid body has neither stress nor heat"},
+      {"Material/StrengthModel",
+       {"Young", "Poisson"},
+       [](const Place& at) {
+         const std::string& type = at.strength().type;
+         return type == "HighExpBurn" || (type == "Null" && at.material->eos);
+       },
+       "the equation of state gives the stiffness"},
+      {"Material/EquationOfState",
+       {"c0", "c1", "c2", "c3", "c4", "c5", "c6"},
+       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 1; },
+       "acts with EOSID=\"1\" only"},
+      {"Material/EquationOfState",
+       {"A1", "A2", "A3", "B0", "B1", "T1", "T2"},
+       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 2; },
+       "acts with EOSID=\"2\" only"},
+      {"Material/EquationOfState",
+       {"S1", "gamma0", "simplified"},
+       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 3; },
+       "acts with EOSID=\"3\" only"},
+      {"Material/FailureModel",
+       {"Erosion"},
+       [](const Place& at) { return at.node.type() == "none"; },
+       "type none has no criterion"},
+      {"Material/FailureModel", {}, all_zero, "all its bounds are 0, which switches it off"},
+      {"Material/RandomFailure",
+       {"*"},
+       [](const Place& at) { return !random(at).enable; },
+       "RandomFailure is off"},
+      {"Material/RandomFailure",
+       {"enable"},
+       [](const Place& at) { return random(at).distribution == Random::Distribution::constant; },
+       "FailDistribution 0 gives every particle the same thresholds"},
+      {"Material/RandomFailure",
+       {"enable"},
+       [](const Place& at) {
+         return random(at).distribution != Random::Distribution::constant && !can_fail(at);
+       },
+       "nothing lets this material fail"},
+      {"Material/RandomFailure",
+       {"GaussMean", "GaussStd"},
+       [](const Place& at) {
+         return random(at).enable && random(at).distribution != Random::Distribution::gauss;
+       },
+       "acts with FailDistribution=\"1\" only"},
+      {"Material/RandomFailure",
+       {"WeibMed", "WeibMod", "WeibRefVol", "WeibPartVol"},
+       [](const Place& at) {
+         return random(at).enable && random(at).distribution != Random::Distribution::weibull;
+       },
+       "acts with FailDistribution=\"2\" only"},
+      {"Material/RandomFailure",
+       {"DamageRandom"},
+       [](const Place& at) { return random(at).enable && !has_damage(at); },
+       "the law of this material has no damage"},
+      {"Friction", {}, contact_is_off, no_contact},
+      {"WorkPlane", {}, unused_plane, "no body names this work plane"},
+      {"Component", {"normal_vector_weight"}, contact_is_off, no_contact},
+      {"Component/Body/InitialVelocity",
+       {"vx", "vy", "vz"},
+       [](const Place& at) { return at.body->prescribed_velocity.has_value(); },
+       "PrescribedVelocity takes its place from the start"},
+      {"Component/Body/PrescribedAcceleration/Coefficient",
+       {"crx", "cry", "crz"},
+       [](const Place& at) {
+         return at.body->prescribed_acceleration->angular_amplitude == std::array<double, 3>{};
+       },
+       "a factor of arx, ary, arz, which are 0"},
+      {"Component/Body/ConstrainRigidPosition",
+       {},
+       [](const Place& at) { return !at.body->constrain_rigid_position; },
+       "0 is the same as no such element: a rigid body is held by PrescribedVelocity, and else moves freely"},
+      {"Component/Body/BodyContrl", {"NoOutput"}, no_pictures, "no PostProcessing writes particles"},
+      {"Detonation", {}, nothing_explodes, "no body is of HighExpBurn with beta 0 or 2"},
+      {"Grid/Cell/MovingGrid",
+       {"*"},
+       [](const Place& at) { return !at.scene.grid.moving.enable; },
+       "MovingGrid is off"},
+      {"Grid/DynamicCell",
+       {"enable", "clear_steps"},
+       [](const Place&) { return true; },
+       "only cells with particles are ever stored"},
+      {"Contact", {"*"}, contact_is_off, "Contact is off"},
+      {"Solution",
+       {"near_boundary_stop"},
+       no_free_face,
+       "acts at faces of the grid with boundary=\"0\" only, and there is none"},
+      {"Solution/TimeStep",
+       {"factor", "const", "NotConsiderVisForCp"},
+       [](const Place& at) { return at.scene.solution.time_step.specified > 0; },
+       "the specified step takes its place"},
+      {"Solution/LimitVelocity", {}, all_rigid, "it does not hold rigid bodies"},
+      {"Solution/DynamicRelax", {}, all_rigid, "it does not slow rigid bodies"},
+      {"Solution/OpenMPSetting",
+       {"directionofdecomposition"},
+       [](const Place&) { return true; },
+       "threads share the bricks of cells"},
+      {"Output/PostProcessing", {}, no_pictures, "neither h5part nor vtk_data asks for a file"},
+      {"Output/Restart",
+       {},
+       [](const Place& at) { return *at.scene.output.restart_interval > at.scene.solution.end_time; },
+       "the interval is longer than the run: no restart file on the way"},
+      {"Output/Summary", {"enable"}, [](const Place&) { return true; }, "Job.summary.json is always written"},
+      {"DomainDecomposition",
+       {"dimension0", "dimension1", "dimension2"},
+       [](const Place& at) { return at.scene.decomposition.method == core::PartitionMethod::metis; },
+       "method metis divides the grid by itself; only their product must be the number of ranks"},
+  };
+  return table;
+}
+
+/// Whether the node gives the attribute with another value than the default, 0 where there is none of a
+/// required number.
+bool asked(const Node& node, std::string_view attribute) {
+  const AttributeSpec* row = node.spec().attribute(attribute, node.type());
+  const XmlAttribute* given = node.find(attribute);
+  if (row == nullptr || given == nullptr) return false;
+  const std::string standard = row->default_value.value_or(row->required ? "0" : "");
+  const std::string_view value = canonical_word(*row, given->value);
+  const auto number = parse_real(value), default_number = parse_real(standard);
+  return number && default_number ? *number != *default_number : value != standard;
+}
+
+std::vector<std::string> asked(const Node& node, const Rule& rule) {
+  std::vector<std::string> names;
+  const auto add = [&](std::string_view name) {
+    if (asked(node, name) && std::ranges::find(names, name) == names.end()) names.emplace_back(name);
+  };
+  if (rule.attributes.front() == "*") {
+    for (const AttributeSpec& row : std::span(node.spec().attributes).subspan(1)) add(row.name);
+  } else {
+    for (const std::string_view name : rule.attributes) add(name);
+  }
+  return names;
+}
+
+class Walk {
+ public:
+  explicit Walk(const Scene& scene) : scene_(scene), times_(rules().size()), notes_(rules().size()) {}
+
+  void element(const Node& node, const std::string& path, const MaterialInput* material,
+               const core::BodyInput* body) {
+    if (path == "Material") material = &scene_.materials[materials_++];
+    if (path == "Component") {
+      component_ = &scene_.components[components_++];
+      bodies_ = 0;
+    }
+    if (path == "Component/Body") body = &component_->bodies[bodies_++];
+    for (std::size_t i = 0; i < rules().size(); ++i)
+      if (rules()[i].path == path) apply(i, {scene_, node, material, body});
+    for (const ElementSpec& child : node.spec().children)
+      for (const Node& n : node.children(child.name))
+        element(n, path.empty() ? child.name : path + "/" + child.name, material, body);
+  }
+
+  /// One for each rule that found something: the first place, and how many there are.
+  std::vector<core::Diagnostic> notes() {
+    std::vector<core::Diagnostic> found;
+    for (std::size_t i = 0; i < notes_.size(); ++i) {
+      if (times_[i] == 0) continue;
+      if (times_[i] > 1) notes_[i].message += fmt::format(" (and {} more like it)", times_[i] - 1);
+      found.push_back(std::move(notes_[i]));
+    }
+    return found;
+  }
+
+ private:
+  void apply(std::size_t number, const Place& at) {
+    const Rule& rule = rules()[number];
+    std::vector<std::string> names;
+    if (!rule.attributes.empty()) {
+      names = asked(at.node, rule);
+      if (names.empty()) return;
+    }
+    if (!rule.idle(at) || times_[number]++ > 0) return;
+    core::Diagnostic& note = notes_[number];
+    note.file = scene_.provenance.path;
+    note.line = at.node.line();
+    note.element = at.node.name();
+    if (names.size() == 1) {
+      const XmlAttribute* given = at.node.find(names.front());
+      note.line = given->line;
+      note.attribute = given->name;
+      note.value = given->value;
+    }
+    note.message = names.size() > 1 ? fmt::format("{} have no effect: {}", join(names, ", "), rule.why)
+                                    : fmt::format("no effect: {}", rule.why);
+  }
+
+  const Scene& scene_;
+  std::vector<int> times_;
+  std::vector<core::Diagnostic> notes_;
+  std::size_t materials_ = 0, components_ = 0, bodies_ = 0;
+  const core::ComponentInput* component_ = nullptr;
+};
+
+/// Two bodies of different components that are less than a cell apart at the start, as far as boxes tell.
+std::string touching(const Scene& scene) {
+  struct Item {
+    Box box;
+    std::size_t component;
+    const std::string* name;
+  };
+  std::vector<Item> items;
+  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
+    const Box box = box_of(body, scene);
+    if (!box.empty()) items.push_back({box, static_cast<std::size_t>(component), &body.name});
+  });
+  std::ranges::sort(items, {}, [](const Item& item) { return item.box.lower[0]; });
+  std::size_t left = 1'000'000;  // pairs to look at; of a larger scene the note names none
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    for (std::size_t j = i + 1; j < items.size() && left-- > 0; ++j) {
+      const auto apart = [&](std::size_t a) {
+        const double cell = scene.grid.axes[a].cell_size;
+        return items[j].box.lower[a] - items[i].box.upper[a] > cell ||
+               items[i].box.lower[a] - items[j].box.upper[a] > cell;
+      };
+      if (apart(0)) break;
+      if (items[i].component != items[j].component && !apart(1) && !apart(2))
+        return fmt::format("bodies '{}' and '{}' touch at the start; ", *items[i].name, *items[j].name);
+    }
+  }
+  return {};
+}
+
+/// What several components mean without contact between them.
+void note_components(const Scene& scene, std::vector<core::Diagnostic>& notes) {
+  if (scene.contact.enable) return;
+  const core::ComponentInput* second = nullptr;
+  int first = -1, count = 0, rigid_bodies = 0;
+  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
+    ++count;
+    if (rigid(material_of(scene, body))) ++rigid_bodies;
+    if (first < 0) first = component;
+    if (component != first && second == nullptr)
+      second = &scene.components[static_cast<std::size_t>(component)];
+  });
+  const auto add = [&](const core::SourceLocation& at, std::string message) {
+    notes.push_back({at.file, at.line, "Component", {}, {}, std::move(message)});
+  };
+  if (rigid_bodies > 1)
+    return add(scene.components.front().source, "rigid bodies pass through each other without contact");
+  if (second != nullptr && rigid_bodies < count)
+    add(second->source,
+        touching(scene) +
+            "without contact, bodies of different components that come within a cell of each other stick "
+            "together: they neither slide nor part");
+}
+
+}  // namespace
+
+std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene) {
+  Walk walk(scene);
+  walk.element(root, "", nullptr, nullptr);
+  std::vector<core::Diagnostic> notes = walk.notes();
+  note_components(scene, notes);
+  std::ranges::stable_sort(notes, {}, &core::Diagnostic::line);
+  return notes;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,30 @@
+// A Specification.xml of the user's, in the notation of the manual's chapter 5.1. An input is checked against
+// it and against the program's own; names that only the user's has are let pass, and reported, so that a
+// keyword of another program needs no more than its line in the Specification.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/input/node.hpp"
+#include "io/input/specification.hpp"
+
+namespace mpm::io {
+
+struct UserSpecification {
+  std::string file;
+  ElementSpec root;
+};
+
+/// Throws core::InputErrors with every mistake in the file, by its line.
+UserSpecification read_user_specification(const std::filesystem::path& file);
+
+/// The program's language and what the user's Specification has beyond it: elements, attributes, and words
+/// among an attribute's values.
+ElementSpec with_additions(ElementSpec ours, const ElementSpec& theirs);
+
+/// What of an input is known through such additions alone, one entry for each name.
+std::vector<core::Diagnostic> foreign_names(const Node& root, const std::string& file);
+
+}  // namespace mpm::io

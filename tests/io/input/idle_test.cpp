@@ -1,0 +1,270 @@
+// What has no effect says so: one input per setting, with the note that it must bring.
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "io/input/specification.hpp"
+#include "physics/catalogue.hpp"
+#include "tests/io/input/support.hpp"
+
+namespace {
+
+using namespace mpm;
+using test::bar;
+using test::replaced;
+
+core::Scene parse(std::string_view text, std::vector<core::Diagnostic>& notes, bool accept_later = false) {
+  static const io::ElementSpec language = io::language(physics::catalogue());
+  return io::parse_scene(text, "case.xmp", language,
+                         {.check_files = false, .accept_later = accept_later, .notes = &notes});
+}
+
+std::vector<std::string> notes_of(std::string_view text, bool accept_later = false) {
+  std::vector<core::Diagnostic> notes;
+  parse(text, notes, accept_later);
+  std::vector<std::string> lines;
+  for (core::Diagnostic& note : notes) {
+    CHECK(note.file == "case.xmp");
+    note.file.clear();
+    lines.push_back(to_text(note));
+  }
+  return lines;
+}
+
+struct Idle {
+  std::string_view from, to;
+  std::string note;  ///< empty: none
+};
+
+void check_table(const std::vector<Idle>& table) {
+  for (const Idle& idle : table) {
+    INFO(idle.from << "  ->  " << idle.to);
+    const std::vector<std::string> expected =
+        idle.note.empty() ? std::vector<std::string>{} : std::vector<std::string>{idle.note};
+    CHECK(notes_of(replaced(bar, idle.from, idle.to)) == expected);
+  }
+}
+
+constexpr std::string_view law =
+    "<StrengthModel type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"";
+
+TEST_CASE("an input all of which acts has no notes") { CHECK(notes_of(bar).empty()); }
+
+TEST_CASE("settings of materials without effect") {
+  const auto with = [](const std::string& attribute) { return std::string(law) + " " + attribute; };
+  const std::string tensile = with("FailedType='0' TensileCutoff='-1'"), failed = with("FailedType='1'"),
+                    both = with("FailedType='1' FailViscosity='2'"),
+                    threshold = with("FailureDamageThreshold='0.5'"),
+                    work = with("PlasticWorkCoefficient='0.5'"), room = with("roomt='300'"),
+                    warm = with("PlasticWorkCoefficient='0.5' SpecHeat='1' roomt='300'");
+  check_table({
+      {law, tensile,
+       "line 6: <StrengthModel TensileCutoff=\"-1\">: no effect: acts with FailedType=\"2\" only"},
+      {law, failed,
+       "line 6: <StrengthModel FailedType=\"1\">: no effect: acts on failed particles only, and nothing lets "
+       "this material fail"},
+      {law, both,
+       "line 6: <StrengthModel>: FailedType, FailViscosity have no effect: acts on failed particles only, "
+       "and "
+       "nothing lets this material fail"},
+      {law, threshold,
+       "line 6: <StrengthModel FailureDamageThreshold=\"0.5\">: no effect: acts with Contact "
+       "failure_to_component=\"1\" only, and Contact is off"},
+      {law, work,
+       "line 6: <StrengthModel PlasticWorkCoefficient=\"0.5\">: no effect: heats only with SpecHeat, which "
+       "is "
+       "not given"},
+      {law, room,
+       "line 6: <StrengthModel roomt=\"300\">: no effect: there is no temperature without SpecHeat"},
+      {law, warm, ""},
+      {law, with("FailedType='0' FailureDamageThreshold='1.0'"), ""},  // the defaults ask for nothing
+      {"<StrengthModel type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
+       "<StrengthModel type='IsoElastic' Young='1' Poisson='0.3' SpecHeat='1'",
+       "line 6: <StrengthModel SpecHeat=\"1\">: no effect: nothing heats this material"},
+      {"<StrengthModel type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
+       "<StrengthModel type='Null' Young='1'",
+       "line 6: <StrengthModel Young=\"1\">: no effect: the equation of state gives the stiffness"},
+      {"<EquationOfState type=\"Gruneisen\" C0=\"3940\" S1=\"1.49\" gamma0=\"1.96\"/>",
+       "<EquationOfState type='PAlpha' Plock='1' Pcrush='0.1' n='3' rho0s='9e-3' EOSID='3' C0='1' S1='1' "
+       "gamma0='1' c1='4'/>",
+       "line 7: <EquationOfState c1=\"4\">: no effect: acts with EOSID=\"1\" only"},
+      {"<FailureModel type=\"none\"/>", "<FailureModel type='none' Erosion='1'/>",
+       "line 8: <FailureModel Erosion=\"1\">: no effect: type none has no criterion"},
+      {"<FailureModel type=\"none\"/>",
+       "<FailureModel type='PriStress' PriStressMax='0' PriStressMin='0' ShearStressMax='0'/>",
+       "line 8: <FailureModel>: no effect: all its bounds are 0, which switches it off"},
+      {"<FailureModel type=\"none\"/>", "<RandomFailure FailDistribution='2' WeibMed='2'/>",
+       "line 8: <RandomFailure>: FailDistribution, WeibMed have no effect: RandomFailure is off"},
+      {"<FailureModel type=\"none\"/>",
+       "<RandomFailure enable='1'/><FailureModel type='PlaStrain' epmax='1'/>",
+       "line 8: <RandomFailure enable=\"1\">: no effect: FailDistribution 0 gives every particle the same "
+       "thresholds"},
+      {"<FailureModel type=\"none\"/>", "<RandomFailure enable='1' FailDistribution='1'/>",
+       "line 8: <RandomFailure enable=\"1\">: no effect: nothing lets this material fail"},
+      {"<FailureModel type=\"none\"/>",
+       "<RandomFailure enable='1' FailDistribution='1' WeibMod='3'/><FailureModel type='PlaStrain' "
+       "epmax='1'/>",
+       "line 8: <RandomFailure WeibMod=\"3\">: no effect: acts with FailDistribution=\"2\" only"},
+      {"<FailureModel type=\"none\"/>",
+       "<RandomFailure enable='1' FailDistribution='2' GaussStd='3'/><FailureModel type='PlaStrain' "
+       "epmax='1'/>",
+       "line 8: <RandomFailure GaussStd=\"3\">: no effect: acts with FailDistribution=\"1\" only"},
+      {"<FailureModel type=\"none\"/>",
+       "<RandomFailure enable='1' FailDistribution='1' DamageRandom='1'/><FailureModel type='PlaStrain' "
+       "epmax='1'/>",
+       "line 8: <RandomFailure DamageRandom=\"1\">: no effect: the law of this material has no damage"},
+      {"</Material>",
+       "</Material><Material name='spare'><ReferenceDensity value='1'/><StrengthModel type='IsoElastic' "
+       "Young='1' Poisson='0'/></Material>",
+       "line 9: <Material>: no effect: no body is made of this material"},
+  });
+}
+
+TEST_CASE("settings of features that are off") {
+  check_table({
+      {"<WorkPlane", "<Friction><Coefficient value='0.1' mat1='cu' mat2='cu'/></Friction><WorkPlane",
+       "line 10: <Friction>: no effect: acts in contact only, and Contact is off"},
+      {"<WorkPlane", "<WorkPlane name='spare'/><WorkPlane",
+       "line 10: <WorkPlane>: no effect: no body names this work plane"},
+      {"<Component name=\"target\"", "<Component name=\"target\" normal_vector_weight='2'",
+       "line 11: <Component normal_vector_weight=\"2\">: no effect: acts in contact only, and Contact is "
+       "off"},
+      {"<InitialVelocity", "<PrescribedVelocity vx='0' vy='0' vz='1'/><InitialVelocity",
+       "line 14: <InitialVelocity vz=\"-190\">: no effect: PrescribedVelocity takes its place from the "
+       "start"},
+      {"<InitialVelocity",
+       "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'><Coefficient time='0' cx='1' "
+       "cy='0' cz='0' crx='1' cry='0' crz='2'/></PrescribedAcceleration><InitialVelocity",
+       "line 14: <Coefficient>: crx, crz have no effect: a factor of arx, ary, arz, which are 0"},
+      {"<InitialVelocity",
+       "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'><Coefficient time='0' cx='1' "
+       "cy='0' cz='0' crx='1' cry='0' crz='0'/><Coefficient time='1' cx='1' cy='0' cz='0' crx='1' cry='0' "
+       "crz='0'/></PrescribedAcceleration><InitialVelocity",
+       "line 14: <Coefficient crx=\"1\">: no effect: a factor of arx, ary, arz, which are 0 (and 1 more like "
+       "it)"},
+      {"<InitialVelocity", "<ConstrainRigidPosition value='0'/><InitialVelocity",
+       "line 14: <ConstrainRigidPosition>: no effect: 0 is the same as no such element: a rigid body is held "
+       "by PrescribedVelocity, and else moves freely"},
+      {"<InitialVelocity", "<BodyContrl NoOutput='1'/><InitialVelocity",
+       "line 14: <BodyContrl NoOutput=\"1\">: no effect: no PostProcessing writes particles"},
+      {"<Grid>", "<Detonation><Item type='point' time='0' x='0' y='0' z='0'/></Detonation><Grid>",
+       "line 17: <Detonation>: no effect: no body is of HighExpBurn with beta 0 or 2"},
+      {"</Cell>",
+       "<MovingGrid enable='0' consider_failure_particle='1' time_step_factor='0.8' x_min='-1' "
+       "z_max='50'/></Cell>",
+       "line 23: <MovingGrid>: consider_failure_particle, x_min, z_max have no effect: MovingGrid is off"},
+      {"</Cell>", "<MovingGrid enable='0'/></Cell>", ""},
+      {"</Grid>", "<DynamicCell enable='1' clear_steps='10'/></Grid>",
+       "line 24: <DynamicCell enable=\"1\">: no effect: only cells with particles are ever stored"},
+      {"</Grid>", "<DynamicCell enable='0' clear_steps='5'/></Grid>",
+       "line 24: <DynamicCell clear_steps=\"5\">: no effect: only cells with particles are ever stored"},
+      {"<Solution>",
+       "<Contact enable='0' failure_to_component='1' auto_normal_vector_weight='1' "
+       "normal_vector_excluding_failure_particle='1' distance_type='1' min_distance='0.5' "
+       "contact_time_step='1' contact_type='2' record_contact_force='1'/><Solution>",
+       "line 25: <Contact>: failure_to_component, auto_normal_vector_weight, "
+       "normal_vector_excluding_failure_particle, distance_type, min_distance, contact_time_step, "
+       "contact_type, record_contact_force have no effect: Contact is off"},
+      {"<Solution>", "<Contact enable='0' contact_type='0' min_distance='0.0'/><Solution>", ""},
+  });
+}
+
+TEST_CASE("settings of the run without effect") {
+  std::string walls = replaced(bar, "boundary=\"0\"/>\n      <YMin", "boundary=\"2\"/>\n      <YMin");
+  walls = replaced(walls, "boundary=\"0\"/>\n      <ZMin", "boundary=\"2\"/>\n      <ZMin");
+  walls = replaced(walls, "boundary=\"0\"/>\n      <DCell", "boundary=\"2\"/>\n      <DCell");
+  CHECK(notes_of(replaced(walls, "<Solution>", "<Solution near_boundary_stop='1'>")) ==
+        std::vector<std::string>{
+            "line 25: <Solution near_boundary_stop=\"1\">: no effect: acts at faces of the "
+            "grid with boundary=\"0\" only, and there is none"});
+  check_table({
+      {"<Solution>", "<Solution near_boundary_stop='1'>", ""},
+      {"<EndTime", "<TimeStep specified='1e-4' factor='0.5' const='1'/><EndTime",
+       "line 25: <TimeStep>: factor, const have no effect: the specified step takes its place"},
+      {"<EndTime", "<TimeStep specified='0' factor='0.5'/><EndTime", ""},
+      {"<EndTime", "<OpenMPSetting directionofdecomposition='2'/><EndTime",
+       "line 25: <OpenMPSetting directionofdecomposition=\"2\">: no effect: threads share the bricks of "
+       "cells"},
+      {"</PeneBlast>", "<Output><PostProcessing time_interval='1' var='pres'/></Output></PeneBlast>",
+       "line 26: <PostProcessing>: no effect: neither h5part nor vtk_data asks for a file"},
+      {"</PeneBlast>", "<Output><Restart time_interval='1'/></Output></PeneBlast>",
+       "line 26: <Restart>: no effect: the interval is longer than the run: no restart file on the way"},
+      {"</PeneBlast>", "<Output><Summary enable='0'/></Output></PeneBlast>",
+       "line 26: <Summary enable=\"0\">: no effect: Job.summary.json is always written"},
+      {"</PeneBlast>", "<Output><Summary enable='1'/></Output></PeneBlast>", ""},
+      {"</PeneBlast>",
+       "<DomainDecomposition dimension0='1' dimension1='2' dimension2='1' method='metis'/></PeneBlast>",
+       "line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 have no effect: method metis "
+       "divides the grid by itself; only their product must be the number of ranks"},
+  });
+}
+
+constexpr std::string_view rigid_law = "<StrengthModel type='Rigid'";
+
+std::string rigid_bar() {
+  const std::string text = replaced(bar, law, rigid_law);
+  return replaced(text, "<EquationOfState type=\"Gruneisen\" C0=\"3940\" S1=\"1.49\" gamma0=\"1.96\"/>", "");
+}
+
+TEST_CASE("rigid bodies by themselves") {
+  CHECK(notes_of(rigid_bar()).empty());
+  CHECK(notes_of(replaced(rigid_bar(), rigid_law, "<StrengthModel type='Rigid' bq1='1' VarSoundspeed='1'")) ==
+        std::vector<std::string>{
+            "line 6: <StrengthModel>: bq1, VarSoundspeed have no effect: a rigid body has neither stress nor "
+            "heat"});
+  CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<LimitVelocity max='1'/><EndTime")) ==
+        std::vector<std::string>{"line 25: <LimitVelocity>: no effect: it does not hold rigid bodies"});
+  CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<DynamicRelax damping='1'/><EndTime")) ==
+        std::vector<std::string>{"line 25: <DynamicRelax>: no effect: it does not slow rigid bodies"});
+}
+
+/// A second body beside the rod, of the rod's component or of one of its own.
+std::string two_bodies(std::string_view text, double x, bool own_component) {
+  const std::string second = fmt::format(
+      "<Body name='second' material='cu' type='Block'><Geometry dp='0.38' x0='{}' y0='0' z0='1' lx='1' "
+      "ly='1' "
+      "lz='1'/></Body></Component>",
+      x);
+  return replaced(text, "</Component>",
+                  (own_component ? "</Component><Component name='other'>" : "") + second);
+}
+
+TEST_CASE("several components without contact") {
+  const std::string stick =
+      "without contact, bodies of different components that come within a cell of each other stick together: "
+      "they neither slide nor part";
+  CHECK(notes_of(two_bodies(bar, 6, false)).empty());
+  CHECK(notes_of(two_bodies(bar, 6, true)) == std::vector<std::string>{"line 16: <Component>: " + stick});
+  CHECK(notes_of(two_bodies(bar, 4.5, true)) ==
+        std::vector<std::string>{"line 16: <Component>: bodies 'rod' and 'second' touch at the start; " +
+                                 stick});
+  CHECK(
+      notes_of(two_bodies(rigid_bar(), 6, true)) ==
+      std::vector<std::string>{"line 11: <Component>: rigid bodies pass through each other without contact"});
+  // With contact nothing is said; nor of a body that takes no part.
+  const std::string touching = two_bodies(bar, 4.5, true);
+  CHECK(notes_of(replaced(touching, "<Solution>", "<Contact enable='1'/><Solution>"), true).empty());
+  CHECK(notes_of(replaced(touching, "name='second'", "name='second' Deactive='1'")).empty());
+}
+
+TEST_CASE("rigid bodies beside others are refused") {
+  const std::string mixed =
+      replaced(replaced(two_bodies(bar, 6, true), "material='cu'", "material='iron'"), "</Material>",
+               "</Material><Material name='iron'><ReferenceDensity value='1'/><StrengthModel "
+               "type='Rigid'/></Material>");
+  std::vector<core::Diagnostic> notes;
+  CHECK_THROWS_WITH(
+      parse(mixed, notes),
+      "case.xmp:16: <Body material=\"iron\">: a rigid body acts on others through contact, which this "
+      "version "
+      "does not have: it would pass through 'rod' and push nothing. Give the body a material that deforms, "
+      "with PrescribedVelocity where its motion is known (that pushes), or leave it out; rigid bodies by "
+      "themselves may run");
+  CHECK_NOTHROW(parse(replaced(mixed, "name='second'", "name='second' Deactive='1'"), notes));
+  CHECK_NOTHROW(parse(replaced(mixed, "<Solution>", "<Contact enable='1'/><Solution>"), notes, true));
+  CHECK_THROWS_WITH(
+      parse(replaced(rigid_bar(), "<InitialVelocity", "<Traction pressure='1'/><InitialVelocity"), notes),
+      "case.xmp:14: <Traction>: has no effect on a rigid body; use PrescribedAcceleration");
+}
+
+}  // namespace
