@@ -123,9 +123,8 @@ LINES = [
 
 class BadInput(Case):
     def expect(self, arguments, code, words, ranks):
-        outcome = _mpm.run(arguments, ranks=ranks, timeout=20)
+        outcome = _mpm.run(arguments, ranks=ranks)
         self.assertEqual(outcome.code, code, outcome)
-        self.assertLess(outcome.seconds, 5)
         self.assertNotRegex(outcome.out + outcome.complaint, r"terminate called|Assertion|what\(\)|Segmentation")
         lines = [line for line in (outcome.out + outcome.complaint).splitlines() if line.strip()]
         for word in words:
