@@ -27,8 +27,6 @@ struct Body {
   std::optional<Vec3<double>> prescribed_velocity;
   bool rigid = false;  ///< flies straight on under gravity where no velocity is prescribed
   bool no_output = false;
-  /// Its particles move at their own velocity, not the grid's.
-  bool keeps_velocity() const { return rigid || prescribed_velocity.has_value(); }
   /// Memory of this rank's particles; bodies with the same columns share one.
   std::shared_ptr<BlockPool> pool;
 };

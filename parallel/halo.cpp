@@ -10,6 +10,7 @@ namespace mpm::parallel {
 using core::BrickCoord;
 using core::BrickGrid;
 using core::NodeArray;
+using core::NodeFields;
 using core::NodeBlockShape;
 using core::Slot;
 
@@ -75,22 +76,25 @@ void for_each_node(const NodeList& list, Records records, int width, Copy copy) 
 }
 
 template <int Count>
-void pack(const BrickGrid& grid, const NodeList& list, NodeArray of, int first, double* message) {
+void pack(const BrickGrid& grid, const NodeList& list, NodeFields fields, double* message) {
   for_each_node<Count>(
-      list, [&](Slot s) { return grid.contributions(of, s) + first; }, core::record_doubles(of),
+      list, [&](Slot s) { return grid.contributions(fields.array, s) + fields.first; },
+      core::record_doubles(fields.array),
       [&](std::size_t at, const double* node) { std::copy_n(node, Count, message + at); });
 }
 
 template <int Count>
-void unpack(BrickGrid& grid, const NodeList& list, NodeArray of, int first, const double* message) {
+void unpack(BrickGrid& grid, const NodeList& list, NodeFields fields, const double* message) {
   for_each_node<Count>(
-      list, [&](Slot s) { return grid.contributions(of, s) + first; }, core::record_doubles(of),
+      list, [&](Slot s) { return grid.contributions(fields.array, s) + fields.first; },
+      core::record_doubles(fields.array),
       [&](std::size_t at, double* node) { std::copy_n(message + at, Count, node); });
 }
 
 /// What no neighbour sends is zero.
 void clear_ghosts(BrickGrid& grid) {
-  for (const NodeArray of : {NodeArray::first, NodeArray::second}) {
+  for (const NodeArray of : core::node_arrays) {
+    if (!grid.arrays().has(of)) continue;
     for (int g = 0; g < grid.ghosts(); ++g) {
       std::fill_n(grid.contributions(of, grid.owned() + g), grid.shape().nodes() * core::record_doubles(of),
                   0.0);
@@ -171,20 +175,22 @@ void Halo::set_up_requests(int count) {
   }
 }
 
-void Halo::begin(BrickGrid& grid, NodeArray of, int first, int count) {
+void Halo::begin(BrickGrid& grid, NodeFields fields) {
   if (under_way_) throw std::logic_error("a halo exchange was begun before the last one ended");
-  if (first < 0 || count < 1 || first + count > core::record_doubles(of)) {
+  const int count = fields.count;
+  if (!grid.arrays().has(fields.array) || fields.first < 0 || count < 1 ||
+      fields.end() > core::record_doubles(fields.array)) {
     throw std::logic_error("a halo exchange of components that a node does not have");
   }
   update(grid);
   if (!ghosts_are_clear_) clear_ghosts(grid);
   ghosts_are_clear_ = true;
   set_up_requests(count);
-  under_way_ = {of, first, count};
+  under_way_ = fields;
   receives(count).start_all();
   with_count(count, [&](auto constant) {
     for (std::size_t p = 0; p < partners_.size(); ++p) {
-      pack<constant>(grid, partners_[p].send, of, first, outgoing_[p].data());
+      pack<constant>(grid, partners_[p].send, fields, outgoing_[p].data());
       sends(count).start(p);
     }
   });
@@ -192,14 +198,14 @@ void Halo::begin(BrickGrid& grid, NodeArray of, int first, int count) {
 
 void Halo::end(BrickGrid& grid) {
   if (!under_way_) throw std::logic_error("a halo exchange was ended that had not begun");
-  const Part part = *under_way_;
-  with_count(part.count, [&](auto constant) {
+  const NodeFields fields = *under_way_;
+  with_count(fields.count, [&](auto constant) {
     for (int p = receives(constant).wait_any(); p >= 0; p = receives(constant).wait_any()) {
       const auto i = static_cast<std::size_t>(p);
-      unpack<constant>(grid, partners_[i].receive, part.of, part.first, incoming_[i].data());
+      unpack<constant>(grid, partners_[i].receive, fields, incoming_[i].data());
     }
   });
-  sends(part.count).wait_all();
+  sends(fields.count).wait_all();
   under_way_.reset();
 }
 

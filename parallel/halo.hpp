@@ -48,7 +48,7 @@ class Halo {
     return partners_;
   }
   /// As Exchange::begin_halo. Collective.
-  void begin(core::BrickGrid& grid, core::NodeArray of, int first, int count);
+  void begin(core::BrickGrid& grid, core::NodeFields fields);
   /// As Exchange::end_halo. Collective.
   void end(core::BrickGrid& grid);
 
@@ -69,11 +69,7 @@ class Halo {
   std::array<PersistentRequests, core::node_doubles + 1> sends_,
       receives_;  ///< [count], one for each partner
 
-  struct Part {
-    core::NodeArray of = core::NodeArray::first;
-    int first = 0, count = 0;
-  };
-  std::optional<Part> under_way_;
+  std::optional<core::NodeFields> under_way_;
 };
 
 }  // namespace mpm::parallel

@@ -234,9 +234,9 @@ void MpiExchange::retire(BrickGrid& grid, std::span<const BrickCoord> empty) {
 namespace {
 
 [[noreturn]] void throw_lost(const Travellers::Head& head, const std::string& why) {
-  const auto [x, y, z] = head.to;
+  const BrickCoord to = head.to;
   throw std::logic_error("a particle of body " + std::to_string(head.body) + " travels to brick (" +
-                         std::to_string(x) + ", " + std::to_string(y) + ", " + std::to_string(z) +
+                         std::to_string(to.x) + ", " + std::to_string(to.y) + ", " + std::to_string(to.z) +
                          "), which " + why);
 }
 

@@ -30,9 +30,7 @@ class MpiExchange final : public core::Exchange {
   int size() const override { return comm_.size(); }
 
   /// Collective, with the ranks next to this one.
-  void begin_halo(core::BrickGrid& grid, core::NodeArray of, int first, int count) override {
-    halo_.begin(grid, of, first, count);
-  }
+  void begin_halo(core::BrickGrid& grid, core::NodeFields fields) override { halo_.begin(grid, fields); }
   /// Collective, with the ranks next to this one.
   void end_halo(core::BrickGrid& grid) override { halo_.end(grid); }
 

@@ -29,8 +29,8 @@ class TimedExchange final : public core::Exchange {
 
   int rank() const override { return inner_.rank(); }
   int size() const override { return inner_.size(); }
-  void begin_halo(core::BrickGrid& grid, core::NodeArray of, int first, int count) override {
-    timed(Part::begin_halo, [&] { inner_.begin_halo(grid, of, first, count); });
+  void begin_halo(core::BrickGrid& grid, core::NodeFields fields) override {
+    timed(Part::begin_halo, [&] { inner_.begin_halo(grid, fields); });
   }
   void end_halo(core::BrickGrid& grid) override {
     timed(Part::end_halo, [&] { inner_.end_halo(grid); });

@@ -18,25 +18,41 @@ namespace mpm::core {
 
 inline constexpr int brick_cells = 4;
 
-/// Brick (x, y, z) holds cells 4x .. 4x+3 along x and so on; 0 <= component < 2^21.
+/// Brick (x, y, z) of level 0 holds cells 4x .. 4x+3 along x and so on; 0 <= component < 2^21. A brick of
+/// level n > 0 holds cells smaller by 2^n; no run makes such bricks yet.
 struct BrickCoord {
   std::int32_t x = 0, y = 0, z = 0;
+  std::int32_t level = 0;
   auto operator<=>(const BrickCoord&) const = default;
-  friend BrickCoord operator+(BrickCoord a, BrickCoord b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend BrickCoord operator-(BrickCoord a, BrickCoord b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend BrickCoord operator+(BrickCoord a, BrickCoord b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z, a.level + b.level};
+  }
+  friend BrickCoord operator-(BrickCoord a, BrickCoord b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z, a.level - b.level};
+  }
 };
 
 /// One number per brick, ordered by z, then y, then x; coordinates outside the grid have keys of their own.
+/// Level 0 has 21 bits an axis. In finer levels the highest bit is set, the level follows in three bits, and
+/// 20 bits an axis remain.
 using BrickKey = std::uint64_t;
+inline constexpr int most_brick_levels = 8;  ///< 0 .. 7 are the numbers of levels
 constexpr BrickKey key_of(BrickCoord b) {
-  constexpr std::uint64_t mask = (1u << 21) - 1;
-  return ((static_cast<std::uint64_t>(b.z) & mask) << 42) | ((static_cast<std::uint64_t>(b.y) & mask) << 21) |
-         (static_cast<std::uint64_t>(b.x) & mask);
+  const int bits = b.level == 0 ? 21 : 20;
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  const BrickKey place = ((static_cast<std::uint64_t>(b.z) & mask) << 2 * bits) |
+                         ((static_cast<std::uint64_t>(b.y) & mask) << bits) |
+                         (static_cast<std::uint64_t>(b.x) & mask);
+  return b.level == 0
+             ? place
+             : place | std::uint64_t{1} << 63 | (static_cast<std::uint64_t>(b.level) & 7) << 60;
 }
 constexpr BrickCoord brick_of_key(BrickKey k) {
-  constexpr std::uint64_t mask = (1u << 21) - 1;
-  return {static_cast<std::int32_t>(k & mask), static_cast<std::int32_t>((k >> 21) & mask),
-          static_cast<std::int32_t>((k >> 42) & mask)};
+  const bool fine = (k >> 63) != 0;
+  const int bits = fine ? 20 : 21;
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  return {static_cast<std::int32_t>(k & mask), static_cast<std::int32_t>((k >> bits) & mask),
+          static_cast<std::int32_t>((k >> 2 * bits) & mask), fine ? static_cast<std::int32_t>(k >> 60 & 7) : 0};
 }
 
 /// The 27 offsets of a brick's neighbourhood, in the order in which contributions are summed; 13 is itself.
@@ -100,14 +116,5 @@ struct NodeBlockShape {
   constexpr int nodes() const { return side() * side() * side(); }
   int index(int i, int j, int k) const { return (i + halo) + side() * ((j + halo) + side() * (k + halo)); }
 };
-
-/// A scheme maps to the nodes twice per step at most, and the first sums are still wanted after the second
-/// map: so there are two arrays. Records of the first: momentum 3, mass, force 3, (free); of the second:
-/// momentum 3, mass.
-enum class NodeArray { first, second };
-inline constexpr int node_doubles = 8;
-constexpr int record_doubles(NodeArray of) {
-  return of == NodeArray::first ? node_doubles : node_doubles / 2;
-}
 
 }  // namespace mpm::core

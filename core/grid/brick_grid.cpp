@@ -18,9 +18,10 @@ void AlignedDoubles::resize(std::size_t n) {
   size_ = n;
 }
 
-BrickGrid::BrickGrid(const GridGeometry& geometry, int halo) : geometry_(geometry), shape_{halo} {
-  if (halo < 0 || halo > most_halo)
-    throw std::logic_error("a halo of " + std::to_string(halo) + " layers of nodes, of at most " +
+BrickGrid::BrickGrid(const GridGeometry& geometry, NodeBlockShape shape, NodeArraySet arrays)
+    : geometry_(geometry), shape_(shape), arrays_(arrays) {
+  if (shape.halo < 0 || shape.halo > most_halo)
+    throw std::logic_error("a halo of " + std::to_string(shape.halo) + " layers of nodes, of at most " +
                            std::to_string(most_halo));
 }
 
@@ -65,10 +66,26 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   bricks_ = std::move(bricks);
   ghosts_ = std::move(ghosts);
   slot_ = std::move(slot);
-  for (NodeArray of : {NodeArray::first, NodeArray::second}) {
-    array(of).resize(stride(of) * (bricks_.size() + ghosts_.size()));
-  }
+  extra_begin_.clear();
+  allocate_nodes(bricks_.size() + ghosts_.size());
   ++revision_;
+}
+
+void BrickGrid::allocate_nodes(std::size_t blocks) {
+  for (NodeArray of : node_arrays) {
+    if (arrays_.has(of)) array(of).resize(stride(of) * blocks);
+  }
+}
+
+void BrickGrid::set_velocity_fields(std::span<const std::uint8_t> fields) {
+  const std::size_t slots = bricks_.size() + ghosts_.size();
+  assert(fields.size() == slots);
+  extra_begin_.assign(1, 0);
+  for (const std::uint8_t n : fields) {
+    assert(n >= 1);
+    extra_begin_.push_back(extra_begin_.back() + n - 1);
+  }
+  allocate_nodes(slots + static_cast<std::size_t>(extra_begin_.back()));
 }
 
 }  // namespace mpm::core

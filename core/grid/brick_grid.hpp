@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/grid/brick.hpp"
+#include "core/grid/node_fields.hpp"
 #include "core/pages.hpp"
 #include "core/particles/block_pool.hpp"
 
@@ -48,7 +49,8 @@ struct Brick {
 class BrickGrid {
  public:
   /// Throws std::logic_error for a halo beyond most_halo.
-  explicit BrickGrid(const GridGeometry& geometry, int halo = 0);
+  explicit BrickGrid(const GridGeometry& geometry, NodeBlockShape shape = {},
+                     NodeArraySet arrays = {NodeArray::first, NodeArray::second});
 
   const GridGeometry& geometry() const { return geometry_; }
   const NodeBlockShape& shape() const { return shape_; }
@@ -72,13 +74,29 @@ class BrickGrid {
   /// a brick that is dropped must be empty. Slots, neighbours and node arrays are new afterwards.
   void reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts);
 
-  /// What the slot's own particles add to its nodes: shape().nodes() records of record_doubles(of).
+  const NodeArraySet& arrays() const { return arrays_; }
+  /// What the slot's own particles add to its nodes: shape().nodes() records of record_doubles(of). `of` is one
+  /// of arrays().
   double* contributions(NodeArray of, Slot s) {
     return array(of).data() + stride(of) * static_cast<std::size_t>(s);
   }
   const double* contributions(NodeArray of, Slot s) const {
     return array(of).data() + stride(of) * static_cast<std::size_t>(s);
   }
+  /// Of a slot with several velocity fields; field 0 is the one above.
+  double* contributions(NodeArray of, Slot s, int field) {
+    return contributions(of, field == 0 ? s : extra_block(s, field));
+  }
+
+  /// Bricks in which components meet keep nodes for every velocity field: fields[slot] >= 1 of each owned and
+  /// ghost slot. After reset() all slots have one. Contents of the extra fields are undefined.
+  void set_velocity_fields(std::span<const std::uint8_t> fields);
+  int velocity_fields(Slot s) const {
+    return extra_begin_.empty() ? 1
+                                : 1 + extra_begin_[static_cast<std::size_t>(s) + 1] -
+                                      extra_begin_[static_cast<std::size_t>(s)];
+  }
+
   std::size_t node_bytes() const { return first_.bytes() + second_.bytes(); }
   /// Counts up whenever the set of bricks changes; communication plans are made anew then.
   std::uint64_t revision() const { return revision_; }
@@ -87,15 +105,23 @@ class BrickGrid {
   std::size_t stride(NodeArray of) const {
     return static_cast<std::size_t>(shape_.nodes() * record_doubles(of));
   }
+  /// Blocks of nodes beyond the first field's lie behind those of all slots.
+  Slot extra_block(Slot s, int field) const {
+    return static_cast<Slot>(bricks_.size() + ghosts_.size()) + extra_begin_[static_cast<std::size_t>(s)] +
+           field - 1;
+  }
+  void allocate_nodes(std::size_t blocks);
   AlignedDoubles& array(NodeArray of) { return of == NodeArray::first ? first_ : second_; }
   const AlignedDoubles& array(NodeArray of) const { return of == NodeArray::first ? first_ : second_; }
 
   GridGeometry geometry_;
   NodeBlockShape shape_;
+  NodeArraySet arrays_;
   std::vector<Brick> bricks_;
   std::vector<BrickCoord> ghosts_;
   std::unordered_map<BrickKey, Slot> slot_;
   AlignedDoubles first_, second_;
+  std::vector<Slot> extra_begin_;  ///< by slot: of its extra blocks; empty while all have one field
   int boundary_ = 0;
   std::uint64_t revision_ = 0;
 };

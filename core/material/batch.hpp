@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/particles/columns.hpp"
+#include "core/prefetch.hpp"
 #include "core/tensor/tensor.hpp"
 
 namespace mpm::core {
@@ -39,21 +40,8 @@ struct MaterialEvents {
 
 struct GridGeometry;
 
-/// Memory that will be wanted soon, asked for a few lines at a time: the processor has only so many requests
-/// under way, and what asks for more at once waits.
-struct LinesAhead {
-  const double* next = nullptr;
-  const double* last = nullptr;
-  /// Inlined without fail: g++ takes a function that only prefetches for one that does nothing, and drops the
-  /// call.
-  template <bool to_write = false>
-  [[gnu::always_inline]] void ask(int lines) {
-    for (int i = 0; i < lines && next < last; ++i, next += block_lanes)
-      __builtin_prefetch(next, to_write ? 1 : 0, 2);
-  }
-};
-/// What a material's update asks for of each of the batch's `ahead`.
-inline constexpr int lines_asked_by_materials = 16;
+/// The stages of a material's update tell how their work on a block is spread over this many parts.
+inline constexpr int parts_of_update = 16;
 
 struct Batch {
   // --- set by the caller ---
@@ -70,8 +58,11 @@ struct Batch {
   /// Volumetric strain increment of the particle's cell; read for volume update 1 only.
   alignas(64) Row cell_volumetric_strain;
 
-  /// What the caller wants next; the stages ask for it between their blocks.
-  LinesAhead ahead[batch_blocks] = {};
+  /// Memory that the caller wants while the update works on each block.
+  PrefetchLines background[batch_blocks] = {};
+  /// The stages of the update call this as they come to a block: so many of its parts_of_update follow. What
+  /// is done meanwhile is the caller's affair: a cache line for each.
+  [[gnu::always_inline]] void begin_parts(int b, int parts) { background[b].request(parts); }
 
   // --- passed between the stages of the material update ---
   alignas(64) Row volumetric_strain;  ///< trace of the strain increment

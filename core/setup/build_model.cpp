@@ -15,7 +15,7 @@
 #include "core/step/conduction.hpp"
 #include "core/step/migration.hpp"
 #include "core/step/passes.hpp"
-#include "core/step/stepper.hpp"
+#include "core/step/speeds.hpp"
 #include "core/step/totals.hpp"
 #include "core/threads.hpp"
 
@@ -303,7 +303,10 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
   model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
   model.options.keep_strain =
       solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
-  model.grid = std::make_unique<BrickGrid>(geometry_of(*scene));
+  const bool conducts = std::ranges::any_of(
+      model.materials, [](const auto& material) { return material->conductivity() > 0; });
+  model.grid = std::make_unique<BrickGrid>(geometry_of(*scene), node_block_of(*scene),
+                                           node_arrays_of(*scene, conducts));
   BlockPools pools;
   for_each_active_body(*scene, [&](int component, const BodyInput& input) {
     Body body;
@@ -318,6 +321,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     ColumnSet columns = ColumnSet::mechanics();
     columns.add(body.model->columns(model.options));
     columns.add(output_columns);
+    columns.add(transfer_columns(*scene));
     if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
         model.grid->geometry().boundary.end())
       columns.add(Column::sound_speed);  // of the dashpots there

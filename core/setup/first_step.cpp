@@ -7,7 +7,7 @@
 
 #include "core/material/batch.hpp"
 #include "core/step/finite.hpp"
-#include "core/step/stepper.hpp"
+#include "core/step/speeds.hpp"
 
 namespace mpm::core {
 

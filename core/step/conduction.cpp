@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
+#include "core/shape/linear.hpp"
+#include "core/step/node_update.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {
 
 namespace {
 
-constexpr int heat_doubles = record_doubles(NodeArray::second);
-constexpr int flux_doubles = record_doubles(NodeArray::first);
+constexpr int heat_doubles = record_doubles(mapped::heat.array);
+constexpr int flow_doubles = record_doubles(mapped::heat_flow.array);
 
 bool conducts(const Body& body) { return body.model->conductivity() > 0; }
 
@@ -23,22 +25,45 @@ double diffusivity(const Body& body, const double* block, int lane) {
 /// 1/dt_c of a diffusivity of one.
 double sharpest_curvature(const GridGeometry& g) { return 2 * dot(g.inverse_cell, g.inverse_cell); }
 
-}  // namespace
+template <ShapePolicy S>
+class ConductionWith final : public Conduction {
+ public:
+  ConductionWith(Model& model, Exchange& exchange);
+  bool any() const override { return any_; }
+  void map_heat() override;
+  void map_flux() override;
+  void update_temperatures(double dt) override;
+  void finish_exchange() override { exchange_.end_halo(*model_.grid); }
 
-Conduction::Conduction(Model& model, Exchange& exchange)
-    : model_(model), exchange_(exchange), shared_(model.grid->shape()) {
-  any_ = std::ranges::any_of(model.bodies, conducts);
+ private:
+  /// f(layout, body, block, place, lanes in use) for the blocks of the bodies that conduct.
+  template <class F>
+  void for_each_block(Slot s, F f) const;
+  /// Capacity and temperature of the brick's nodes, in components 0 and 1.
+  void temperatures(Slot s, double* nodes) const;
+
+  Model& model_;
+  Exchange& exchange_;
+  SharedNodes shared_;
+  std::vector<AlignedDoubles> heat_, flow_;  ///< of the brick at hand, by thread
+  bool any_ = false;
+};
+
+template <ShapePolicy S>
+ConductionWith<S>::ConductionWith(Model& model, Exchange& exchange)
+    : model_(model), exchange_(exchange), shared_(model.grid->shape()), any_(conducts_heat(model)) {
   if (!any_) return;
   heat_.resize(static_cast<std::size_t>(omp_get_max_threads()));
-  flux_.resize(heat_.size());
+  flow_.resize(heat_.size());
   for (AlignedDoubles& a : heat_)
     a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
-  for (AlignedDoubles& a : flux_)
+  for (AlignedDoubles& a : flow_)
     a.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
 }
 
+template <ShapePolicy S>
 template <class F>
-void Conduction::for_each_block(Slot s, F f) const {
+void ConductionWith<S>::for_each_block(Slot s, F f) const {
   const BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
@@ -48,25 +73,26 @@ void Conduction::for_each_block(Slot s, F f) const {
     const ColumnLayout& layout = body.pool->layout();
     for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
       double* block = body.pool->block(cohort.blocks[b]);
-      f(layout, body, block, BlockPlace(frame, layout, block), cohort.used_lanes(b));
+      f(layout, body, block, typename S::Place(frame, layout, block), cohort.used_lanes(b));
     }
   }
 }
 
-void Conduction::map_heat() {
+template <ShapePolicy S>
+void ConductionWith<S>::map_heat() {
   BrickGrid& grid = *model_.grid;
   const auto map = [&](int slot) {
     const auto s = static_cast<Slot>(slot);
-    double* to = grid.contributions(NodeArray::second, s);
+    double* to = grid.contributions(mapped::heat.array, s);
     std::fill_n(to, heat_doubles * grid.shape().nodes(), 0.0);
     for_each_block(s, [&](const ColumnLayout& layout, const Body& body, const double* block,
-                          const BlockPlace& place, int used) {
+                          const typename S::Place& place, int used) {
       const double c = body.model->specific_heat();
       for (int l = 0; l < used; ++l) {
         const double capacity = c * block[layout.offset(Column::mass) + l];
         const double heat = capacity * block[layout.offset(Column::temperature) + l];
-        for_each_corner(place, l, grid.geometry().inverse_cell,
-                        [&](int, int node, double shape, const Vec3<double>&) {
+        S::for_each_node(place, l, grid.geometry().inverse_cell,
+                        [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
                           to[heat_doubles * node] += shape * capacity;
                           to[heat_doubles * node + 1] += shape * heat;
                         });
@@ -74,60 +100,63 @@ void Conduction::map_heat() {
     });
   };
   for_each_by_threads(0, grid.boundary(), 4, map);
-  exchange_.begin_halo(grid, NodeArray::second, 0, 2);
+  exchange_.begin_halo(grid, mapped::heat);
   for_each_by_threads(grid.boundary(), grid.owned(), 4, map);
 }
 
-void Conduction::temperatures(Slot s, double* nodes) const {
-  sum_contributions<NodeArray::second>(*model_.grid, shared_, s, nodes);
+template <ShapePolicy S>
+void ConductionWith<S>::temperatures(Slot s, double* nodes) const {
+  sum_contributions<mapped::heat.array>(*model_.grid, shared_, s, nodes);
   for (int n = 0; n < shared_.nodes(); ++n) {
     double* at = nodes + node_doubles * n;
     at[1] = at[0] > 0 ? at[1] / at[0] : 0;
   }
 }
 
-void Conduction::map_flux() {
+template <ShapePolicy S>
+void ConductionWith<S>::map_flux() {
   BrickGrid& grid = *model_.grid;
   const auto map = [&](int slot) {
     const auto s = static_cast<Slot>(slot);
     double* nodes = heat_[static_cast<std::size_t>(omp_get_thread_num())].data();
     temperatures(s, nodes);
-    double* to = grid.contributions(NodeArray::first, s);
-    std::fill_n(to, flux_doubles * grid.shape().nodes(), 0.0);
+    double* to = grid.contributions(mapped::heat_flow.array, s);
+    std::fill_n(to, flow_doubles * grid.shape().nodes(), 0.0);
     for_each_block(s, [&](const ColumnLayout& layout, const Body& body, const double* block,
-                          const BlockPlace& place, int used) {
+                          const typename S::Place& place, int used) {
       for (int l = 0; l < used; ++l) {
         Vec3<double> gradient{};
         double unseen = block[layout.offset(Column::temperature) + l];
-        for_each_corner(place, l, grid.geometry().inverse_cell,
-                        [&](int, int node, double shape, const Vec3<double>& g) {
+        S::for_each_node(place, l, grid.geometry().inverse_cell,
+                        [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
                           gradient = gradient + nodes[node_doubles * node + 1] * g;
                           unseen -= nodes[node_doubles * node + 1] * shape;
                         });
         const double heat = body.model->specific_heat() * block[layout.offset(Column::mass) + l] * unseen;
         const Vec3<double> flow =
             (-body.model->conductivity() * block[layout.offset(Column::volume) + l]) * gradient;
-        for_each_corner(place, l, grid.geometry().inverse_cell,
-                        [&](int, int node, double shape, const Vec3<double>& g) {
-                          to[flux_doubles * node] += dot(flow, g);
-                          to[flux_doubles * node + 1] += shape * heat;
+        S::for_each_node(place, l, grid.geometry().inverse_cell,
+                        [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
+                          to[flow_doubles * node] += dot(flow, g);
+                          to[flow_doubles * node + 1] += shape * heat;
                         });
       }
     });
   };
   for_each_by_threads(0, grid.boundary(), 4, map);
-  exchange_.begin_halo(grid, NodeArray::first, 0, 2);
+  exchange_.begin_halo(grid, mapped::heat_flow);
   for_each_by_threads(grid.boundary(), grid.owned(), 4, map);
 }
 
-void Conduction::warm(double dt) {
+template <ShapePolicy S>
+void ConductionWith<S>::update_temperatures(double dt) {
   BrickGrid& grid = *model_.grid;
   for_each_by_threads(0, grid.owned(), 4, [&](int slot) {
     const auto s = static_cast<Slot>(slot);
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    double *nodes = heat_[thread].data(), *flux = flux_[thread].data();
+    double *nodes = heat_[thread].data(), *flux = flow_[thread].data();
     temperatures(s, nodes);
-    sum_contributions<NodeArray::first>(grid, shared_, s, flux);
+    sum_contributions<mapped::heat_flow.array>(grid, shared_, s, flux);
     for (int n = 0; n < shared_.nodes(); ++n) {  // to the nodes' rise, and P T'
       const double capacity = nodes[node_doubles * n];
       double* at = flux + node_doubles * n;
@@ -136,12 +165,12 @@ void Conduction::warm(double dt) {
     }
     const double curvature = sharpest_curvature(grid.geometry());
     for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block,
-                          const BlockPlace& place, int used) {
+                          const typename S::Place& place, int used) {
       const double per_volume = body.model->reference_density() * body.model->specific_heat();
       for (int l = 0; l < used; ++l) {
         double rise = 0, unseen = block[layout.offset(Column::temperature) + l];
-        for_each_corner(place, l, grid.geometry().inverse_cell,
-                        [&](int, int node, double shape, const Vec3<double>&) {
+        S::for_each_node(place, l, grid.geometry().inverse_cell,
+                        [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
                           rise += shape * flux[node_doubles * node];
                           unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
                         });
@@ -152,6 +181,14 @@ void Conduction::warm(double dt) {
     });
   });
 }
+
+}  // namespace
+
+std::unique_ptr<Conduction> make_conduction(Model& model, Exchange& exchange) {
+  return std::make_unique<ConductionWith<Linear>>(model, exchange);
+}
+
+bool conducts_heat(const Model& model) { return std::ranges::any_of(model.bodies, conducts); }
 
 double conduction_step(const Model& model) {
   double most = 0;

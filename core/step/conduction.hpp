@@ -16,12 +16,10 @@
 // Shown by tests/system/physics_heat.py.
 #pragma once
 
-#include <vector>
+#include <memory>
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
-#include "core/step/node_update.hpp"
-#include "core/step/shape.hpp"
 
 namespace mpm::core {
 
@@ -30,28 +28,20 @@ double conduction_step(const Model& model);
 
 class Conduction {
  public:
-  Conduction(Model& model, Exchange& exchange);
+  virtual ~Conduction() = default;
 
   /// Whether any body conducts. Without, there are no phases for it.
-  bool any() const { return any_; }
-
-  void map_heat();
-  void map_flux();
-  void warm(double dt);
-  void finish_exchange() { exchange_.end_halo(*model_.grid); }
-
- private:
-  /// f(layout, body, block, place, lanes in use) for the blocks of the bodies that conduct.
-  template <class F>
-  void for_each_block(Slot s, F f) const;
-  /// Capacity and temperature of the brick's nodes, in components 0 and 1.
-  void temperatures(Slot s, double* nodes) const;
-
-  Model& model_;
-  Exchange& exchange_;
-  SharedNodes shared_;
-  std::vector<AlignedDoubles> heat_, flux_;  ///< of the brick at hand, by thread
-  bool any_ = false;
+  virtual bool any() const = 0;
+  virtual void map_heat() = 0;
+  virtual void map_flux() = 0;
+  virtual void update_temperatures(double dt) = 0;
+  virtual void finish_exchange() = 0;
 };
+
+/// With the scene's shape.
+std::unique_ptr<Conduction> make_conduction(Model& model, Exchange& exchange);
+
+/// Whether any body of the model conducts heat.
+bool conducts_heat(const Model& model);
 
 }  // namespace mpm::core

@@ -18,6 +18,7 @@ struct Travellers {
   struct Head {
     BrickCoord to;
     std::int32_t body = 0;
+    std::int32_t unused = 0;  ///< heads travel in whole doubles
   };
   std::vector<Head> heads;
   std::vector<std::size_t> offsets;  ///< of each particle in `columns`
@@ -51,10 +52,9 @@ class Exchange {
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
-  /// Send our boundary bricks' contributions to shared nodes, components [first, first + count) of the
-  /// array's records, and receive the ghosts'. Between begin and end the boundary bricks' contributions stay
-  /// untouched. Collective.
-  virtual void begin_halo(BrickGrid& grid, NodeArray of, int first, int count) = 0;
+  /// Send our boundary bricks' contributions to shared nodes, these fields of them, and receive the ghosts'.
+  /// Between begin and end the boundary bricks' contributions stay untouched. Collective.
+  virtual void begin_halo(BrickGrid& grid, NodeFields fields) = 0;
   virtual void end_halo(BrickGrid& grid) = 0;
 
   /// True on every rank if `mine` is true on any. Collective.
@@ -103,7 +103,7 @@ class SoloExchange final : public Exchange {
  public:
   int rank() const override { return 0; }
   int size() const override { return 1; }
-  void begin_halo(BrickGrid&, NodeArray, int, int) override {}
+  void begin_halo(BrickGrid&, NodeFields) override {}
   void end_halo(BrickGrid&) override {}
   bool any(bool mine) override { return mine; }
   void minimum(std::span<double>) override {}

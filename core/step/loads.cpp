@@ -29,19 +29,6 @@ double integral(const std::vector<Point>& points, double time, F value) {
   return sum;
 }
 
-/// 1 inside, 0 outside, with slopes of width `ramp` about the box's faces; with its gradient.
-double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double>& x, Vec3<double>& gradient) {
-  double w[3], slope[3];
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double y = x[static_cast<int>(a)];
-    const double up = (y - load.lower[a]) / ramp + 0.5, down = (load.upper[a] - y) / ramp + 0.5;
-    w[a] = std::clamp(std::min(up, down), 0.0, 1.0);
-    slope[a] = w[a] == 0 || w[a] == 1 ? 0 : (up < down ? 1 : -1) / ramp;
-  }
-  gradient = {slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]};
-  return w[0] * w[1] * w[2];
-}
-
 }  // namespace
 
 Vec3<double> acceleration_of(const BodyInput& input, double time) {
@@ -75,7 +62,15 @@ Vec3<double> velocity_gained(const BodyInput& input, double time) {
   return v;
 }
 
-Loads::Loads(const Model& model) {
+Loads::Loads(const Model& model) : motions_(model.bodies.size()) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (body.prescribed_velocity) {
+      motions_[b] = {BodyMotion::Kind::prescribed, *body.prescribed_velocity};
+    } else if (body.rigid) {
+      motions_[b].kind = BodyMotion::Kind::rigid;
+    }
+  }
   const GridGeometry& geometry = model.grid->geometry();
   for (const Boundary b : geometry.boundary) nonreflecting_ |= b == Boundary::nonreflecting;
   bool acts = nonreflecting_;
@@ -96,7 +91,7 @@ Loads::Loads(const Model& model) {
   if (!acts) bodies_.clear();
 }
 
-void Loads::begin_step(Model& model, double time, double dt) {
+void Loads::begin_step(double time, double dt) {
   dt_ = dt;
   const double middle = time + 0.5 * dt;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -105,7 +100,7 @@ void Loads::begin_step(Model& model, double time, double dt) {
     const BodyInput& input = *mine.input;
     if (input.constrain_rigid_position) {
       const std::array<double, 3> start = input.prescribed_velocity.value_or(input.initial_velocity);
-      model.bodies[b].prescribed_velocity = to_vec(start) + velocity_gained(input, time + dt);
+      motions_[b] = {BodyMotion::Kind::prescribed, to_vec(start) + velocity_gained(input, time + dt)};
     }
     if (!mine.loaded) continue;
     mine.acceleration = acceleration_of(input, middle);
@@ -133,84 +128,6 @@ bool Loads::touches_nonreflecting(const BrickGrid& grid, Slot slot) const {
       return true;
   }
   return false;
-}
-
-/// f(node, force) for every particle and every node of its cell, in that order.
-template <class F>
-void Loads::for_each_force(const Model& model, Slot slot, int body, const BlockPlace& place,
-                           const double* block, int used, F f) const {
-  const OfBody& mine = bodies_[static_cast<std::size_t>(body)];
-  const GridGeometry& g = model.grid->geometry();
-  const NodeBlockShape& shape = model.grid->shape();
-  const BrickCoord brick = model.grid->brick(slot).coord;
-  const std::int64_t first[3] = {std::int64_t{brick_cells} * brick.x, std::int64_t{brick_cells} * brick.y,
-                                 std::int64_t{brick_cells} * brick.z};
-  const ColumnLayout& layout = model.bodies[static_cast<std::size_t>(body)].pool->layout();
-  const bool dashpots = nonreflecting_ && touches_nonreflecting(*model.grid, slot);
-
-  for (int l = 0; l < used; ++l) {
-    const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
-    const double m = get(Column::mass), volume = get(Column::volume);
-    const Vec3<double> x{get(Column::position_x), get(Column::position_y), get(Column::position_z)};
-    Vec3<double> per_shape{};
-    Vec3<double> per_gradient[3]{};  // columns
-    if (mine.loaded) {
-      per_shape = m * mine.acceleration;
-      for (const Surface& s : mine.surfaces) {
-        Vec3<double> slope{};
-        const double weight = box_weight(*s.input, s.ramp, x, slope);
-        for (int j = 0; j < 3; ++j) {
-          per_shape = per_shape + (volume * slope[j]) * s.column[j];
-          per_gradient[j] = per_gradient[j] + (volume * weight) * s.column[j];
-        }
-      }
-    }
-    // Dashpots: one for each face of the grid at which the particle's cell lies.
-    Vec3<double> dashpot[3]{};
-    int side[3] = {-1, -1, -1};
-    if (dashpots) {
-      const int cell[3] = {place.node[l] % shape.side(), place.node[l] / shape.side() % shape.side(),
-                           place.node[l] / (shape.side() * shape.side())};
-      const double c_p = get(Column::sound_speed), c_s = mine.shear_speed;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const auto axis = static_cast<int>(a);
-        const std::int64_t global = first[a] + cell[a];
-        if (g.boundary[2 * a] == Boundary::nonreflecting && global == 0) side[a] = 0;
-        if (g.boundary[2 * a + 1] == Boundary::nonreflecting && global == g.cells[a] - 1) side[a] = 1;
-        if (side[a] < 0) continue;
-        for (int i = 0; i < 3; ++i) {
-          const double rate = (i == axis ? c_p : c_s) * g.inverse_cell[axis];
-          dashpot[a][i] = -2 * m * rate * get(next(Column::velocity_x, i));
-        }
-      }
-    }
-    for_each_corner(place, l, g.inverse_cell,
-                    [&](int corner, int node, double shape_value, const Vec3<double>& slope) {
-                      Vec3<double> force = shape_value * per_shape + slope.x * per_gradient[0] +
-                                           slope.y * per_gradient[1] + slope.z * per_gradient[2];
-                      for (int a = 0; a < 3; ++a) {
-                        if (side[a] == ((corner >> a) & 1)) force = force + shape_value * dashpot[a];
-                      }
-                      f(node, force);
-                    });
-  }
-}
-
-void Loads::add_forces(const Model& model, Slot slot, int body, const BlockPlace& place, const double* block,
-                       int used, double* contributions) const {
-  for_each_force(model, slot, body, place, block, used, [&](int node, const Vec3<double>& force) {
-    for (int a = 0; a < 3; ++a) contributions[node_doubles * node + 4 + a] += force[a];
-  });
-}
-
-double Loads::work(const Model& model, Slot slot, int body, const BlockPlace& place, const double* block,
-                   int used, const double* nodes) const {
-  double power = 0;
-  for_each_force(model, slot, body, place, block, used, [&](int node, const Vec3<double>& force) {
-    const double* at = nodes + node_doubles * node;
-    for (int a = 0; a < 3; ++a) power += force[a] * (at[a] - 0.5 * at[4 + a]);
-  });
-  return power * dt_;
 }
 
 }  // namespace mpm::core

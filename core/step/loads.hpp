@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "core/model.hpp"
-#include "core/step/shape.hpp"
 
 namespace mpm::core {
 
@@ -30,6 +29,14 @@ namespace mpm::core {
 Vec3<double> acceleration_of(const BodyInput& input, double time);
 /// Its integral from time zero.
 Vec3<double> velocity_gained(const BodyInput& input, double time);
+
+/// What decides the velocities of a body's particles: the grid; nothing but gravity and loads (a rigid body);
+/// the input.
+struct BodyMotion {
+  enum class Kind { free, rigid, prescribed };
+  Kind kind = Kind::free;
+  Vec3<double> velocity{};  ///< prescribed, at the end of the step
+};
 
 class Loads {
  public:
@@ -40,30 +47,25 @@ class Loads {
 
   /// Before a step from `time` to `time + dt`: loads take their value at its middle, held velocities
   /// (ConstrainRigidPosition) that at its end.
-  void begin_step(Model& model, double time, double dt);
+  void begin_step(double time, double dt);
 
   bool any() const { return !bodies_.empty(); }
   /// Per mass, at this step.
   Vec3<double> acceleration(int body) const {
     return any() ? bodies_[static_cast<std::size_t>(body)].acceleration : Vec3<double>{};
   }
+  /// How the body's velocities evolve in this step.
+  const BodyMotion& motion(int body) const { return motions_[static_cast<std::size_t>(body)]; }
   bool nonreflecting() const { return nonreflecting_; }
-  /// Whether add_forces has anything to do for this body in this brick.
+  /// Whether add_load_forces has anything to do for this body in this brick.
   bool act(const BrickGrid& grid, Slot slot, int body) const {
     return any() && (bodies_[static_cast<std::size_t>(body)].loaded ||
                      (nonreflecting_ && touches_nonreflecting(grid, slot)));
   }
-  /// Adds the forces on a block's first `used` particles to components 4..6 of the brick's contributions.
-  void add_forces(const Model& model, Slot slot, int body, const BlockPlace& place, const double* block,
-                  int used, double* contributions) const;
-  /// Their work over the step, with the nodes' velocities at its end in components 0..2 of `nodes` and their
-  /// increments in 4..6: its middle counts, as what the nodes gain in kinetic energy is f (v + v')/2 dt.
-  double work(const Model& model, Slot slot, int body, const BlockPlace& place, const double* block, int used,
-              const double* nodes) const;
 
- private:
+  /// A surface load of a body as it acts in this step.
   struct Surface {
-    Vec3<double> column[3]{};  ///< of T at this step
+    Vec3<double> column[3]{};  ///< of T
     const SurfaceLoad* input = nullptr;
     double ramp = 0;
   };
@@ -74,12 +76,13 @@ class Loads {
     std::vector<Surface> surfaces;
     double shear_speed = 0;
   };
+  const OfBody& of(int body) const { return bodies_[static_cast<std::size_t>(body)]; }
+  double step() const { return dt_; }
   bool touches_nonreflecting(const BrickGrid& grid, Slot slot) const;
-  template <class F>
-  void for_each_force(const Model& model, Slot slot, int body, const BlockPlace& place, const double* block,
-                      int used, F f) const;
 
+ private:
   std::vector<OfBody> bodies_;  ///< empty where nothing at all acts
+  std::vector<BodyMotion> motions_;
   bool nonreflecting_ = false;
   double dt_ = 0;
 };

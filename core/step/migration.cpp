@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "core/shape/linear.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {
@@ -95,7 +96,7 @@ void Migration::dispose(std::size_t body_index, const double* columns, bool erod
                            [&] { return describe_particle(body, columns); });
 }
 
-void Migration::collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& harvest) {
+void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departing, Harvest& harvest) {
   const BrickGrid& grid = *model_.grid;
   Brick& brick = model_.grid->brick(slot);
   double columns[column_count];
@@ -104,10 +105,10 @@ void Migration::collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& h
                             [&] { return describe_particle(body, columns) + what; });
   };
   // From the last to the first: the particle that fills a gap is then never one that has yet to leave.
-  std::sort(leavers.begin(), leavers.end(), [](const Leaver& a, const Leaver& b) {
+  std::sort(departing.begin(), departing.end(), [](const DepartingParticle& a, const DepartingParticle& b) {
     return a.cohort != b.cohort ? a.cohort > b.cohort : a.index > b.index;
   });
-  for (const Leaver& l : leavers) {
+  for (const DepartingParticle& l : departing) {
     Cohort& cohort = brick.cohorts[static_cast<std::size_t>(l.cohort)];
     const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
     extract(*body.pool, cohort, l.index, columns);
@@ -131,7 +132,7 @@ void Migration::collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& h
     remove_swapping(*body.pool, cohort, l.index);
   }
   std::erase_if(brick.cohorts, [](const Cohort& c) { return c.count == 0; });
-  leavers.clear();
+  departing.clear();
 }
 
 void Migration::merge(Harvest& h) {
@@ -167,16 +168,16 @@ void Migration::merge(Harvest& h) {
   h.left = 0;
 }
 
-void Migration::collect(std::vector<std::vector<Leaver>>& leavers) {
+void Migration::collect(std::vector<std::vector<DepartingParticle>>& departing) {
   wanted_.clear();
   left_now_ = 0;
   first_left_ = {};
   complaint_ = {};
   for_each_by_threads(
-      std::size_t{0}, leavers.size(), 16,
+      std::size_t{0}, departing.size(), 16,
       [&](std::size_t s) {
-        if (leavers[s].empty()) return;
-        collect_from(static_cast<Slot>(s), leavers[s],
+        if (departing[s].empty()) return;
+        collect_from(static_cast<Slot>(s), departing[s],
                      harvests_[static_cast<std::size_t>(omp_get_thread_num())]);
       },
       static_cast<int>(harvests_.size()));
@@ -252,7 +253,7 @@ void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Coho
   cell.resize(block_lanes * cohort.blocks.size());
   std::array<std::uint32_t, shape.nodes() + 1> start{};
   for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-    const BlockPlace place(frame, pool.layout(), pool.block(cohort.blocks[b]));
+    const LinearPlace place(frame, pool.layout(), pool.block(cohort.blocks[b]));
     const int used = cohort.used_lanes(b);
     for (int l = 0; l < block_lanes; ++l) {
       cell[block_lanes * b + static_cast<std::size_t>(l)] = static_cast<std::uint8_t>(place.node[l]);

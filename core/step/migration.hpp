@@ -10,7 +10,7 @@
 
 #include "core/model.hpp"
 #include "core/step/exchange.hpp"
-#include "core/step/passes.hpp"
+#include "core/step/integrator.hpp"
 #include "core/step/witness.hpp"
 
 namespace mpm::core {
@@ -19,8 +19,8 @@ class Migration {
  public:
   Migration(Model& model, Exchange& exchange);
 
-  /// Take the leavers of every brick out; those that leave the grid or are eroded are booked and gone.
-  void collect(std::vector<std::vector<Leaver>>& leavers);
+  /// Take the departing particles out of every brick; those that leave the grid or are eroded are booked and gone.
+  void collect(std::vector<std::vector<DepartingParticle>>& departing);
   /// True if some of what was collected goes to a brick that this rank has never heard of.
   bool wants_new_bricks() const { return !wanted_.empty(); }
   /// Bring everybody home. `claim`: some rank wants new bricks. Collective.
@@ -46,7 +46,7 @@ class Migration {
     Witnesses first_left;
     Witness complaint;
   };
-  void collect_from(Slot slot, std::vector<Leaver>& leavers, Harvest& harvest);
+  void collect_from(Slot slot, std::vector<DepartingParticle>& departing, Harvest& harvest);
   void dispose(std::size_t body, const double* columns, bool eroded, Harvest& harvest) const;
   void merge(Harvest& harvest);
 

@@ -85,20 +85,21 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   const Half gravity(Half::vector{forces.gravity.x, forces.gravity.y, forces.gravity.z, 0});
   const double floor = forces.strain_mass_floor;
   for (int n = 0; n < nodes; ++n) {
-    double* at = record + node_doubles * n;
-    const double m = at[3];
+    const MappedRecord<double> sums{record + node_doubles * n};
+    const double m = sums.mass();
     if (!(m > mass_cutoff)) {
-      store(at, Record(0.0));
+      store(sums.at, Record(0.0));
       continue;
     }
     const double inverse = 1 / m;
-    const Half v = load<Half>(at) * Half(inverse);
-    const Half a = load<Half>(at + 4) * Half(inverse) + gravity - Half(forces.damping) * v;
+    const Half v = load<Half>(sums.momentum()) * Half(inverse);
+    const Half a = load<Half>(sums.force()) * Half(inverse) + gravity - Half(forces.damping) * v;
     const Half dv = Half(dt) * a;
-    store(at, v + dv);
-    store(at + 4, dv);
-    at[3] = m;
-    at[7] = m < floor ? 1 - m / floor : 0;
+    const Motion motion{sums.at};
+    store(motion.velocity(), v + dv);
+    store(motion.increment(), dv);
+    motion.mass() = m;
+    motion.omitted_share() = m < floor ? 1 - m / floor : 0;
   }
   // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel
   // them through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the
@@ -106,13 +107,14 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   // again, and does a wall that lets go give no energy. With USF some is left, in proportion to the step: its
   // strain has used the node's velocity before it is known to be stopped.
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
+    double *v = Motion{at}.velocity(), *dv = Motion{at}.increment();
     if (boundary == Boundary::fixed) {
-      for (int a = 0; a < 3; ++a) at[a] = at[4 + a] = 0;
+      for (int a = 0; a < 3; ++a) v[a] = dv[a] = 0;
     } else if (boundary == Boundary::symmetry) {
-      at[axis] = at[4 + axis] = 0;
-    } else if (boundary == Boundary::rigid_wall && sign * at[axis] > 0) {
-      at[4 + axis] -= at[axis];
-      at[axis] = 0;
+      v[axis] = dv[axis] = 0;
+    } else if (boundary == Boundary::rigid_wall && sign * v[axis] > 0) {
+      dv[axis] -= v[axis];
+      v[axis] = 0;
     }
   });
 }
@@ -125,15 +127,16 @@ void recall_motion(int nodes, const double* motion, double* record) {
 }
 
 namespace {
-/// Components 4..6 obey the walls. A node that a rigid wall has stopped (component 0..2 is zero) strains
-/// nobody either: moving for the strain alone, it would do work on the particles out of nothing.
+/// The strain velocities obey the walls. A node that a rigid wall has stopped (its velocity is zero) does not
+/// strain particles either: moving for the strain alone, it would do work on them out of nothing.
 void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
+    double* u = Motion{at}.strain_velocity();
     if (boundary == Boundary::fixed) {
-      for (int a = 0; a < 3; ++a) at[4 + a] = 0;
+      for (int a = 0; a < 3; ++a) u[a] = 0;
     } else if (boundary == Boundary::symmetry ||
-               (boundary == Boundary::rigid_wall && (sign * at[4 + axis] > 0 || at[axis] == 0))) {
-      at[4 + axis] = 0;
+               (boundary == Boundary::rigid_wall && (sign * u[axis] > 0 || Motion{at}.velocity()[axis] == 0))) {
+      u[axis] = 0;
     }
   });
 }
@@ -142,9 +145,9 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
 void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
                        double* record) {
   for (int n = 0; n < nodes; ++n) {
-    double* at = record + node_doubles * n;
-    const double m = at[3];
-    store(at + 4, m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
+    const Motion at{record + node_doubles * n};
+    const double m = at.mass();
+    store(at.strain_velocity(), m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
   }
   constrain_second_velocity(faces, record);
 }
@@ -152,8 +155,9 @@ void second_velocities(double mass_cutoff, const double* momenta, const Boundary
 void regularised_velocities(const Vec3<double>& fall, const BoundaryFaces& faces, int nodes, double* record) {
   const Half g(Half::vector{fall.x, fall.y, fall.z, 0});
   for (int n = 0; n < nodes; ++n) {
-    double* at = record + node_doubles * n;
-    store(at + 4, load<Half>(at) - Half(at[7]) * (load<Half>(at + 4) - g));
+    const Motion at{record + node_doubles * n};
+    store(at.strain_velocity(),
+          load<Half>(at.velocity()) - Half(at.omitted_share()) * (load<Half>(at.increment()) - g));
   }
   constrain_second_velocity(faces, record);
 }

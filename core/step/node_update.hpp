@@ -57,8 +57,6 @@ struct NodeForces {
   /// USL: nodes lighter than this take only the share m / floor of their velocity increment into the strain
   /// rate.
   double strain_mass_floor = 0;
-  bool wall_reaction =
-      true;  ///< a rigid wall takes the momentum of the nodes that it stops from the particles
 };
 
 /// A brick's faces that lie on a constrained face of the grid, found once per pass.
@@ -80,23 +78,22 @@ class BoundaryFaces {
   int count_ = 0;
 };
 
-/// [p, m, f] -> [v^{k+1}, m, dv, share left out]: velocity at the end of the step and its increment.
+/// MappedRecord -> MotionRecord: velocity at the end of the step and its increment.
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
                   int nodes, double* record);
 
-/// A node's motion as MUSL keeps it from one pass to the next: components 0..3 of the updated record.
+/// A node's motion as MUSL keeps it from one pass to the next: velocity and mass of its MotionRecord.
 inline constexpr int motion_width = 4;
 void keep_motion(int nodes, const double* record, double* motion);
 void recall_motion(int nodes, const double* motion, double* record);
 
-/// Components 4..6 become the velocity of `momenta` (0..2 of each record) over the masses in component 3 of
-/// `record`: USF's velocity at the start of the step (momenta = record), MUSL's re-mapped one.
+/// The strain velocity becomes `momenta` (0..2 of each record) over the masses of `record`: USF's velocity at
+/// the start of the step (momenta = record), MUSL's re-mapped one.
 void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
                        double* record);
 
-/// Components 4..6 become USL's velocity of the strain rate: that at the end of the step less the share of
-/// the increment, gravity's part `fall` apart, that component 7 leaves out. After the particles have taken
-/// their increment.
+/// The strain velocity becomes USL's: the velocity at the end of the step less the omitted share of the
+/// increment, gravity's part `fall` apart. After the particles have taken their increment.
 void regularised_velocities(const Vec3<double>& fall, const BoundaryFaces& faces, int nodes, double* record);
 
 template <class F>

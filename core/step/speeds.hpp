@@ -1,12 +1,20 @@
-// The largest speeds of a batch or block, which bound the time step.
+// The largest speeds of a batch or block, and the time step that they bound.
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
+#include "core/grid/brick_grid.hpp"
 #include "core/material/batch.hpp"
 #include "core/simd/lanes.hpp"
 
 namespace mpm::core {
+
+/// Largest stable step without the scene's factor (thesis 2-51, 2-74): the smallest cell edge over the largest
+/// of (Q + sqrt(Q^2 + c^2)) + |v|.
+inline double critical_step(const BrickGrid& grid, double fastest) {
+  return fastest > 0 ? grid.geometry().smallest_cell() / fastest : std::numeric_limits<double>::infinity();
+}
 
 /// Largest of `most` and the first `used` lanes.
 inline double largest_lane(Real value, int used, double most) {

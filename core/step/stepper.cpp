@@ -18,17 +18,24 @@ constexpr double smallest_step_ratio = 1e-7;
 
 }  // namespace
 
-double critical_step(const BrickGrid& grid, double fastest) {
-  return fastest > 0 ? grid.geometry().smallest_cell() / fastest : std::numeric_limits<double>::infinity();
-}
-
 Stepper::Stepper(Model& model, Exchange& exchange)
     : model_(model),
       exchange_(exchange),
-      passes_(model, exchange),
-      conduction_(model, exchange),
+      integrator_(make_integrator(model, exchange)),
       migration_(model, exchange),
-      phases_(phases_of(*this, model.scene->solution.scheme)) {}
+      phases_(make_phases()) {}
+
+std::vector<Phase> Stepper::make_phases() {
+  std::vector<Phase> step{{"choose time step", [this] { choose_time_step(); }}};
+  for (Phase& phase : integrator_->phases()) step.push_back(std::move(phase));
+  step.push_back({"collect leavers", [this] { migration_.collect(integrator_->departing()); }});
+  step.push_back({"agree", [this] { agree(); }});
+  step.push_back({"migrate", [this] { migration_.deliver(claim_); }});
+  step.push_back({"tidy", [this] {
+                    if (model_.clock.step % tidy_interval == 0) migration_.tidy();
+                  }});
+  return step;
+}
 
 void Stepper::step() {
   using clock = std::chrono::steady_clock;
@@ -43,27 +50,22 @@ void Stepper::step() {
 }
 
 void Stepper::choose_time_step() {
-  const TimeStepInput& how = model_.scene->solution.time_step;
   Clock& clock = model_.clock;
-  const double factor =
-      passes_.loads().nonreflecting() ? std::min(how.factor, Loads::nonreflecting_factor) : how.factor;
-  double dt = how.specified > 0 ? how.specified
-                                : factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
   // The last step ends on time.
-  dt = std::min(dt, model_.scene->solution.end_time - clock.time);
+  const double dt = std::min(integrator_->next_step(clock), model_.scene->solution.end_time - clock.time);
   if (!(clock.time + dt > clock.time)) {
     throw NumericalFailure(fmt::format(
         "step {}, time {:.9g}: a time step of {:.3g} does not advance the time any more; the fastest: {}",
         clock.step + 1, clock.time, dt, fastest_in_words(model_, exchange_)));
   }
   clock.dt = dt;
-  passes_.begin_step(dt);
+  integrator_->begin_step(dt);
 }
 
 void Stepper::agree() {
   Clock& clock = model_.clock;
   Books& books = model_.books;
-  const StepFindings found = passes_.take_findings();
+  const StepStatistics found = integrator_->take_statistics();
   books.external_work += found.work;
   books.velocity_limited += found.limited;
   books.events += found.events;
@@ -74,7 +76,7 @@ void Stepper::agree() {
   // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to
   // stop.
   const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty();
-  double news[4] = {std::min(critical_step(*model_.grid, found.fastest), conduction_step(model_)),
+  double news[4] = {integrator_->stable_step(found),
                     migration_.wants_new_bricks() ? -1.0 : 0.0, trouble ? -1.0 : 0.0,
                     stop_requested_ ? -1.0 : 0.0};
   exchange_.minimum(news);

@@ -1,22 +1,16 @@
-// One explicit time step, as the list of named phases that the scene's scheme makes of it.
+// One time step: the choice of its length, the phases of the scene's integrator, and the migration of
+// particles. The names of all phases stand in the log's timing table, in the summary and in the benchmarks.
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "core/step/conduction.hpp"
+#include "core/step/integrator.hpp"
 #include "core/step/migration.hpp"
-#include "core/step/passes.hpp"
 
 namespace mpm::core {
-
-struct Phase {
-  std::string name;
-  std::function<void()> run;
-  double seconds = 0;  ///< wall clock of this rank since the run began
-};
 
 /// The run cannot go on: what happened, to which particle, where and when. The same on every rank.
 class NumericalFailure : public std::runtime_error {
@@ -54,14 +48,13 @@ class Stepper {
   static constexpr std::int64_t tidy_interval = 20;
 
  private:
-  friend std::vector<Phase> phases_of(Stepper&, Scheme);
+  std::vector<Phase> make_phases();
   void choose_time_step();
   void agree();
 
   Model& model_;
   Exchange& exchange_;
-  Passes passes_;
-  Conduction conduction_;
+  std::unique_ptr<Integrator> integrator_;
   Migration migration_;
   std::vector<Phase> phases_;
   Incidents incidents_;
@@ -70,9 +63,5 @@ class Stepper {
   bool stop_requested_ = false;
   bool stop_agreed_ = false;
 };
-
-/// Largest stable step of the model's present state, without the scene's factor (thesis 2-51, 2-74): the
-/// smallest cell edge over the largest of (Q + sqrt(Q^2 + c^2)) + |v|.
-double critical_step(const BrickGrid& grid, double fastest);
 
 }  // namespace mpm::core

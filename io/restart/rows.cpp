@@ -60,7 +60,7 @@ std::size_t RowReader::read(const std::vector<std::size_t>& wanted, std::size_t 
 void RowReader::check(const CohortRecord& record, const double* rows) const {
   const BodyRecord& body = contents_.bodies[static_cast<std::size_t>(record.body)];
   if (hash_of(record, rows, static_cast<int>(body.columns.size())) == record.hash) return;
-  const auto [x, y, z] = core::brick_of_key(record.brick);
+  const auto [x, y, z, level] = core::brick_of_key(record.brick);
   throw FileError(
       fmt::format("the restart file '{}' is damaged: the particles of body '{}' in brick ({}, {}, {}) fail "
                   "their checksum",

@@ -90,7 +90,7 @@ template <class T>
   const double dt = batch.dt;
   const int type = options.volume_update;
 
-  for_each_vector<T, lines_of_kinematics>(batch, [&](double* block, int row) {
+  for_each_vector<T, parts_of_kinematics>(batch, [&](double* block, int row) {
     const core::Mat3<T> l = load_gradient<T>(batch, row);
     const core::Sym3<T> strain = strain_increment(l, dt);
     core::store(batch.volumetric_strain + row, trace(strain));

@@ -140,7 +140,7 @@ template <class T, class Eos>
   const double length = batch.cell_size, inverse_dt = 1 / batch.dt, rho0 = rules.reference_density;
   const double negligible = -1e-12 * rules.initial_modulus;
 
-  for_each_vector<T, lines_of_pressure>(batch, [&](double* block, int row) {
+  for_each_vector<T, parts_of_pressure>(batch, [&](double* block, int row) {
     const T volume = core::load<T>(block + volume_at), old_volume = core::load<T>(batch.old_volume + row);
     Density<T> now(core::load<T>(block + mass_at), volume, rho0);
     const T tr = core::load<T>(batch.volumetric_strain + row);

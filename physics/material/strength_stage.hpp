@@ -94,7 +94,7 @@ template <class T, class Law>
   const int failed_at = layout.offset(Column::failed), yield_at = layout.offset(Column::yield_stress);
   const int temperature_at = layout.offset(Column::temperature);
 
-  for_each_vector<T, lines_of_strength>(batch, [&](double* block, int row) {
+  for_each_vector<T, parts_of_strength>(batch, [&](double* block, int row) {
     StrengthPoint<T> point = strength_point<T>(batch, block, row);
     const core::Sym3<T> before = point.s;
     history.load(block, point);

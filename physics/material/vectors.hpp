@@ -5,16 +5,16 @@
 
 namespace mpm::physics {
 
-/// Lines of each of the batch's `ahead` that the stages of the update ask for, in proportion to their work.
-inline constexpr int lines_of_kinematics = 1, lines_of_strength = 8, lines_of_pressure = 7;
-static_assert(lines_of_kinematics + lines_of_strength + lines_of_pressure == core::lines_asked_by_materials);
+/// How the work of an update is spread over its stages.
+inline constexpr int parts_of_kinematics = 1, parts_of_strength = 8, parts_of_pressure = 7;
+static_assert(parts_of_kinematics + parts_of_strength + parts_of_pressure == core::parts_of_update);
 
 /// f(block, row): `block + layout.offset(column)` is where the vector's values of a column lie, `row` its
-/// place in the rows of the batch. Each block first asks for `lines` of its `ahead`.
-template <class T, int lines = 0, class B, class F>
+/// place in the rows of the batch. `parts`: of the update's work that the stage does.
+template <class T, int parts = 0, class B, class F>
 inline void for_each_vector(B& batch, F f) {
   for (int b = 0; b < batch.blocks; ++b) {
-    if constexpr (lines > 0) batch.ahead[b].ask(lines);
+    if constexpr (parts > 0) batch.begin_parts(b, parts);
     for (int lane = 0; lane < core::block_lanes; lane += core::LaneTraits<T>::width) {
       f(batch.block[b] + lane, core::block_lanes * b + lane);
     }

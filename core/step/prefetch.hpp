@@ -1,26 +1,27 @@
-// What a pass asks memory for before it comes to it. The hardware does not guess which columns of the next
-// blocks are wanted, where the next brick's blocks lie, nor the neighbours' nodes; left to it, a pass takes
-// twice as long. Asked for a few lines at a time while something else is worked on, all are there in time.
+// What a pass fetches before it comes to it. The hardware does not guess which columns of the next blocks are
+// wanted, where the next brick's blocks lie, nor the neighbours' nodes; without help a pass takes twice as
+// long. Requested a few lines at a time while other data is worked on, all of it is there in time.
 #pragma once
 
 #include <algorithm>
 #include <array>
 
 #include "core/model.hpp"
+#include "core/prefetch.hpp"
 #include "core/step/node_update.hpp"
 
 namespace mpm::core {
 
 /// In all of a brick's cohorts.
-inline std::size_t blocks_of(const Brick& brick) {
+inline std::size_t block_count(const Brick& brick) {
   std::size_t n = 0;
   for (const Cohort& c : brick.cohorts) n += c.blocks.size();
   return n;
 }
 
-/// Asks for what says where the coming bricks' particles lie. One leads to the next: a brick to its cohorts,
-/// these to the numbers of their blocks. So each is asked for one brick later than what leads to it.
-inline void ask_for_coming_bricks(const BrickGrid& grid, Slot now) {
+/// Prefetches what says where the coming bricks' particles lie. One leads to the next: a brick to its cohorts,
+/// these to the numbers of their blocks. So each is requested one brick later than what leads to it.
+inline void prefetch_coming_bricks(const BrickGrid& grid, Slot now) {
   const auto line = [](const void* at, std::size_t n) {
     __builtin_prefetch(static_cast<const char*>(at) + 64 * n, 0, 3);
   };
@@ -34,12 +35,12 @@ inline void ask_for_coming_bricks(const BrickGrid& grid, Slot now) {
   for (std::size_t b = 0; b < blocks.size(); b += 16) line(blocks.data() + b, 0);
 }
 
-/// Asks for the blocks that a pass will come to: those of a cohort, then those of the next one, in the brick
+/// Prefetches the blocks that a pass will come to: those of a cohort, then those of the next one, in the brick
 /// or after it. Into the second-level cache: the first has too few lines under way at a time to hide main
 /// memory.
-class BlocksAhead {
+class BlockPrefetch {
  public:
-  BlocksAhead(const Model& model, Slot slot, std::size_t cohort) : model_(model) {
+  BlockPrefetch(const Model& model, Slot slot, std::size_t cohort) : model_(model) {
     const BrickGrid& grid = *model.grid;
     const Brick& brick = grid.brick(slot);
     now_ = &brick.cohorts[cohort];
@@ -49,8 +50,8 @@ class BlocksAhead {
       then_ = &grid.brick(slot + 1).cohorts.front();
     }
   }
-  /// The lines of the block to ask for while block `b` is worked on; none where there is no such block.
-  [[gnu::always_inline]] LinesAhead lines(std::size_t b) const {
+  /// The lines of the block to fetch while block `b` is worked on; none where there is no such block.
+  [[gnu::always_inline]] PrefetchLines lines(std::size_t b) const {
     const Cohort* cohort = now_;
     b += distance;
     if (b >= cohort->blocks.size()) {
@@ -63,7 +64,7 @@ class BlocksAhead {
     return {block, block + pool.layout().block_doubles()};
   }
   /// The first columns of that block at once.
-  [[gnu::always_inline]] void prefetch(std::size_t b, int columns) const { lines(b).ask(columns); }
+  [[gnu::always_inline]] void request(std::size_t b, int columns) const { lines(b).request(columns); }
 
  private:
   static constexpr std::size_t distance = 8;  // further ahead than main memory is far, and still in the cache
@@ -72,28 +73,27 @@ class BlocksAhead {
   const Cohort* then_ = nullptr;
 };
 
-/// Asks for what a pass keeps of the next brick's nodes, above all the room into which its contributions will
-/// go, a few lines at a time.
-class RoomAhead {
+/// A stretch of memory, requested for writing in as many equal parts as there are calls of next(): what a pass
+/// keeps of the next brick's nodes.
+class SpreadPrefetch {
  public:
-  /// `calls`: how often next() will be called.
-  RoomAhead(double* room, int doubles, std::size_t calls)
+  SpreadPrefetch(const double* room, int doubles, std::size_t calls)
       : room_{room, room == nullptr ? nullptr : room + doubles},
         lines_((doubles / block_lanes + static_cast<int>(calls)) / std::max(static_cast<int>(calls), 1)) {}
-  [[gnu::always_inline]] void next() { room_.ask<true>(lines_); }
+  [[gnu::always_inline]] void next() { room_.request<true>(lines_); }
 
  private:
-  LinesAhead room_;
+  PrefetchLines room_;
   int lines_;
 };
 
-/// Asks for what sum_contributions will read for a brick, a few records at a time, while another brick is
+/// Prefetches what sum_contributions will read for a brick, a few records at a time, while another brick is
 /// worked on: neighbours lie far apart in memory, and the hardware does not guess them.
 template <NodeArray of>
-class ContributionsAhead {
+class ContributionPrefetch {
  public:
   /// `slot` may be past the last brick. `calls`: how often next() will be called.
-  ContributionsAhead(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::size_t calls)
+  ContributionPrefetch(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::size_t calls)
       : shares_(shared.all()) {
     if (slot >= grid.owned()) {
       next_ = shares_.size();

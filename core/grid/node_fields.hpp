@@ -1,0 +1,133 @@
+// What a node of the background grid carries, by name.
+//
+// Every brick stores its own contributions to its nodes in one or two arrays of records. A field is a name for
+// consecutive components of an array's record; kernels, sums and the halo exchange speak of fields. A scheme
+// maps to the grid at most twice a step and needs the first sums again after the second map: hence two
+// arrays. Fields of different phases may share memory: those of heat use the arrays while the mechanics does
+// not.
+//
+// A record of the first array fills a cache line of 64 bytes, one of the second half a line.
+#pragma once
+
+#include <array>
+#include <initializer_list>
+#include <string_view>
+
+namespace mpm::core {
+
+enum class NodeArray : int { first, second };
+inline constexpr std::array node_arrays{NodeArray::first, NodeArray::second};
+/// Doubles of a record of summed nodes, and of a record of the first array.
+inline constexpr int node_doubles = 8;
+constexpr int record_doubles(NodeArray of) {
+  return of == NodeArray::first ? node_doubles : node_doubles / 2;
+}
+
+/// Components [first, first + count) of every record of an array.
+struct NodeFields {
+  NodeArray array = NodeArray::first;
+  int first = 0;
+  int count = 0;
+
+  constexpr int end() const { return first + count; }
+  constexpr bool includes(const NodeFields& other) const {
+    return array == other.array && first <= other.first && other.end() <= end();
+  }
+  constexpr bool operator==(const NodeFields&) const = default;
+  /// Two neighbouring fields as one. Fields that are not neighbours are an error of the compilation.
+  friend constexpr NodeFields operator|(const NodeFields& a, const NodeFields& b) {
+    if (a.array != b.array || a.end() != b.first) throw "only neighbouring fields of one array can be joined";
+    return {a.array, a.first, a.count + b.count};
+  }
+};
+
+namespace node_field {
+// Mechanics. `second_...`: MUSL maps the momentum a second time; USF maps momentum and mass there at once.
+inline constexpr NodeFields momentum{NodeArray::first, 0, 3};
+inline constexpr NodeFields mass{NodeArray::first, 3, 1};
+inline constexpr NodeFields force{NodeArray::first, 4, 3};
+inline constexpr NodeFields second_momentum{NodeArray::second, 0, 3};
+inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
+// Heat conduction (conduction.hpp).
+inline constexpr NodeFields heat_capacity{NodeArray::second, 0, 1};
+inline constexpr NodeFields heat{NodeArray::second, 1, 1};
+inline constexpr NodeFields heat_flow{NodeArray::first, 0, 1};
+inline constexpr NodeFields unresolved_heat{NodeArray::first, 1, 1};
+}  // namespace node_field
+
+struct NamedNodeFields {
+  std::string_view name;
+  NodeFields fields;
+};
+inline constexpr std::array node_field_table{
+    NamedNodeFields{"momentum", node_field::momentum},
+    NamedNodeFields{"mass", node_field::mass},
+    NamedNodeFields{"force", node_field::force},
+    NamedNodeFields{"second momentum", node_field::second_momentum},
+    NamedNodeFields{"second mass", node_field::second_mass},
+    NamedNodeFields{"heat capacity", node_field::heat_capacity},
+    NamedNodeFields{"heat", node_field::heat},
+    NamedNodeFields{"heat flow", node_field::heat_flow},
+    NamedNodeFields{"unresolved heat", node_field::unresolved_heat},
+};
+
+/// What particles map to the grid in one pass: fields of one array that are written, summed and exchanged
+/// together.
+namespace mapped {
+inline constexpr NodeFields momentum_mass_force = node_field::momentum | node_field::mass | node_field::force;
+inline constexpr NodeFields force = node_field::force;  ///< momentum and mass of the records stay zero
+inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_field::second_mass;
+inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
+inline constexpr NodeFields heat = node_field::heat_capacity | node_field::heat;
+inline constexpr NodeFields heat_flow = node_field::heat_flow | node_field::unresolved_heat;
+}  // namespace mapped
+
+constexpr bool maps_momentum(NodeFields f) {
+  return f.includes(node_field::momentum) || f.includes(node_field::second_momentum);
+}
+constexpr bool maps_mass(NodeFields f) {
+  return f.includes(node_field::mass) || f.includes(node_field::second_mass);
+}
+constexpr bool maps_force(NodeFields f) { return f.includes(node_field::force); }
+
+/// The arrays that a scene's schemes write to; the others take no memory.
+class NodeArraySet {
+ public:
+  constexpr NodeArraySet(std::initializer_list<NodeArray> arrays) {
+    for (NodeArray a : arrays) add(a);
+  }
+  constexpr void add(NodeArray a) { bits_ |= 1u << static_cast<unsigned>(a); }
+  constexpr bool has(NodeArray a) const { return (bits_ >> static_cast<unsigned>(a) & 1u) != 0; }
+  constexpr bool operator==(const NodeArraySet&) const = default;
+
+ private:
+  unsigned bits_ = 0;
+};
+
+// Records by name: views of the same memory in its different uses. `Double`: double or const double.
+
+/// The sums of what particles map, in a record of the first array.
+template <class Double>
+struct MappedRecord {
+  Double* at;
+  Double* momentum() const { return at + node_field::momentum.first; }
+  Double& mass() const { return at[node_field::mass.first]; }
+  Double* force() const { return at + node_field::force.first; }
+};
+
+/// A node after its update.
+template <class Double>
+struct MotionRecord {
+  static constexpr int velocity_at = 0, mass_at = 3, increment_at = 4, strain_velocity_at = 4, omitted_at = 7;
+  Double* at;
+  Double* velocity() const { return at + velocity_at; }  ///< at the end of the step
+  Double& mass() const { return at[mass_at]; }
+  Double* increment() const { return at + increment_at; }  ///< of the velocity in this step
+  /// The velocity that strains the particles; once they have taken the increment, in its place.
+  Double* strain_velocity() const { return at + strain_velocity_at; }
+  /// USL: share of the increment that the strain velocity omits.
+  Double& omitted_share() const { return at[omitted_at]; }
+};
+using Motion = MotionRecord<double>;
+
+}  // namespace mpm::core

@@ -1,0 +1,70 @@
+// The explicit step on one page: each scheme is the list of its phases, in the order in which they run
+// (thesis 2.2.2).
+#include "core/step/explicit_integrator.hpp"
+
+#include <algorithm>
+
+#include "core/step/speeds.hpp"
+
+namespace mpm::core {
+
+std::vector<Phase> ExplicitIntegrator::phases() {
+  Passes& pass = *passes_;
+  Conduction& heat = *heat_;
+  std::vector<Phase> step;
+  const auto then = [&](const char* name, std::function<void()> run) {
+    step.push_back({name, std::move(run)});
+  };
+
+  if (heat.any()) {
+    then("heat to grid", [&] { heat.map_heat(); });
+    then("exchange heat", [&] { heat.finish_exchange(); });
+    then("heat flux to grid", [&] { heat.map_flux(); });
+    then("exchange flux", [&] { heat.finish_exchange(); });
+    then("heat to particles", [&] { heat.update_temperatures(model_.clock.dt); });
+  }
+
+  switch (model_.scene->solution.scheme) {
+    case Scheme::musl:
+      then("particles to grid", [&] { pass.map_momentum_mass_force(); });
+      then("exchange", [&] { pass.finish_exchange(); });
+      then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
+      then("exchange again", [&] { pass.finish_exchange(); });
+      then("stress and motion", [&] { pass.update_stress_and_move(); });
+      break;
+    case Scheme::usf:
+      then("particles to grid", [&] { pass.map_momentum_mass(); });
+      then("exchange", [&] { pass.finish_exchange(); });
+      then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
+      then("exchange again", [&] { pass.finish_exchange(); });
+      then("velocities and motion", [&] { pass.update_velocities_and_move(); });
+      break;
+    case Scheme::usl:
+      then("particles to grid", [&] { pass.map_momentum_mass_force(); });
+      then("exchange", [&] { pass.finish_exchange(); });
+      then("stress, velocities and motion", [&] { pass.update_all(); });
+      break;
+  }
+  return step;
+}
+
+ExplicitIntegrator::ExplicitIntegrator(Model& model, Exchange& exchange)
+    : model_(model), heat_(make_conduction(model, exchange)), passes_(make_passes(model, exchange)) {}
+
+double ExplicitIntegrator::next_step(const Clock& clock) const {
+  const TimeStepInput& how = model_.scene->solution.time_step;
+  if (how.specified > 0) return how.specified;
+  const double factor =
+      passes_->loads().nonreflecting() ? std::min(how.factor, Loads::nonreflecting_factor) : how.factor;
+  return factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
+}
+
+double ExplicitIntegrator::stable_step(const StepStatistics& statistics) const {
+  return std::min(critical_step(*model_.grid, statistics.fastest), conduction_step(model_));
+}
+
+std::unique_ptr<Integrator> make_integrator(Model& model, Exchange& exchange) {
+  return std::make_unique<ExplicitIntegrator>(model, exchange);
+}
+
+}  // namespace mpm::core

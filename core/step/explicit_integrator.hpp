@@ -1,0 +1,27 @@
+// The explicit schemes MUSL, USF and USL as lists of phases (explicit_integrator.cpp).
+#pragma once
+
+#include "core/step/conduction.hpp"
+#include "core/step/integrator.hpp"
+#include "core/step/passes.hpp"
+
+namespace mpm::core {
+
+class ExplicitIntegrator final : public Integrator {
+ public:
+  ExplicitIntegrator(Model& model, Exchange& exchange);
+
+  std::vector<Phase> phases() override;
+  double next_step(const Clock& clock) const override;
+  void begin_step(double dt) override { passes_->begin_step(dt); }
+  double stable_step(const StepStatistics& statistics) const override;
+  StepStatistics take_statistics() override { return passes_->take_statistics(); }
+  std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
+
+ private:
+  Model& model_;
+  std::unique_ptr<Conduction> heat_;
+  std::unique_ptr<Passes> passes_;
+};
+
+}  // namespace mpm::core

@@ -1,0 +1,117 @@
+// The forces of loads (loads.hpp) on the particles of a block, mapped with any shape.
+#pragma once
+
+#include <algorithm>
+
+#include "core/shape/shape.hpp"
+#include "core/step/loads.hpp"
+
+namespace mpm::core {
+
+namespace detail {
+
+/// 1 inside, 0 outside, with slopes of width `ramp` about the box's faces; with its gradient.
+inline double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double>& x,
+                         Vec3<double>& gradient) {
+  double w[3], slope[3];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double y = x[static_cast<int>(a)];
+    const double up = (y - load.lower[a]) / ramp + 0.5, down = (load.upper[a] - y) / ramp + 0.5;
+    w[a] = std::clamp(std::min(up, down), 0.0, 1.0);
+    slope[a] = w[a] == 0 || w[a] == 1 ? 0 : (up < down ? 1 : -1) / ramp;
+  }
+  gradient = {slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]};
+  return w[0] * w[1] * w[2];
+}
+
+/// f(node, force) for every particle and every node of its support, in that order.
+template <ShapePolicy S, class F>
+void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int body,
+                         const typename S::Place& place, const double* block, int used, F f) {
+  const Loads::OfBody& mine = loads.of(body);
+  const GridGeometry& g = model.grid->geometry();
+  const NodeBlockShape& shape = model.grid->shape();
+  const BrickCoord brick = model.grid->brick(slot).coord;
+  const std::int64_t first[3] = {std::int64_t{brick_cells} * brick.x, std::int64_t{brick_cells} * brick.y,
+                                 std::int64_t{brick_cells} * brick.z};
+  const ColumnLayout& layout = model.bodies[static_cast<std::size_t>(body)].pool->layout();
+  const bool dashpots = loads.nonreflecting() && loads.touches_nonreflecting(*model.grid, slot);
+
+  for (int l = 0; l < used; ++l) {
+    const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
+    const double m = get(Column::mass), volume = get(Column::volume);
+    const Vec3<double> x{get(Column::position_x), get(Column::position_y), get(Column::position_z)};
+    Vec3<double> per_shape{};
+    Vec3<double> per_gradient[3]{};  // columns
+    if (mine.loaded) {
+      per_shape = m * mine.acceleration;
+      for (const Loads::Surface& s : mine.surfaces) {
+        Vec3<double> slope{};
+        const double weight = box_weight(*s.input, s.ramp, x, slope);
+        for (int j = 0; j < 3; ++j) {
+          per_shape = per_shape + (volume * slope[j]) * s.column[j];
+          per_gradient[j] = per_gradient[j] + (volume * weight) * s.column[j];
+        }
+      }
+    }
+    // Dashpots: one for each face of the grid at which the particle's cell lies; on the face's nodes.
+    Vec3<double> dashpot[3]{};
+    int side[3] = {-1, -1, -1};
+    if (dashpots) {
+      const int cell[3] = {place.node[l] % shape.side(), place.node[l] / shape.side() % shape.side(),
+                           place.node[l] / (shape.side() * shape.side())};
+      const double c_p = get(Column::sound_speed), c_s = mine.shear_speed;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<int>(a);
+        const std::int64_t global = first[a] + cell[a];
+        if (g.boundary[2 * a] == Boundary::nonreflecting && global == 0) side[a] = 0;
+        if (g.boundary[2 * a + 1] == Boundary::nonreflecting && global == g.cells[a] - 1) side[a] = 1;
+        if (side[a] < 0) continue;
+        for (int i = 0; i < 3; ++i) {
+          const double rate = (i == axis ? c_p : c_s) * g.inverse_cell[axis];
+          dashpot[a][i] = -2 * m * rate * get(next(Column::velocity_x, i));
+        }
+      }
+    }
+    S::for_each_node(place, l, g.inverse_cell,
+                     [&](int node, const NodeOffset& offset, double shape_value, const Vec3<double>& slope) {
+                       Vec3<double> force = shape_value * per_shape + slope.x * per_gradient[0] +
+                                            slope.y * per_gradient[1] + slope.z * per_gradient[2];
+                       for (int a = 0; a < 3; ++a) {
+                         if (side[a] == offset.along[a]) force = force + shape_value * dashpot[a];
+                       }
+                       f(node, force);
+                     });
+  }
+}
+
+}  // namespace detail
+
+/// Adds the forces on a block's first `used` particles to the forces of the brick's contributions.
+template <ShapePolicy S>
+[[gnu::noinline]] void add_load_forces(const Loads& loads, const Model& model, Slot slot, int body,
+                                       const typename S::Place& place, const double* block, int used,
+                                       double* contributions) {
+  detail::for_each_load_force<S>(
+      loads, model, slot, body, place, block, used, [&](int node, const Vec3<double>& force) {
+        for (int a = 0; a < 3; ++a)
+          contributions[node_doubles * node + node_field::force.first + a] += force[a];
+      });
+}
+
+/// Their work over the step, from the nodes' motion: the velocity at its middle counts, as what the nodes gain
+/// in kinetic energy is f (v + v')/2 dt.
+template <ShapePolicy S>
+[[gnu::noinline]] double work_of_loads(const Loads& loads, const Model& model, Slot slot, int body,
+                                       const typename S::Place& place, const double* block, int used,
+                                       const double* nodes) {
+  double power = 0;
+  detail::for_each_load_force<S>(
+      loads, model, slot, body, place, block, used, [&](int node, const Vec3<double>& force) {
+        const MotionRecord<const double> at{nodes + node_doubles * node};
+        for (int a = 0; a < 3; ++a) power += force[a] * (at.velocity()[a] - 0.5 * at.increment()[a]);
+      });
+  return power * loads.step();
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,108 @@
+#include "core/step/particle_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/step/grid_to_particles.hpp"
+#include "core/step/migration.hpp"
+
+namespace mpm::core {
+
+void prescribe_velocities(const ColumnLayout& layout, const Vec3<double>& p, double* block, int used,
+                          ThreadScratch& at) {
+  for (int i = 0; i < used; ++i) {
+    double* v[3];
+    for (int a = 0; a < 3; ++a) v[a] = block + i + layout.offset(next(Column::velocity_x, a));
+    const double m = block[layout.offset(Column::mass) + i];
+    at.work += m * ((p.x - *v[0]) * p.x + (p.y - *v[1]) * p.y + (p.z - *v[2]) * p.z);
+    for (int a = 0; a < 3; ++a) *v[a] = p[a];
+  }
+}
+
+void limit_velocities(const ColumnLayout& layout, double limit, double* block, int used, ThreadScratch& at) {
+  for (int i = 0; i < used; ++i) {
+    double* v[3];
+    for (int a = 0; a < 3; ++a) v[a] = block + i + layout.offset(next(Column::velocity_x, a));
+    const double speed = std::sqrt(*v[0] * *v[0] + *v[1] * *v[1] + *v[2] * *v[2]);
+    if (!(speed > limit)) continue;
+    at.work += 0.5 * block[layout.offset(Column::mass) + i] * (limit * limit - speed * speed);
+    for (int a = 0; a < 3; ++a) *v[a] *= limit / speed;
+    ++at.statistics.limited;
+  }
+}
+
+void integrate_rigid_velocities(const ColumnLayout& layout, const Vec3<double>& acceleration, double dt,
+                                double* block, int used, ThreadScratch& at) {
+  double* velocity = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < used; ++i) {
+    const double m = block[layout.offset(Column::mass) + i];
+    for (int a = 0; a < 3; ++a) {
+      double& v = velocity[block_lanes * a + i];
+      const double free = at.old[block_lanes * a + i] + dt * acceleration[a];
+      at.work += m * (free - v) * free;
+      v = free;
+    }
+  }
+}
+
+void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block) {
+  double* x = block + layout.offset(Column::position_x);
+  const double* v = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
+}
+
+void add_work_of_motion(const NodeForces& forces, const ColumnLayout& layout, const double* block, int used,
+                        ThreadScratch& at) {
+  const Vec3<double> g = forces.gravity;
+  const double* m = block + layout.offset(Column::mass);
+  const double* x = block + layout.offset(Column::position_x);
+  const double* v = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < used; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      const int at_a = block_lanes * a + i;
+      at.work += m[i] * (g[a] - forces.damping * v[at_a]) * (x[at_a] - at.old[at_a]);
+    }
+  }
+}
+
+void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch,
+                     StepStatistics& statistics) {
+  const ColumnLayout& layout = *batch.layout;
+  const auto name = [&](std::uint64_t lanes, Witnesses& among) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctzll(lanes);
+      const double* values = batch.block[lane / block_lanes] + lane % block_lanes;
+      among.offer(values[layout.offset(Column::identity)], [&] {
+        double columns[column_count];
+        for (int c = 0; c < layout.columns(); ++c) columns[c] = values[block_lanes * c];
+        return describe_particle(body, columns);
+      });
+    }
+  };
+  if (warn.negative_volume) name(batch.vanishing, statistics.vanishing);
+  if (warn.negative_internal_energy) name(batch.negative, statistics.negative);
+}
+
+void find_departing(int cohort, std::size_t b, const BrickFrame& frame, double erosion_volume,
+                    const ColumnLayout& layout, const double* block, int used,
+                    std::vector<DepartingParticle>& departing) {
+  const auto add = [&](int lane, bool eroded) {
+    departing.push_back(
+        {cohort, static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(lane), eroded});
+  };
+  unsigned gone = 0;
+  if (layout.has(Column::failed) || erosion_volume > 0) {
+    const double* volume = block + layout.offset(Column::volume);
+    for (int i = 0; i < used; ++i) {
+      const bool eroded = volume[i] < erosion_volume ||
+                          (layout.has(Column::failed) && block[layout.offset(Column::failed) + i] >= 2);
+      if (!eroded) continue;
+      gone |= 1u << i;
+      add(i, true);
+    }
+  }
+  unsigned outside = lanes_outside(frame, layout, block, used) & ~gone;
+  for (; outside != 0; outside &= outside - 1) add(__builtin_ctz(outside), false);
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,505 @@
+// The passes (passes.hpp) with a shape S and a transfer T. What is done to a brick, a block or a batch stands
+// in functions of its own; for_bricks and for_each_block say which comes when, and what is fetched meanwhile.
+// Instantiated once per pair (make_passes.cpp).
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include <omp.h>
+
+#include "core/simd/denormals.hpp"
+#include "core/step/grid_to_particles.hpp"
+#include "core/step/load_forces.hpp"
+#include "core/step/particle_motion.hpp"
+#include "core/step/particles_to_grid.hpp"
+#include "core/step/passes.hpp"
+#include "core/step/prefetch.hpp"
+#include "core/step/speeds.hpp"
+#include "core/threads.hpp"
+
+namespace mpm::core {
+
+template <ShapePolicy S, TransferPolicy T>
+class PassesWith final : public Passes {
+ public:
+  PassesWith(Model& model, Exchange& exchange);
+
+  const Loads& loads() const override { return loads_; }
+  void begin_step(double length) override {
+    dt = length;
+    loads_.begin_step(model_.clock.time, dt);
+  }
+
+  void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
+  void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
+  void finish_exchange() override { exchange_.end_halo(*model_.grid); }
+  void update_velocities_and_map_back() override;
+  void update_stress_and_move() override;
+  void update_stress_and_map_forces() override;
+  void update_velocities_and_move() override;
+  void update_all() override;
+
+  std::vector<std::vector<DepartingParticle>>& departing() override { return departing_; }
+  StepStatistics take_statistics() override;
+
+ private:
+  using Place = typename S::Place;
+  struct Scratch : ThreadScratch {
+    Place places[batch_blocks];
+  };
+
+  /// The first columns that passes read: up to the stress, and up to the mass.
+  static constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
+  static constexpr int columns_to_mass = static_cast<int>(Column::mass) + 1;
+
+  // Which brick and which block comes when.
+  template <class F>
+  void for_bricks(int first, int last, F f);
+  template <class F>
+  void for_each_block(Slot s, int columns, F f);
+  template <NodeFields what, class F>
+  void map_bricks(F work);
+
+  // What is done to a brick.
+  template <NodeFields what>
+  void map_to_grid();
+  template <NodeFields what, class F>
+  void map_brick(Slot s, F before);
+  void update_nodes_of_brick(Slot s, Scratch& at);
+  void velocities_of_brick(Slot s, Scratch& at);
+  double velocities_and_motion_of_brick(Slot s, Scratch& at);
+  /// Whether the particles' velocities are already those with which the next step begins.
+  enum class Velocities { of_last_step, of_next_step };
+  template <bool moves, class F>
+  void stress_of_brick(Slot s, Velocities velocities, Scratch& at, F prefetch_nodes);
+
+  // What is done to a block or a batch.
+  void update_velocities(Slot s, int body, const Place& place, double* block, int used, Scratch& at);
+  void move(int body, const Place& place, double* block, int used, Scratch& at);
+  void strain_batch_block(const BrickFrame& frame, const Place& place, int b, Scratch& at);
+
+  BoundaryFaces faces(Slot s) const {
+    const BrickGrid& grid = *model_.grid;
+    return {grid.geometry(), grid.shape(), grid.brick(s).coord};
+  }
+  BrickFrame frame(Slot s) const {
+    const BrickGrid& grid = *model_.grid;
+    return {grid.geometry(), grid.shape(), grid.brick(s).coord};
+  }
+  /// What the next brick's nodes are made of, fetched while this brick's blocks are worked on.
+  template <NodeArray of>
+  [[gnu::always_inline]] ContributionPrefetch<of> prefetch_nodes(Slot s) const {
+    const BrickGrid& grid = *model_.grid;
+    return {grid, shared_, s + 1, block_count(grid.brick(s))};
+  }
+  int motion_doubles() const { return motion_width * shared_.nodes(); }
+  double* motion(Slot s) {
+    return motion_.data() + static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(s);
+  }
+  /// Likewise what is kept of their motion.
+  SpreadPrefetch prefetch_motion(Slot s) {
+    const BrickGrid& grid = *model_.grid;
+    return {s + 1 < grid.owned() ? motion(s + 1) : nullptr, motion_doubles(), block_count(grid.brick(s))};
+  }
+
+  Model& model_;
+  Exchange& exchange_;
+  SharedNodes shared_;
+  NodeForces forces_;
+  Loads loads_;
+  double dt = 0;           ///< of the step under way
+  double velocity_limit_;  ///< infinite without LimitVelocity
+  double erosion_volume_;
+  std::vector<Scratch> scratch_;                           ///< by thread
+  std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
+  /// By slot; MUSL: the nodes' motion, kept between the passes that move them and the particles on them.
+  AlignedDoubles motion_;
+  std::vector<double> critical_;  ///< by slot; USF: largest critical speed of the stress pass
+};
+
+/// Share of a full cell's mass below which a node's increment is scaled down in USL's strain rate. The nodal
+/// acceleration f/m grows without bound as a particle enters a cell (thesis 2-49); what reaches the
+/// particle's own velocity stays bounded, what reaches its strain does not. Below 0.05 the Taylor bar still
+/// diverges; at 1 the scaling feeds oscillations instead; 0.2 is good for time step factors up to 0.7.
+inline constexpr double usl_mass_floor = 0.2;
+
+template <ShapePolicy S, TransferPolicy T>
+PassesWith<S, T>::PassesWith(Model& model, Exchange& exchange)
+    : model_(model), exchange_(exchange), shared_(model.grid->shape()), loads_(model) {
+  const SolutionInput& solution = model.scene->solution;
+  forces_.gravity = to_vec(solution.gravity);
+  forces_.damping = solution.damping;
+  if (solution.scheme == Scheme::usl) {
+    // The lightest material's: a floor above what a light body's full nodes weigh would freeze it beside a
+    // heavy one.
+    double density = std::numeric_limits<double>::infinity();
+    for (const Body& b : model.bodies) density = std::min(density, b.model->reference_density());
+    forces_.strain_mass_floor = usl_mass_floor * density * model.grid->geometry().cell_volume();
+  }
+  velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
+  erosion_volume_ = solution.volume.erode.value_or(0);
+#pragma omp parallel
+  flush_denormals_to_zero();
+  scratch_.resize(static_cast<std::size_t>(omp_get_max_threads()));
+  for (Scratch& w : scratch_) {
+    w.nodes.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
+    w.sums.resize(w.nodes.size());
+  }
+}
+
+// --- which brick and which block comes when ---------------------------------------------------------------
+
+/// f(slot, scratch) for the bricks first .. last - 1, by all threads.
+template <ShapePolicy S, TransferPolicy T>
+template <class F>
+void PassesWith<S, T>::for_bricks(int first, int last, F f) {
+  // Long runs of neighbours for each thread: what it fetches is then its own, and few of the sums come from
+  // the other's cache. Four runs a thread even out what bricks differ in.
+  const auto threads = static_cast<int>(scratch_.size());
+  for_each_by_threads(
+      first, last, std::max((last - first) / (4 * threads), 1),
+      [&](int s) {
+        prefetch_coming_bricks(*model_.grid, static_cast<Slot>(s));
+        f(static_cast<Slot>(s), scratch_[static_cast<std::size_t>(omp_get_thread_num())]);
+      },
+      threads);
+}
+
+/// f(cohort's number, block's number, body's number, layout, block, lanes in use) for a brick's blocks.
+/// `columns`: how many of the first ones are read.
+template <ShapePolicy S, TransferPolicy T>
+template <class F>
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_block(Slot s, int columns, F f) {
+  const Brick& brick = model_.grid->brick(s);
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    const BlockPrefetch prefetch(model_, s, c);
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      prefetch.request(b, columns);
+      f(static_cast<int>(c), b, cohort.body, pool.layout(), pool.block(cohort.blocks[b]),
+        cohort.used_lanes(b));
+    }
+  }
+}
+
+/// work(slot, scratch) for all bricks, which maps what they are to send; the sums of the boundary bricks
+/// travel meanwhile.
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what, class F>
+void PassesWith<S, T>::map_bricks(F work) {
+  BrickGrid& grid = *model_.grid;
+  for_bricks(0, grid.boundary(), work);
+  exchange_.begin_halo(grid, what);
+  for_bricks(grid.boundary(), grid.owned(), work);
+}
+
+// --- particles to grid ------------------------------------------------------------------------------------
+
+/// before(body, place, block, used) for every block, then its share of the nodes.
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what, class F>
+void PassesWith<S, T>::map_brick(Slot s, F before) {
+  BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
+  const BrickFrame frame = this->frame(s);
+  constexpr int width = record_doubles(what.array);
+  double* contributions = grid.contributions(what.array, s);
+  std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  SpreadPrefetch room(s + 1 < grid.owned() ? grid.contributions(what.array, s + 1) : nullptr,
+                      width * grid.shape().nodes(), block_count(brick));
+  typename S::template Scatter<what> sums;
+  sums.clear();
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    const BlockPrefetch prefetch(model_, s, c);
+    const ColumnLayout& layout = body.pool->layout();
+    const bool loaded = maps_force(what) && loads_.act(grid, s, cohort.body);
+    // The next block is located before this one is worked on: what was stored is then there when it is read.
+    Place places[2];
+    if (!cohort.blocks.empty()) places[0].find(frame, layout, body.pool->block(cohort.blocks[0]));
+    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+      if constexpr (maps_momentum(what))
+        prefetch.request(b, maps_force(what) ? columns_to_stress : columns_to_mass);
+      room.next();
+      double* block = body.pool->block(cohort.blocks[b]);
+      const int used = cohort.used_lanes(b);
+      if (b + 1 < cohort.blocks.size())
+        places[(b + 1) % 2].find(frame, layout, body.pool->block(cohort.blocks[b + 1]));
+      const Place& place = places[b % 2];
+      before(cohort.body, place, block, used);
+      add_block<S, T, what>(frame, place, layout, block, used, sums, contributions);
+      if constexpr (maps_force(what)) {
+        if (loaded)
+          add_load_forces<S>(loads_, model_, s, cohort.body, place, block, used, contributions);
+      }
+    }
+  }
+  sums.flush(frame, contributions);
+}
+
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what>
+void PassesWith<S, T>::map_to_grid() {
+  map_bricks<what>([this](Slot s, Scratch&) { map_brick<what>(s, [](int, const Place&, double*, int) {}); });
+}
+
+// --- nodes ------------------------------------------------------------------------------------------------
+
+/// Sum the first array and update the nodes: at.nodes as MotionRecord describes.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
+  const BrickGrid& grid = *model_.grid;
+  sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
+  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
+}
+
+// --- particles --------------------------------------------------------------------------------------------
+
+/// v += dv; the work of loads belongs to the velocities from before it.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_velocities(Slot s, int body, const Place& place, double* block, int used,
+                                         Scratch& at) {
+  if (loads_.act(*model_.grid, s, body))
+    at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data());
+  const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
+  const BodyMotion& motion = loads_.motion(body);
+  if (motion.kind == BodyMotion::Kind::rigid) {
+    std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
+    T::template update_velocities<S>(place, layout, at.nodes.data(), block);
+    integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), dt, block, used, at);
+    return;
+  }
+  T::template update_velocities<S>(place, layout, at.nodes.data(), block);
+  if (motion.kind == BodyMotion::Kind::prescribed)
+    prescribe_velocities(layout, motion.velocity, block, used, at);
+  else if (velocity_limit_ < std::numeric_limits<double>::infinity())
+    limit_velocities(layout, velocity_limit_, block, used, at);
+}
+
+/// x += dt v, of the grid or, where a body keeps its velocity, its own; and the work of gravity and damping.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::move(int body, const Place& place, double* block, int used, Scratch& at) {
+  const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
+  const bool does_work = forces_.damping != 0 || forces_.gravity != Vec3<double>{};
+  if (does_work) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.old);
+  if (loads_.motion(body).kind != BodyMotion::Kind::free)
+    move_at_own_velocity(layout, dt, block);
+  else
+    move_with_grid<S>(place, layout, at.nodes.data(), dt, block);
+  if (does_work) add_work_of_motion(forces_, layout, block, used, at);
+}
+
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::noinline]] void PassesWith<S, T>::velocities_of_brick(Slot s, Scratch& at) {
+  const BrickFrame frame = this->frame(s);
+  for_each_block(s, columns_to_mass,
+                 [&](int, std::size_t, int body, const ColumnLayout& layout, double* block, int used) {
+                   update_velocities(s, body, Place(frame, layout, block), block, used, at);
+                 });
+  at.add_work_of_brick();
+}
+
+/// Returns the largest speed of the brick's particles.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::noinline]] double PassesWith<S, T>::velocities_and_motion_of_brick(Slot s, Scratch& at) {
+  const BrickFrame frame = this->frame(s);
+  auto first = prefetch_nodes<NodeArray::first>(s);
+  auto second = prefetch_nodes<NodeArray::second>(s);
+  double fastest_square = 0;
+  for_each_block(s, columns_to_mass,
+                 [&](int c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
+                   first.next();
+                   second.next();
+                   const Place place(frame, layout, block);
+                   update_velocities(s, body, place, block, used, at);
+                   move(body, place, block, used, at);
+                   for (int l = 0; l < used; l += real_width)
+                     fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
+                   find_departing(c, b, frame, erosion_volume_, layout, block, used,
+                                  departing_[static_cast<std::size_t>(s)]);
+                 });
+  at.add_work_of_brick();
+  return std::sqrt(fastest_square);
+}
+
+// --- stress -----------------------------------------------------------------------------------------------
+
+/// The kinematics of block `b` of the batch.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::strain_batch_block(const BrickFrame& frame,
+                                                                        const Place& place, int b,
+                                                                        Scratch& at) {
+  const double* velocities = at.nodes.data() + Motion::strain_velocity_at;
+  if (model_.options.volume_update == static_cast<int>(VolumeUpdate::cell))
+    S::cell_divergence(frame, place, velocities, dt, at.batch.cell_volumetric_strain, block_lanes * b);
+  S::gradient(frame, place, velocities, at.batch.gradient, block_lanes * b);
+}
+
+/// For outputs that show it; no law reads it back.
+inline void store_sound_speed(Batch& batch) {
+  if (!batch.layout->has(Column::sound_speed)) return;
+  for (int b = 0; b < batch.blocks; ++b) {
+    std::copy_n(batch.sound_speed + block_lanes * b, block_lanes, batch.column(Column::sound_speed, b));
+  }
+}
+
+/// Velocity gradient, with `moves` the motion, and the material's update, batch by batch.
+/// prefetch_nodes() is called once per block.
+template <ShapePolicy S, TransferPolicy T>
+template <bool moves, class F>
+[[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, Velocities velocities, Scratch& at,
+                                                         F prefetch_nodes) {
+  const Brick& brick = model_.grid->brick(s);
+  const BrickFrame frame = this->frame(s);
+  Batch& batch = at.batch;
+  batch.time = model_.clock.time + dt;
+  batch.dt = dt;
+  batch.cell_size = model_.grid->geometry().smallest_cell();
+  double fastest = 0;
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    const BlockPrefetch prefetch(model_, s, c);
+    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+    const ColumnLayout& layout = body.pool->layout();
+    batch.layout = &layout;
+    const int lines_before_update = std::max(layout.columns() - parts_of_update, 0);
+    for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
+      batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
+      batch.particles =
+          static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+      // All places first: a block's is a long chain of operations, and those of several blocks overlap.
+      for (int b = 0; b < batch.blocks; ++b) {
+        batch.block[b] = body.pool->block(cohort.blocks[first + static_cast<std::size_t>(b)]);
+        at.places[b].find(frame, layout, batch.block[b]);
+      }
+      for (int b = 0; b < batch.blocks; ++b) {
+        const std::size_t at_block = first + static_cast<std::size_t>(b);
+        batch.background[b] = prefetch.lines(at_block);
+        batch.background[b].request(lines_before_update);
+        prefetch_nodes();
+        strain_batch_block(frame, at.places[b], b, at);
+        if constexpr (moves)
+          move(cohort.body, at.places[b], batch.block[b], cohort.used_lanes(at_block), at);
+      }
+      batch.events = {};
+      batch.vanishing = batch.negative = 0;
+      body.model->update(batch, model_.options);
+      at.statistics.events += batch.events;
+      if ((batch.vanishing | batch.negative) != 0)
+        name_unphysical(model_.scene->solution.warn, body, batch, at.statistics);
+      store_sound_speed(batch);
+      if (velocities == Velocities::of_next_step)
+        at.statistics.fastest = fastest_particle(batch, at.statistics.fastest);
+      else
+        fastest = std::max(fastest, fastest_wave(batch));
+      if constexpr (moves) {
+        for (int b = 0; b < batch.blocks; ++b) {
+          const std::size_t at_block = first + static_cast<std::size_t>(b);
+          find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, layout, batch.block[b],
+                         cohort.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
+        }
+      }
+    }
+  }
+  at.add_work_of_brick();
+  if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = fastest;
+}
+
+// --- the passes -------------------------------------------------------------------------------------------
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_velocities_and_map_back() {
+  motion_.resize(static_cast<std::size_t>(motion_doubles()) *
+                 static_cast<std::size_t>(model_.grid->owned()));
+  map_bricks<mapped::momentum>([&](Slot s, Scratch& at) {
+    update_nodes_of_brick(s, at);
+    keep_motion(shared_.nodes(), at.nodes.data(), motion(s));
+    auto nodes = prefetch_nodes<NodeArray::first>(s);
+    SpreadPrefetch room = prefetch_motion(s);
+    map_brick<mapped::momentum>(s, [&](int body, const Place& place, double* block, int used) {
+      nodes.next();
+      room.next();
+      update_velocities(s, body, place, block, used, at);
+    });
+    at.add_work_of_brick();
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_stress_and_move() {
+  const BrickGrid& grid = *model_.grid;
+  departing_.resize(static_cast<std::size_t>(grid.owned()));
+  for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
+    recall_motion(shared_.nodes(), motion(s), at.nodes.data());
+    sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
+    second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
+    auto nodes = prefetch_nodes<NodeArray::second>(s);
+    SpreadPrefetch room = prefetch_motion(s);
+    stress_of_brick<true>(s, Velocities::of_next_step, at, [&] {
+      nodes.next();
+      room.next();
+    });
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_stress_and_map_forces() {
+  const BrickGrid& grid = *model_.grid;
+  critical_.resize(static_cast<std::size_t>(grid.owned()));
+  map_bricks<mapped::force>([&](Slot s, Scratch& at) {
+    sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
+    second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
+                      at.nodes.data());
+    auto nodes = prefetch_nodes<NodeArray::second>(s);
+    stress_of_brick<false>(s, Velocities::of_last_step, at, [&] { nodes.next(); });
+    map_brick<mapped::force>(s, [](int, const Place&, double*, int) {});
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_velocities_and_move() {
+  const BrickGrid& grid = *model_.grid;
+  departing_.resize(static_cast<std::size_t>(grid.owned()));
+  for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
+    // Forces; momenta and masses are zero there, and come with the second array.
+    sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
+    sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
+    update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
+    // The wave speeds are of the stress pass; each brick's largest stands for all of its particles.
+    at.statistics.fastest = std::max(at.statistics.fastest, critical_[static_cast<std::size_t>(s)] +
+                                                                velocities_and_motion_of_brick(s, at));
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_all() {
+  const BrickGrid& grid = *model_.grid;
+  departing_.resize(static_cast<std::size_t>(grid.owned()));
+  for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
+    update_nodes_of_brick(s, at);
+    velocities_of_brick(s, at);
+    regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
+    auto nodes = prefetch_nodes<NodeArray::first>(s);
+    stress_of_brick<true>(s, Velocities::of_next_step, at, [&] { nodes.next(); });
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+StepStatistics PassesWith<S, T>::take_statistics() {
+  StepStatistics total;
+  for (Scratch& w : scratch_) {
+    total.fastest = std::max(total.fastest, w.statistics.fastest);
+    total.limited += w.statistics.limited;
+    total.events += w.statistics.events;
+    total.vanishing.merge(w.statistics.vanishing);
+    total.negative.merge(w.statistics.negative);
+    total.work += w.statistics.work;
+    w.statistics = {};
+  }
+  return total;
+}
+
+}  // namespace mpm::core

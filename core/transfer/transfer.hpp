@@ -1,0 +1,21 @@
+// How velocity goes between particles and grid: what a particle maps as momentum, and how it takes the
+// nodes' new velocities. Kernels are templates over a transfer as they are over a shape; a run chooses one
+// (core/step/make_passes.cpp).
+//
+//   columns             what its particles carry beyond the mechanics
+//   momentum            rows of mass and momentum that a block maps
+//   update_velocities   the particles' velocities from the nodes' records (MotionRecord)
+#pragma once
+
+#include "core/shape/shape.hpp"
+
+namespace mpm::core {
+
+template <class T>
+concept TransferPolicy = requires(const ColumnLayout& layout, const double* block, MappedRows& rows) {
+  { T::name } -> std::convertible_to<std::string_view>;
+  { T::columns() } -> std::same_as<ColumnSet>;
+  T::momentum(layout, block, rows);
+};
+
+}  // namespace mpm::core
