@@ -10,8 +10,8 @@ namespace mpm::parallel {
 using core::BrickCoord;
 using core::BrickGrid;
 using core::NodeArray;
-using core::NodeFields;
 using core::NodeBlockShape;
+using core::NodeFields;
 using core::Slot;
 
 namespace {

@@ -43,16 +43,16 @@ constexpr BrickKey key_of(BrickCoord b) {
   const BrickKey place = ((static_cast<std::uint64_t>(b.z) & mask) << 2 * bits) |
                          ((static_cast<std::uint64_t>(b.y) & mask) << bits) |
                          (static_cast<std::uint64_t>(b.x) & mask);
-  return b.level == 0
-             ? place
-             : place | std::uint64_t{1} << 63 | (static_cast<std::uint64_t>(b.level) & 7) << 60;
+  return b.level == 0 ? place
+                      : place | std::uint64_t{1} << 63 | (static_cast<std::uint64_t>(b.level) & 7) << 60;
 }
 constexpr BrickCoord brick_of_key(BrickKey k) {
   const bool fine = (k >> 63) != 0;
   const int bits = fine ? 20 : 21;
   const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
   return {static_cast<std::int32_t>(k & mask), static_cast<std::int32_t>((k >> bits) & mask),
-          static_cast<std::int32_t>((k >> 2 * bits) & mask), fine ? static_cast<std::int32_t>(k >> 60 & 7) : 0};
+          static_cast<std::int32_t>((k >> 2 * bits) & mask),
+          fine ? static_cast<std::int32_t>(k >> 60 & 7) : 0};
 }
 
 /// The 27 offsets of a brick's neighbourhood, in the order in which contributions are summed; 13 is itself.

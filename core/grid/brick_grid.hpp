@@ -75,8 +75,8 @@ class BrickGrid {
   void reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts);
 
   const NodeArraySet& arrays() const { return arrays_; }
-  /// What the slot's own particles add to its nodes: shape().nodes() records of record_doubles(of). `of` is one
-  /// of arrays().
+  /// What the slot's own particles add to its nodes: shape().nodes() records of record_doubles(of). `of` is
+  /// one of arrays().
   double* contributions(NodeArray of, Slot s) {
     return array(of).data() + stride(of) * static_cast<std::size_t>(s);
   }

@@ -1,8 +1,8 @@
 // What a node of the background grid carries, by name.
 //
-// Every brick stores its own contributions to its nodes in one or two arrays of records. A field is a name for
-// consecutive components of an array's record; kernels, sums and the halo exchange speak of fields. A scheme
-// maps to the grid at most twice a step and needs the first sums again after the second map: hence two
+// Every brick stores its own contributions to its nodes in one or two arrays of records. A field is a name
+// for consecutive components of an array's record; kernels, sums and the halo exchange speak of fields. A
+// scheme maps to the grid at most twice a step and needs the first sums again after the second map: hence two
 // arrays. Fields of different phases may share memory: those of heat use the arrays while the mechanics does
 // not.
 //

@@ -303,8 +303,8 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
   model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
   model.options.keep_strain =
       solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
-  const bool conducts = std::ranges::any_of(
-      model.materials, [](const auto& material) { return material->conductivity() > 0; });
+  const bool conducts =
+      std::ranges::any_of(model.materials, [](const auto& material) { return material->conductivity() > 0; });
   model.grid = std::make_unique<BrickGrid>(geometry_of(*scene), node_block_of(*scene),
                                            node_arrays_of(*scene, conducts));
   BlockPools pools;

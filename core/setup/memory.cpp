@@ -72,15 +72,11 @@ double in_pages(double bytes) {
   return std::ceil(bytes / page) * page;
 }
 
-/// The nodes that a brick's particles write to, and what passes keep of them.
-double node_doubles_of(const Model& model) {
-  const Scheme scheme = model.scene->solution.scheme;
-  double width = record_doubles(NodeArray::first);
-  const bool heat =
-      std::ranges::any_of(model.bodies, [](const Body& b) { return b.model->conductivity() > 0; });
-  if (scheme != Scheme::usl || heat) width += record_doubles(NodeArray::second);
-  if (scheme == Scheme::musl) width += motion_width;
-  return width * model.grid->shape().nodes();
+/// Of the node arrays of one brick.
+double array_doubles(const BrickGrid& grid) {
+  double width = 0;
+  for (const NodeArray of : node_arrays) width += grid.arrays().has(of) ? record_doubles(of) : 0;
+  return width * grid.shape().nodes();
 }
 
 }  // namespace
@@ -94,9 +90,11 @@ MemoryNeed memory_need(const Model& model) {
   }
   const BrickGrid& grid = *model.grid;
   constexpr double place = sizeof(Brick) + 64;  // and its entry in the table of coordinates
-  constexpr double ghost = record_doubles(NodeArray::first) + record_doubles(NodeArray::second);
-  need.bricks = (place + sizeof(double) * node_doubles_of(model)) * grid.owned() +
-                (place + sizeof(double) * ghost * grid.shape().nodes()) * grid.ghosts();
+  const double arrays = array_doubles(grid);
+  const double motion =
+      model.scene->solution.scheme == Scheme::musl ? motion_width * grid.shape().nodes() : 0;
+  need.bricks = (place + sizeof(double) * (arrays + motion)) * grid.owned() +
+                (place + sizeof(double) * arrays) * grid.ghosts();
   for (const Brick& b : grid.bricks()) {
     for (const Cohort& c : b.cohorts)
       need.bricks += sizeof(Cohort) + 16 + sizeof(BlockIndex) * static_cast<double>(c.blocks.size());

@@ -4,8 +4,8 @@
 // Grid to particles: particles in the lanes of a vector, each distinct cell among the eight visited once.
 // Particles to grid: the eight nodes of a cell in the lanes, a particle adds itself to ten vectors (momentum,
 // mass, V sigma), and only when the cell changes are these turned into node records and written. Particles
-// are kept in approximate cell order, so that is once in about eight. Shown by tests/core/shape/linear_test.cpp
-// and, against a plain loop, tests/core/step.
+// are kept in approximate cell order, so that is once in about eight. Shown by
+// tests/core/shape/linear_test.cpp and, against a plain loop, tests/core/step.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,8 @@ struct LocatedInCells {
 
 /// `x`, `y`, `z`: columns of a block from the lane on. Lanes out of use are clamped into the brick.
 template <class T>
-inline LocatedInCells<T> locate_in_cells(const BrickFrame& f, const double* x, const double* y, const double* z) {
+inline LocatedInCells<T> locate_in_cells(const BrickFrame& f, const double* x, const double* y,
+                                         const double* z) {
   const T sx = GridGeometry::scaled(load<T>(x), f.origin.x, f.inverse_cell.x) - T(f.first_cell.x);
   const T sy = GridGeometry::scaled(load<T>(y), f.origin.y, f.inverse_cell.y) - T(f.first_cell.y);
   const T sz = GridGeometry::scaled(load<T>(z), f.origin.z, f.inverse_cell.z) - T(f.first_cell.z);

@@ -22,7 +22,7 @@ namespace mpm::core {
 
 template <class S>
 concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
-                         const typename S::Place& place) {
+                               const typename S::Place& place) {
   { S::node_block } -> std::convertible_to<NodeBlockShape>;
   typename S::template Scatter<mapped::momentum_mass_force>;
   typename S::Place;

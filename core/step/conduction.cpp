@@ -92,10 +92,10 @@ void ConductionWith<S>::map_heat() {
         const double capacity = c * block[layout.offset(Column::mass) + l];
         const double heat = capacity * block[layout.offset(Column::temperature) + l];
         S::for_each_node(place, l, grid.geometry().inverse_cell,
-                        [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
-                          to[heat_doubles * node] += shape * capacity;
-                          to[heat_doubles * node + 1] += shape * heat;
-                        });
+                         [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
+                           to[heat_doubles * node] += shape * capacity;
+                           to[heat_doubles * node + 1] += shape * heat;
+                         });
       }
     });
   };
@@ -128,18 +128,18 @@ void ConductionWith<S>::map_flux() {
         Vec3<double> gradient{};
         double unseen = block[layout.offset(Column::temperature) + l];
         S::for_each_node(place, l, grid.geometry().inverse_cell,
-                        [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
-                          gradient = gradient + nodes[node_doubles * node + 1] * g;
-                          unseen -= nodes[node_doubles * node + 1] * shape;
-                        });
+                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
+                           gradient = gradient + nodes[node_doubles * node + 1] * g;
+                           unseen -= nodes[node_doubles * node + 1] * shape;
+                         });
         const double heat = body.model->specific_heat() * block[layout.offset(Column::mass) + l] * unseen;
         const Vec3<double> flow =
             (-body.model->conductivity() * block[layout.offset(Column::volume) + l]) * gradient;
         S::for_each_node(place, l, grid.geometry().inverse_cell,
-                        [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
-                          to[flow_doubles * node] += dot(flow, g);
-                          to[flow_doubles * node + 1] += shape * heat;
-                        });
+                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
+                           to[flow_doubles * node] += dot(flow, g);
+                           to[flow_doubles * node + 1] += shape * heat;
+                         });
       }
     });
   };
@@ -170,10 +170,10 @@ void ConductionWith<S>::update_temperatures(double dt) {
       for (int l = 0; l < used; ++l) {
         double rise = 0, unseen = block[layout.offset(Column::temperature) + l];
         S::for_each_node(place, l, grid.geometry().inverse_cell,
-                        [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
-                          rise += shape * flux[node_doubles * node];
-                          unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
-                        });
+                         [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
+                           rise += shape * flux[node_doubles * node];
+                           unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
+                         });
         rise -= std::min(diffusivity(body, block, l) * curvature * dt, 1.0) * unseen;
         block[layout.offset(Column::temperature) + l] += rise;
         block[layout.offset(Column::internal_energy) + l] += per_volume * rise;

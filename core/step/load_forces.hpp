@@ -99,18 +99,19 @@ template <ShapePolicy S>
       });
 }
 
-/// Their work over the step, from the nodes' motion: the velocity at its middle counts, as what the nodes gain
-/// in kinetic energy is f (v + v')/2 dt.
+/// Their work over the step, from the nodes' motion: the velocity at its middle counts, as what the nodes
+/// gain in kinetic energy is f (v + v')/2 dt.
 template <ShapePolicy S>
 [[gnu::noinline]] double work_of_loads(const Loads& loads, const Model& model, Slot slot, int body,
                                        const typename S::Place& place, const double* block, int used,
                                        const double* nodes) {
   double power = 0;
-  detail::for_each_load_force<S>(
-      loads, model, slot, body, place, block, used, [&](int node, const Vec3<double>& force) {
-        const MotionRecord<const double> at{nodes + node_doubles * node};
-        for (int a = 0; a < 3; ++a) power += force[a] * (at.velocity()[a] - 0.5 * at.increment()[a]);
-      });
+  detail::for_each_load_force<S>(loads, model, slot, body, place, block, used,
+                                 [&](int node, const Vec3<double>& force) {
+                                   const MotionRecord<const double> at{nodes + node_doubles * node};
+                                   for (int a = 0; a < 3; ++a)
+                                     power += force[a] * (at.velocity()[a] - 0.5 * at.increment()[a]);
+                                 });
   return power * loads.step();
 }
 

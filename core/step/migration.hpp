@@ -19,7 +19,8 @@ class Migration {
  public:
   Migration(Model& model, Exchange& exchange);
 
-  /// Take the departing particles out of every brick; those that leave the grid or are eroded are booked and gone.
+  /// Take the departing particles out of every brick; those that leave the grid or are eroded are booked and
+  /// gone.
   void collect(std::vector<std::vector<DepartingParticle>>& departing);
   /// True if some of what was collected goes to a brick that this rank has never heard of.
   bool wants_new_bricks() const { return !wanted_.empty(); }

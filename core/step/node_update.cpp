@@ -134,8 +134,8 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
     double* u = Motion{at}.strain_velocity();
     if (boundary == Boundary::fixed) {
       for (int a = 0; a < 3; ++a) u[a] = 0;
-    } else if (boundary == Boundary::symmetry ||
-               (boundary == Boundary::rigid_wall && (sign * u[axis] > 0 || Motion{at}.velocity()[axis] == 0))) {
+    } else if (boundary == Boundary::symmetry || (boundary == Boundary::rigid_wall &&
+                                                  (sign * u[axis] > 0 || Motion{at}.velocity()[axis] == 0))) {
       u[axis] = 0;
     }
   });
@@ -147,7 +147,8 @@ void second_velocities(double mass_cutoff, const double* momenta, const Boundary
   for (int n = 0; n < nodes; ++n) {
     const Motion at{record + node_doubles * n};
     const double m = at.mass();
-    store(at.strain_velocity(), m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
+    store(at.strain_velocity(),
+          m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
   }
   constrain_second_velocity(faces, record);
 }

@@ -14,7 +14,7 @@ namespace mpm::core {
 struct alignas(128) ThreadScratch {
   Batch batch;
   StepStatistics statistics;
-  double work = 0;                         ///< external, of the brick at hand
+  double work = 0;                          ///< external, of the brick at hand
   alignas(64) double old[3 * block_lanes];  ///< a block's velocities or positions before an update
   AlignedDoubles nodes, sums;  ///< of the brick at hand: records of node_doubles, each a cache line
   void add_work_of_brick() {

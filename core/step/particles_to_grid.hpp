@@ -16,8 +16,7 @@ namespace mpm::core {
         load<Real>(col(Column::pressure) + l) + load<Real>(col(Column::viscous_pressure) + l);
     for (int a = 0; a < 3; ++a)
       store(rows.stress[a] + l, v * (load<Real>(col(next(Column::s_xx, a)) + l) - p_total));
-    for (int a = 3; a < 6; ++a)
-      store(rows.stress[a] + l, v * load<Real>(col(next(Column::s_xx, a)) + l));
+    for (int a = 3; a < 6; ++a) store(rows.stress[a] + l, v * load<Real>(col(next(Column::s_xx, a)) + l));
   }
 }
 

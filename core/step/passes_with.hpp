@@ -232,8 +232,7 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
       before(cohort.body, place, block, used);
       add_block<S, T, what>(frame, place, layout, block, used, sums, contributions);
       if constexpr (maps_force(what)) {
-        if (loaded)
-          add_load_forces<S>(loads_, model_, s, cohort.body, place, block, used, contributions);
+        if (loaded) add_load_forces<S>(loads_, model_, s, cohort.body, place, block, used, contributions);
       }
     }
   }
@@ -381,8 +380,7 @@ template <bool moves, class F>
         batch.background[b].request(lines_before_update);
         prefetch_nodes();
         strain_batch_block(frame, at.places[b], b, at);
-        if constexpr (moves)
-          move(cohort.body, at.places[b], batch.block[b], cohort.used_lanes(at_block), at);
+        if constexpr (moves) move(cohort.body, at.places[b], batch.block[b], cohort.used_lanes(at_block), at);
       }
       batch.events = {};
       batch.vanishing = batch.negative = 0;
@@ -412,8 +410,7 @@ template <bool moves, class F>
 
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities_and_map_back() {
-  motion_.resize(static_cast<std::size_t>(motion_doubles()) *
-                 static_cast<std::size_t>(model_.grid->owned()));
+  motion_.resize(static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(model_.grid->owned()));
   map_bricks<mapped::momentum>([&](Slot s, Scratch& at) {
     update_nodes_of_brick(s, at);
     keep_motion(shared_.nodes(), at.nodes.data(), motion(s));

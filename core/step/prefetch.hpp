@@ -19,8 +19,8 @@ inline std::size_t block_count(const Brick& brick) {
   return n;
 }
 
-/// Prefetches what says where the coming bricks' particles lie. One leads to the next: a brick to its cohorts,
-/// these to the numbers of their blocks. So each is requested one brick later than what leads to it.
+/// Prefetches what says where the coming bricks' particles lie. One leads to the next: a brick to its
+/// cohorts, these to the numbers of their blocks. So each is requested one brick later than what leads to it.
 inline void prefetch_coming_bricks(const BrickGrid& grid, Slot now) {
   const auto line = [](const void* at, std::size_t n) {
     __builtin_prefetch(static_cast<const char*>(at) + 64 * n, 0, 3);
@@ -35,9 +35,9 @@ inline void prefetch_coming_bricks(const BrickGrid& grid, Slot now) {
   for (std::size_t b = 0; b < blocks.size(); b += 16) line(blocks.data() + b, 0);
 }
 
-/// Prefetches the blocks that a pass will come to: those of a cohort, then those of the next one, in the brick
-/// or after it. Into the second-level cache: the first has too few lines under way at a time to hide main
-/// memory.
+/// Prefetches the blocks that a pass will come to: those of a cohort, then those of the next one, in the
+/// brick or after it. Into the second-level cache: the first has too few lines under way at a time to hide
+/// main memory.
 class BlockPrefetch {
  public:
   BlockPrefetch(const Model& model, Slot slot, std::size_t cohort) : model_(model) {
@@ -73,8 +73,8 @@ class BlockPrefetch {
   const Cohort* then_ = nullptr;
 };
 
-/// A stretch of memory, requested for writing in as many equal parts as there are calls of next(): what a pass
-/// keeps of the next brick's nodes.
+/// A stretch of memory, requested for writing in as many equal parts as there are calls of next(): what a
+/// pass keeps of the next brick's nodes.
 class SpreadPrefetch {
  public:
   SpreadPrefetch(const double* room, int doubles, std::size_t calls)

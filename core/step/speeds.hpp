@@ -10,8 +10,8 @@
 
 namespace mpm::core {
 
-/// Largest stable step without the scene's factor (thesis 2-51, 2-74): the smallest cell edge over the largest
-/// of (Q + sqrt(Q^2 + c^2)) + |v|.
+/// Largest stable step without the scene's factor (thesis 2-51, 2-74): the smallest cell edge over the
+/// largest of (Q + sqrt(Q^2 + c^2)) + |v|.
 inline double critical_step(const BrickGrid& grid, double fastest) {
   return fastest > 0 ? grid.geometry().smallest_cell() / fastest : std::numeric_limits<double>::infinity();
 }

@@ -76,9 +76,8 @@ void Stepper::agree() {
   // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to
   // stop.
   const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty();
-  double news[4] = {integrator_->stable_step(found),
-                    migration_.wants_new_bricks() ? -1.0 : 0.0, trouble ? -1.0 : 0.0,
-                    stop_requested_ ? -1.0 : 0.0};
+  double news[4] = {integrator_->stable_step(found), migration_.wants_new_bricks() ? -1.0 : 0.0,
+                    trouble ? -1.0 : 0.0, stop_requested_ ? -1.0 : 0.0};
   exchange_.minimum(news);
   ++clock.step;
   clock.time += clock.dt;

@@ -14,6 +14,7 @@ using namespace mpm::parallel::test;
 using mpm::core::BrickCoord;
 using mpm::core::BrickGrid;
 using mpm::core::NodeArray;
+using mpm::core::NodeBlockShape;
 using mpm::core::record_doubles;
 using mpm::core::Slot;
 
@@ -142,7 +143,7 @@ TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no o
   const int halo_width = GENERATE(0, 1);
   const double share = GENERATE(0.15, 0.6, 1.0);
   std::mt19937_64 random(static_cast<unsigned>(100 * share) + static_cast<unsigned>(halo_width));
-  BrickGrid grid(unit_grid(400), halo_width);
+  BrickGrid grid(unit_grid(400), NodeBlockShape{halo_width});
   Directory directory;
   Halo halo(world(), directory);
   const auto bricks = random_bricks(random, {4, 3, 4}, share);
@@ -155,7 +156,7 @@ TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no o
         for (int count = 1; first + count <= record_doubles(of); ++count) {
           fill(grid, ++round);
           expected.arrive(of, first, count, round);
-          halo.begin(grid, of, first, count);
+          halo.begin(grid, {of, first, count});
           halo.end(grid);
           REQUIRE(expected.is_there());
         }
@@ -166,7 +167,7 @@ TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no o
 
 TEST_CASE("A changed set of bricks is exchanged anew") {
   std::mt19937_64 random(8);
-  BrickGrid grid(unit_grid(400), 0);
+  BrickGrid grid(unit_grid(400), NodeBlockShape{0});
   Directory directory;
   Halo halo(world(), directory);
   for (int round = 0; round < 30; ++round) {
@@ -176,7 +177,7 @@ TEST_CASE("A changed set of bricks is exchanged anew") {
       fill(grid, 3 * round + i);
       const NodeArray of = both_arrays[static_cast<std::size_t>(i % 2)];
       expected.arrive(of, 0, 4, 3 * round + i);
-      halo.begin(grid, of, 0, 4);
+      halo.begin(grid, {of, 0, 4});
       halo.end(grid);
       REQUIRE(expected.is_there());
     }
@@ -186,13 +187,13 @@ TEST_CASE("A changed set of bricks is exchanged anew") {
 TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
   const int halo_width = GENERATE(0, 1);
   std::mt19937_64 random(9);
-  BrickGrid grid(unit_grid(400), halo_width);
+  BrickGrid grid(unit_grid(400), NodeBlockShape{halo_width});
   Directory directory;
   Halo halo(world(), directory);
   const auto bricks = random_bricks(random, {4, 4, 4}, 0.7);
   set_up(grid, directory, bricks, world().size(), random);
   fill(grid, 0);
-  halo.begin(grid, NodeArray::second, 0, 4);
+  halo.begin(grid, {NodeArray::second, 0, 4});
   halo.end(grid);
 
   const auto sum_at = [&](BrickCoord brick, Node node, auto value_of) {
@@ -240,7 +241,7 @@ TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
 
 TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
   MpiExchange exchange(world());
-  BrickGrid grid(unit_grid(400), 1);
+  BrickGrid grid(unit_grid(400), NodeBlockShape{1});
   std::vector<mpm::core::BrickCount> counts;
   std::mt19937_64 random(10);
   for (const BrickCoord b : random_bricks(random, {12, 11, 10}, 0.97)) {
@@ -253,7 +254,7 @@ TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
   for (int round = 0; round < 3; ++round) {
     fill(grid, round);
     expected.arrive(NodeArray::first, 0, 8, round);
-    exchange.begin_halo(grid, NodeArray::first, 0, 8);
+    exchange.begin_halo(grid, {NodeArray::first, 0, 8});
     exchange.end_halo(grid);
     CHECK(expected.is_there());
   }
@@ -261,13 +262,13 @@ TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
 
 TEST_CASE("A halo exchange out of order is refused") {
   Directory directory;
-  BrickGrid grid(unit_grid(400), 0);
+  BrickGrid grid(unit_grid(400), NodeBlockShape{0});
   Halo halo(world(), directory);
   CHECK_THROWS_AS(halo.end(grid), std::logic_error);
-  CHECK_THROWS_AS(halo.begin(grid, NodeArray::first, 5, 4), std::logic_error);
-  CHECK_THROWS_AS(halo.begin(grid, NodeArray::second, 1, 4), std::logic_error);
-  halo.begin(grid, NodeArray::second, 0, 1);
-  CHECK_THROWS_AS(halo.begin(grid, NodeArray::second, 0, 1), std::logic_error);
+  CHECK_THROWS_AS(halo.begin(grid, {NodeArray::first, 5, 4}), std::logic_error);
+  CHECK_THROWS_AS(halo.begin(grid, {NodeArray::second, 1, 4}), std::logic_error);
+  halo.begin(grid, {NodeArray::second, 0, 1});
+  CHECK_THROWS_AS(halo.begin(grid, {NodeArray::second, 0, 1}), std::logic_error);
   halo.end(grid);
-  CHECK_THROWS_AS(BrickGrid(unit_grid(400), mpm::core::most_halo + 1), std::logic_error);
+  CHECK_THROWS_AS(BrickGrid(unit_grid(400), NodeBlockShape{mpm::core::most_halo + 1}), std::logic_error);
 }

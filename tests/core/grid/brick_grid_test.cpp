@@ -90,3 +90,33 @@ TEST_CASE("Bricks that stay keep their particles; new ones and those that were g
   CHECK(grid.brick(grid.find({3, 3, 3})).particles() == 0);
   check(grid, {{3, 3, 3}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}});
 }
+
+TEST_CASE("Bricks with several velocity fields keep nodes for each of them, apart from all others") {
+  BrickGrid grid(cube(24));
+  grid.reset({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{3, 0, 0}});
+  const std::vector<std::uint8_t> fields{1, 3, 2, 2};
+  grid.set_velocity_fields(fields);
+  for (const NodeArray of : node_arrays) {
+    std::vector<double*> blocks;
+    for (Slot s = 0; s < 4; ++s) {
+      REQUIRE(grid.velocity_fields(s) == fields[static_cast<std::size_t>(s)]);
+      CHECK(grid.contributions(of, s, 0) == grid.contributions(of, s));
+      for (int f = 0; f < grid.velocity_fields(s); ++f) blocks.push_back(grid.contributions(of, s, f));
+    }
+    REQUIRE(blocks.size() == 8);
+    std::sort(blocks.begin(), blocks.end());
+    for (std::size_t i = 1; i < blocks.size(); ++i)
+      CHECK(blocks[i] - blocks[i - 1] >= 125 * record_doubles(of));
+    // All of it is memory of ours.
+    for (double* block : blocks) std::fill_n(block, 125 * record_doubles(of), 1.0);
+  }
+  grid.reset({{0, 0, 0}}, {});
+  CHECK(grid.velocity_fields(0) == 1);
+}
+
+TEST_CASE("An array that a scene does not use takes no memory") {
+  BrickGrid all(cube(24)), one(cube(24), {}, {NodeArray::first});
+  all.reset({{0, 0, 0}, {1, 0, 0}}, {});
+  one.reset({{0, 0, 0}, {1, 0, 0}}, {});
+  CHECK(3 * one.node_bytes() == 2 * all.node_bytes());
+}

@@ -88,3 +88,19 @@ TEST_CASE("The neighbourhood is in ascending order of keys, and opposite neighbo
   }
   CHECK(neighbour_offset(self_index) == BrickCoord{0, 0, 0});
 }
+
+TEST_CASE("Keys tell bricks of different levels apart") {
+  std::set<BrickKey> keys;
+  std::size_t n = 0;
+  for (int level = 0; level < most_brick_levels; ++level) {
+    for (const BrickCoord place :
+         {BrickCoord{0, 0, 0}, {1, 0, 0}, {0, 7, 3}, {(1 << 20) - 1, 5, (1 << 20) - 1}}) {
+      const BrickCoord b{place.x, place.y, place.z, level};
+      CHECK(brick_of_key(key_of(b)) == b);
+      keys.insert(key_of(b));
+      ++n;
+    }
+  }
+  CHECK(keys.size() == n);
+  CHECK(key_of({1, 2, 3}) == (BrickKey{3} << 42 | BrickKey{2} << 21 | 1));
+}

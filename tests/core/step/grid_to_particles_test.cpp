@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 
 #include "core/material/batch.hpp"
+#include "core/shape/linear.hpp"
+#include "core/transfer/flip.hpp"
 #include "tests/core/step/transfer.hpp"
 
 using namespace mpm::core;
@@ -61,7 +63,7 @@ TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
     over(
         c,
         [&](double* block) {
-          add_velocity_increment(c.block_place(block), c.pool.layout(), nodes.data(), block);
+          Flip::update_velocities<Linear>(c.block_place(block), c.pool.layout(), nodes.data(), block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -74,7 +76,7 @@ TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
     over(
         c,
         [&](double* block) {
-          move_with_grid(c.block_place(block), c.pool.layout(), nodes.data(), dt, block);
+          move_with_grid<Linear>(c.block_place(block), c.pool.layout(), nodes.data(), dt, block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -95,7 +97,8 @@ TEST_CASE("Velocity gradients are a plain loop's") {
     over(
         c,
         [&](double* block) {
-          velocity_gradient(c.frame(), c.block_place(block), nodes.data(), second.row, 0);
+          Linear::gradient(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at,
+                           second.row, 0);
         },
         [&](const std::vector<double>& p, const double*, int lane) {
           double l[9] = {};
@@ -136,9 +139,11 @@ TEST_CASE(
     over(
         c,
         [&](double* block) {
-          velocity_gradient(c.frame(), c.block_place(block), nodes.data(), g.row, 0);
-          cell_strain(c.frame(), c.block_place(block), nodes.data(), 0.01, strain, 0);
-          add_velocity_increment(c.block_place(block), c.pool.layout(), nodes.data(), block);
+          Linear::gradient(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at, g.row,
+                           0);
+          Linear::cell_divergence(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at,
+                                  0.01, strain, 0);
+          Flip::update_velocities<Linear>(c.block_place(block), c.pool.layout(), nodes.data(), block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -165,7 +170,10 @@ TEST_CASE("The cell's strain is that of its middle, the same for all its particl
   double worst = 0;
   over(
       c,
-      [&](const double* block) { cell_strain(c.frame(), c.block_place(block), nodes.data(), 1, strain, 0); },
+      [&](const double* block) {
+        Linear::cell_divergence(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at, 1,
+                                strain, 0);
+      },
       [&](const std::vector<double>& p, const double*, int lane) {
         const TransferCase::Place at = c.place(p);
         double sum = 0;  // of the differences across the cell, each averaged over four edges

@@ -85,7 +85,7 @@ TEST_CASE("Every copy of a node has the same sum and the same motion, to the las
       GridGeometry g = geometry_of({14, 13, 16});
       g.boundary = {Boundary::fixed, Boundary::rigid_wall, Boundary::symmetry,
                     Boundary::free,  Boundary::rigid_wall, Boundary::symmetry};
-      BrickGrid grid(g, halo);
+      BrickGrid grid(g, NodeBlockShape{halo});
       grid.reset(random_bricks(random, density), {});
       fill(grid, NodeArray::first, random);
       fill(grid, NodeArray::second, random);
@@ -110,7 +110,7 @@ TEST_CASE("Every copy of a node has the same sum and the same motion, to the las
 TEST_CASE("A node's sum is that of all bricks which hold it") {
   std::mt19937 random(22);
   for (const int halo : {0, 1}) {
-    BrickGrid grid(geometry_of({16, 16, 16}), halo);
+    BrickGrid grid(geometry_of({16, 16, 16}), NodeBlockShape{halo});
     grid.reset(random_bricks(random, 4), {});
     fill(grid, NodeArray::first, random);
     fill(grid, NodeArray::second, random);
@@ -253,6 +253,6 @@ TEST_CASE("A halo that a neighbourhood of 27 bricks cannot serve is refused") {
   // With two layers, node -2 of a brick is node 6 of the brick two further down, which is no neighbour.
   for (const int halo : {-1, 2, 3, 5}) {
     CHECK_THROWS_AS(SharedNodes(NodeBlockShape{halo}), std::logic_error);
-    CHECK_THROWS_AS(BrickGrid(geometry_of({16, 16, 16}), halo), std::logic_error);
+    CHECK_THROWS_AS(BrickGrid(geometry_of({16, 16, 16}), NodeBlockShape{halo}), std::logic_error);
   }
 }

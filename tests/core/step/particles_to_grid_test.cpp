@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/shape/linear.hpp"
+#include "core/transfer/flip.hpp"
 #include "tests/core/step/transfer.hpp"
 
 using namespace mpm::core;
@@ -14,24 +16,25 @@ using mpm::tests::TransferCase;
 
 namespace {
 
-template <Mapped what>
+template <NodeFields what>
 std::vector<double> mapped(const TransferCase& c) {
-  constexpr int width = record_doubles(array_of(what));
+  constexpr int width = record_doubles(what.array);
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
-  CellSums<what> sums;
+  Linear::Scatter<what> sums;
   sums.clear();
   for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
     const int used = c.cohort.used_lanes(b);
     const double* block = c.pool.block(c.cohort.blocks[b]);
-    add_block<what>(c.frame(), c.block_place(block), c.pool.layout(), block, used, sums, nodes.data());
+    add_block<Linear, Flip, what>(c.frame(), c.block_place(block), c.pool.layout(), block, used, sums,
+                                  nodes.data());
   }
   sums.flush(c.frame(), nodes.data());
   return nodes;
 }
 
-template <Mapped what>
+template <NodeFields what>
 std::vector<double> plain(const TransferCase& c) {
-  constexpr int width = record_doubles(array_of(what));
+  constexpr int width = record_doubles(what.array);
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
   for (const std::vector<double>& p : c.particles) {
     const double v[3] = {p[3], p[4], p[5]}, m = p[6], volume = p[7], total = p[14] + p[15];
@@ -51,7 +54,7 @@ std::vector<double> plain(const TransferCase& c) {
   return nodes;
 }
 
-template <Mapped what>
+template <NodeFields what>
 void compare(const TransferCase& c) {
   const std::vector<double> one = mapped<what>(c), two = plain<what>(c);
   double worst = 0, scale = 0;
@@ -70,10 +73,10 @@ TEST_CASE("All that is mapped to the nodes is what a plain loop maps") {
       for (const int count : {0, 1, 7, 8, 9, 200}) {
         INFO("brick " << brick.x << brick.y << brick.z << ", halo " << halo << ", particles " << count);
         const TransferCase c(brick, count, 7u * static_cast<unsigned>(count) + 1);
-        compare<Mapped::momentum_mass_force>(c);
-        compare<Mapped::momentum_mass>(c);
-        compare<Mapped::momentum>(c);
-        compare<Mapped::force>(c);
+        compare<mapped::momentum_mass_force>(c);
+        compare<mapped::momentum_mass>(c);
+        compare<mapped::momentum>(c);
+        compare<mapped::force>(c);
       }
     }
   }
@@ -81,7 +84,7 @@ TEST_CASE("All that is mapped to the nodes is what a plain loop maps") {
 
 TEST_CASE("The nodes get all the mass and momentum there is, and forces that balance each other") {
   const TransferCase c({1, 1, 1}, 333, 5);
-  const std::vector<double> nodes = mapped<Mapped::momentum_mass_force>(c);
+  const std::vector<double> nodes = mapped<mapped::momentum_mass_force>(c);
   double sum[8] = {}, size[8] = {}, all[4] = {};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     sum[i % 8] += nodes[i];
@@ -99,10 +102,10 @@ TEST_CASE("The nodes get all the mass and momentum there is, and forces that bal
 
 TEST_CASE("Lanes out of use add nothing, whatever is in them") {
   TransferCase c({1, 0, 1}, 11, 6);
-  const std::vector<double> before = mapped<Mapped::momentum_mass_force>(c);
+  const std::vector<double> before = mapped<mapped::momentum_mass_force>(c);
   double* block = c.pool.block(c.cohort.blocks[1]);
   for (int column = 0; column < c.pool.layout().columns(); ++column) {
     for (int lane = 3; lane < block_lanes; ++lane) block[block_lanes * column + lane] = std::nan("");
   }
-  CHECK(mapped<Mapped::momentum_mass_force>(c) == before);
+  CHECK(mapped<mapped::momentum_mass_force>(c) == before);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/particles/block_pool.hpp"
-#include "core/step/shape.hpp"
+#include "core/shape/linear.hpp"
 
 namespace mpm::tests {
 
@@ -54,7 +54,7 @@ struct TransferCase {
   }
 
   core::BrickFrame frame() const { return {geometry, shape, brick}; }
-  core::BlockPlace block_place(const double* block) const { return {frame(), pool.layout(), block}; }
+  core::LinearPlace block_place(const double* block) const { return {frame(), pool.layout(), block}; }
 
   /// Scaled position in the brick, cell and fraction; a point that round-off puts below its brick is in its
   /// first cell.
