@@ -27,7 +27,6 @@ class AlignedDoubles {
   double* data() { return data_.get(); }
   const double* data() const { return data_.get(); }
   std::size_t size() const { return size_; }
-  std::size_t bytes() const { return capacity_ * sizeof(double); }
 
  private:
   Pages data_;
