@@ -96,7 +96,6 @@ class BrickGrid {
                                       extra_begin_[static_cast<std::size_t>(s)];
   }
 
-  std::size_t node_bytes() const { return first_.bytes() + second_.bytes(); }
   /// Counts up whenever the set of bricks changes; communication plans are made anew then.
   std::uint64_t revision() const { return revision_; }
 

@@ -113,10 +113,3 @@ TEST_CASE("Bricks with several velocity fields keep nodes for each of them, apar
   grid.reset({{0, 0, 0}}, {});
   CHECK(grid.velocity_fields(0) == 1);
 }
-
-TEST_CASE("An array that a scene does not use takes no memory") {
-  BrickGrid all(cube(24)), one(cube(24), {}, {NodeArray::first});
-  all.reset({{0, 0, 0}, {1, 0, 0}}, {});
-  one.reset({{0, 0, 0}, {1, 0, 0}}, {});
-  CHECK(3 * one.node_bytes() == 2 * all.node_bytes());
-}
