@@ -97,6 +97,7 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
       body.geometry = before->geometry;
       body.density = before->density;
       body.initial_velocity = before->initial_velocity;
+      body.initial_temperature = before->initial_temperature;
       body.work_plane = before->work_plane;
       compare(stated.source, "Body", stated.name);
       body = stated;

@@ -115,6 +115,38 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
           model.scene->solution.end_time);
 }
 
+/// A body that starts hot at the density of a cold one is under the pressure of its heat: said, with the
+/// density (to first order) at which it would not be. Collective.
+void say_thermal_pressures(const core::Model& model, core::Exchange& exchange, io::Log& log) {
+  const std::vector<const core::BodyInput*> inputs = core::active_bodies(*model.scene);
+  if (std::ranges::none_of(inputs, [](const auto* input) { return input->initial_temperature.has_value(); }))
+    return;
+  std::vector<double> lowest(2 * model.bodies.size(), 0.0);  // of the pressure and of its negative
+  core::for_each_block(model, [&](int body, const core::ColumnLayout& layout, const double* block, int used) {
+    const auto b = static_cast<std::size_t>(body);
+    if (!inputs[b]->initial_temperature) return;
+    const double* pressure = block + layout.offset(core::Column::pressure);
+    for (int i = 0; i < used; ++i) {
+      lowest[2 * b] = std::min(lowest[2 * b], pressure[i]);
+      lowest[2 * b + 1] = std::min(lowest[2 * b + 1], -pressure[i]);
+    }
+  });
+  exchange.minimum(lowest);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const double p = -lowest[2 * b + 1] > -lowest[2 * b] ? -lowest[2 * b + 1] : lowest[2 * b];
+    const core::ConstitutiveModel& material = *model.bodies[b].model;
+    const double c = material.initial_sound_speed(), s = material.initial_shear_speed();
+    const double bulk = material.reference_density() * (c * c - 4.0 / 3 * s * s);
+    if (!inputs[b]->initial_temperature || !(std::abs(p) > 1e-6 * bulk)) continue;
+    const double change = p / bulk;
+    log.note("note       body '{}' starts with the pressure {:.6g}, its heat's included{}",
+             model.bodies[b].name, p,
+             std::abs(change) > 0.1 ? ""
+                                    : fmt::format("; with density=\"{:.6g}\" it would start with hardly any",
+                                                  inputs[b]->density * (1 - change)));
+  }
+}
+
 /// One run in its stages; the members are in the order in which they come to life.
 class Run {
  public:
@@ -145,6 +177,7 @@ class Run {
     stepper_.emplace(model_, exchange_);
     describe(model_, *stepper_, exchange_, threads_, *log_);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
+    if (!case_.restart) say_thermal_pressures(model_, exchange_, *log_);
     setup_seconds_ = clock_.seconds();
   }
 

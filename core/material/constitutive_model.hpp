@@ -36,9 +36,9 @@ class ConstitutiveModel {
   /// A bar's stress: along x, which the owner of bars turns into the bar's axis.
   virtual bool uniaxial() const { return false; }
 
-  /// First state of new particles whose position, velocity, mass, volume and identity are set and whose other
-  /// columns are zero: energy, temperature, the pressure of a body placed at another density, history.
-  /// Also fills sound_speed and critical_speed.
+  /// First state of new particles whose position, velocity, mass, volume and identity are set, the
+  /// temperature too where it is not the material's own; all else is zero: energy, temperature, the pressure
+  /// of a body placed at another density, history. Also fills sound_speed and critical_speed.
   virtual void initialise(Batch& batch, const UpdateOptions& options) const = 0;
 
   /// One step: from `gradient` and `dt` to stress, volume, energy, state, sound_speed and critical_speed.

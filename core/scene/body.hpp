@@ -78,6 +78,7 @@ struct BodyInput {
   bool for_bool = false;                  ///< operand of a Bool body; removed once that is made
   bool no_output = false;                 ///< takes part, but is not written
   std::array<double, 3> initial_velocity{};
+  std::optional<double> initial_temperature;  ///< > 0; the material's without
   std::optional<std::array<double, 3>> prescribed_velocity;
   std::optional<PrescribedAcceleration> prescribed_acceleration;
   std::optional<HarmonicExcitation> harmonic_excitation;

@@ -59,6 +59,8 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
   set(Column::mass, seed.mass);
   set(Column::volume, seed.volume);
   set(Column::identity, identity);
+  if (input.initial_temperature && layout.has(Column::temperature))
+    set(Column::temperature, *input.initial_temperature);
 }
 
 /// Counts per brick, and the first seed outside the grid in words.
@@ -288,6 +290,16 @@ void refuse_bar_material(const Scene& scene, const BodyInput& input, const Const
                                 scene.materials[input.material].name, input.name, input.type));
 }
 
+void refuse_temperature(const BodyInput& input, const ConstitutiveModel& material) {
+  if (!input.initial_temperature || material.columns({}).has(Column::temperature)) return;
+  throw InputErrors(
+      input.source, "InitialTemperature",
+      fmt::format("material `{}` of body `{}` carries no temperature: give it SpecHeat and a law "
+                  "that heats, CoefficientOfThermalConductivity or TemperatureCoefficient, or "
+                  "leave InitialTemperature out",
+                  material.name(), input.name));
+}
+
 }  // namespace
 
 Model prepare_model(std::shared_ptr<const Scene> scene,
@@ -316,6 +328,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     body.model = model.materials[input.material].get();
     body.rigid = body.model->rigid();
     refuse_bar_material(*scene, input, *body.model);
+    refuse_temperature(input, *body.model);
     body.no_output = input.no_output;
     if (input.prescribed_velocity) { body.prescribed_velocity = to_vec(*input.prescribed_velocity); }
     ColumnSet columns = ColumnSet::mechanics();
@@ -360,6 +373,7 @@ double check_setup(const Scene& scene, const std::vector<std::unique_ptr<Constit
   double particles = 0;
   for (const BodyInput* input : inputs) {
     wrong.collect([&] { refuse_bar_material(scene, *input, *materials[input->material]); });
+    wrong.collect([&] { refuse_temperature(*input, *materials[input->material]); });
     wrong.collect([&] {
       sources.push_back(make_seed_source(scene, *input));
       particles += sources.back()->expected_particles();

@@ -130,6 +130,7 @@ core::HarmonicExcitation build_excitation(const Node& node) {
 
 void build_loads(core::BodyInput& body, const Node& node, const BuildContext& context) {
   if (const auto v = node.child("InitialVelocity")) body.initial_velocity = v->reals("vx", "vy", "vz");
+  if (const auto t = node.child("InitialTemperature")) body.initial_temperature = t->given_real("value");
   if (const auto v = node.child("PrescribedVelocity")) body.prescribed_velocity = v->reals("vx", "vy", "vz");
   if (const auto a = node.child("PrescribedAcceleration"))
     body.prescribed_acceleration = build_acceleration(*a, context);

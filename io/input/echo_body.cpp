@@ -133,6 +133,7 @@ struct GeometryEcho {
 
 void echo_loads(XmlWriter& w, const core::BodyInput& body) {
   echo_vector(w, "InitialVelocity", "vx", "vy", "vz", body.initial_velocity);
+  if (body.initial_temperature) echo_value(w, "InitialTemperature", *body.initial_temperature);
   if (body.prescribed_velocity)
     echo_vector(w, "PrescribedVelocity", "vx", "vy", "vz", *body.prescribed_velocity);
   if (body.prescribed_acceleration) {

@@ -32,10 +32,13 @@ StrengthPoint<T> rest(const Law& law, StrengthPoint<T> point) {
 /// Energy and pressure of a particle placed at the point's volume. The energy is E0 at that volume, whatever
 /// the volume: how the body came to its density is the user's matter. Only the elastic bulk, which has no E0,
 /// starts with the work of the way there, so that a body released to the reference density ends with none.
+/// `heat` is what a body that starts at another temperature than the material's has more, as if heated in
+/// place.
 template <class T, class Eos>
-EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0) {
+EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0, const T& heat) {
   point.energy = e0;
   if constexpr (requires { eos.initialise(point); }) eos.initialise(point);
+  point.energy += heat;
   core::MaskOf<T> outside{};
   const EosLine<T> line = limited_line(eos, point, outside);
   const EosLine<T> acting = acting_line(eos, point, line);
@@ -45,12 +48,14 @@ EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0) {
 
 /// What the particle starts with: the same, or of the law's point, where that has placed the particle.
 template <class T, class Law, class Eos>
-EosLine<T> start(const Law&, const Eos& eos, const StrengthPoint<T>& point, EosPoint<T>& bulk, double e0) {
+EosLine<T> start(const Law&, const Eos& eos, const StrengthPoint<T>& point, EosPoint<T>& bulk, double e0,
+                 const T& heat) {
   if constexpr (SetsPressure<Law>) {
+    bulk.energy += heat;
     bulk.pressure = point.pressure;
     return StrengthPressure::line(point.pressure, point.bulk_modulus, bulk.relative_volume);
   } else {
-    return start(eos, bulk, e0);
+    return start(eos, bulk, e0, heat);
   }
 }
 
@@ -79,7 +84,7 @@ double modulus_at_rest(const Material::Laws& laws, const StrengthPoint<double>& 
         } else {
           EosPoint<double> point{};
           point.relative_volume = 1;
-          const EosLine<double> line = start(eos, point, laws.common_eos.e0);
+          const EosLine<double> line = start(eos, point, laws.common_eos.e0, 0.0);
           return 4.0 / 3.0 * shear + isentropic_modulus(line, 0.0, 1.0, point.pressure, point.energy);
         }
       },
@@ -206,7 +211,14 @@ void Material::initialise_pair(core::Batch& batch, const PressureRules& rules, c
     };
     const auto get = [&](Column c) { return core::load<T>(block + layout.offset(c)); };
     const T volume = get(Column::volume);
-    const Density<T> now(get(Column::mass), volume, rules.reference_density);
+    Density<T> now(get(Column::mass), volume, rules.reference_density);
+    T temperature = laws_.common.room_temperature;
+    if (layout.has(Column::temperature)) {
+      const T given = get(Column::temperature);
+      temperature = core::select(given > 0.0, given, temperature);
+    }
+    const T heat = (laws_.reference_density * laws_.common.specific_heat) *
+                   (temperature - laws_.common.room_temperature);
 
     if (follows_deformation_) {
       for (const Column c : {Column::f_xx, Column::f_yy, Column::f_zz}) put(c, 1.0);
@@ -214,7 +226,7 @@ void Material::initialise_pair(core::Batch& batch, const PressureRules& rules, c
     StrengthPoint<T> point{};
     law_history.load(block, point);
     point.density = now.density;
-    point.temperature = laws_.common.room_temperature;
+    point.temperature = temperature;
     point.time = batch.time;
     point.cell_size = batch.cell_size;
     if constexpr (requires(core::Vec3<T> x) { law.initialise(point, x); }) {
@@ -224,15 +236,19 @@ void Material::initialise_pair(core::Batch& batch, const PressureRules& rules, c
     if constexpr (requires { law.scatters(); }) {
       if (law.scatters()) point.deviate = normal_deviate(get(Column::identity));
     }
+    if (expands_) {
+      core::store(block + layout.offset(Column::temperature), temperature);
+      expand(now, rules, layout, block);
+    }
     EosPoint<T> bulk{now.compression, now.relative_volume, T(0.0), T(0.0), T(0.0)};
     if constexpr (SetsPressure<Law>) { bulk.energy = law.place(point, now.relative_volume); }
     point = rest(law, point);
     law_history.store(block, point);
-    put(Column::temperature, point.temperature);
+    put(Column::temperature, temperature);
     put(Column::yield_stress, point.yield_stress);
 
     eos_history.load(block, bulk);
-    const EosLine<T> line = start(law, eos, point, bulk, laws_.common_eos.e0);
+    const EosLine<T> line = start(law, eos, point, bulk, laws_.common_eos.e0, heat);
     eos_history.store(block, bulk);
     put(Column::pressure, bulk.pressure);
     put(Column::internal_energy, bulk.energy);

@@ -24,6 +24,7 @@ PointDriver::PointDriver(const core::ConstitutiveModel& model, const Options& op
   const double density = options.density > 0 ? options.density : model.reference_density();
   this->set(Column::mass, density);
   this->set(Column::volume, 1.0);
+  if (options.temperature > 0) this->set(Column::temperature, options.temperature);
 
   batch_.layout = &layout_;
   batch_.blocks = 1;

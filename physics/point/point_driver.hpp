@@ -14,8 +14,9 @@ class PointDriver {
  public:
   using Update = std::function<void(core::Batch&, const core::UpdateOptions&)>;
   struct Options {
-    double density = 0;    ///< at the start; 0: the reference density
-    double cell_size = 0;  ///< length of the artificial viscosity; 0: none
+    double density = 0;      ///< at the start; 0: the reference density
+    double temperature = 0;  ///< at the start; 0: the material's
+    double cell_size = 0;    ///< length of the artificial viscosity; 0: none
     core::UpdateOptions update{};
     core::ColumnSet extra_columns{};  ///< beyond what the material carries, e.g. yield_stress
   };

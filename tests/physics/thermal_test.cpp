@@ -66,6 +66,33 @@ TEST_CASE("held expansion presses with 3 K alpha dT", "[physics][thermal]") {
   }
 }
 
+TEST_CASE("a body that starts hot is one that was heated in place", "[physics][thermal]") {
+  // Expansion by coefficient, and by the energy in the equation of state.
+  core::MaterialInput shocked = copper("IsoHarden heated");
+  shocked.eos =
+      core::LawInput{"Gruneisen", {{"C0", 3940}, {"S1", 1.49}, {"gamma0", 2}, {"simplified", 0}}, {}};
+  const std::unique_ptr<physics::Material> materials[] = {expanding(), expanding("IsoHarden"), make(shocked)};
+  for (const auto& material : materials) {
+    for (const double rise : {250.0, -100.0}) {
+      PointDriver heated(*material, {}), hot(*material, {.temperature = room + rise});
+      const double heat_per_volume = material->reference_density() * material->specific_heat() * rise;
+      heated.set(Column::temperature, room + rise);
+      heated.set(Column::internal_energy, heat_per_volume);
+      CHECK(hot.value(Column::temperature) == room + rise);
+      const double before = hot.value(Column::pressure);
+      heated.step({}, 1.0);
+      hot.step({}, 1.0);
+      CHECK(std::abs(before) > 1e6);
+      CHECK(hot.value(Column::pressure) == Approx(before).epsilon(1e-12));  // nothing has happened to it
+      CHECK(hot.value(Column::pressure) == Approx(heated.value(Column::pressure)).epsilon(1e-12));
+      // The elastic bulk also has the work that a free body would do; the shocked one has the heat alone.
+      const double e = 3 * alpha * rise, v = std::exp(-e);
+      const double stored = material == materials[2] ? 0 : bulk * (1 - v - v * e);
+      CHECK(hot.energy() == Approx(heat_per_volume + stored).epsilon(1e-10));
+    }
+  }
+}
+
 TEST_CASE("a bar held at its ends, free at its sides, has -E alpha dT", "[physics][thermal]") {
   const auto material = expanding();
   PointDriver point(*material, {});

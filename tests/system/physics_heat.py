@@ -1,12 +1,13 @@
 """Conduction between two half-slabs of different temperature, against the exact solution."""
 
 import math
+import re
 
 import _cases
 import _mpm
 import numpy as np
 
-HOT, COLD = 400.0, 300.0
+HOT, COLD, ROOM = 400.0, 300.0, 320.0
 CONDUCTIVITY, SPECIFIC_HEAT = 3.0, 2.0  # density 1
 DIFFUSIVITY = CONDUCTIVITY / SPECIFIC_HEAT
 LENGTH = 24.0
@@ -59,6 +60,92 @@ class Heat(_mpm.Case):
         self.assertAlmostEqual(steps * 0.9 * step, 1.0, delta=0.05)
         self.assertLess(states.column("kelv").max(), HOT * (1 + 1e-6))  # and oscillates nowhere
         self.assertGreater(states.column("kelv").min(), COLD * (1 - 1e-6))
+
+    def hot_and_cold(self, folder, ranks=1, more=""):
+        """The slabs again, of one material whose room temperature is neither's."""
+        law = (f'type="IsoElastic" Young="0.5" Poisson="0" SpecHeat="{SPECIFIC_HEAT}" '
+               f'CoefficientOfThermalConductivity="{CONDUCTIVITY}" roomt="{ROOM}"')
+        bodies = [_mpm.block(name, (x, 0, 0), (LENGTH / 2, 0.5, 0.5), dp=0.25,
+                             more=f'<InitialTemperature value="{temperature}"/>')
+                  for name, x, temperature in (("left", 0, HOT), ("right", LENGTH / 2, COLD))]
+        text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (LENGTH, 0.5, 0.5), "222222", 0.5), _mpm.solution(2.0, factor=0.9),
+                          [_mpm.material(strength=law)],
+                          output='<Console print_time="0.4"/><Restart time_interval="1"/>'
+                          '<PostProcessing time_interval="2" h5part="1" var="kelv|engi"/>' + more)
+        self.write(text)
+        return self.run_in(folder, [self.folder / "case.xmp"], ranks=ranks), _cases.States(self.folder / folder)
+
+    def test_temperature_of_a_body(self):
+        outcome, states = self.hot_and_cold("one")
+        first = states.column("kelv", 0)
+        self.assertEqual(set(first), {np.float32(HOT), np.float32(COLD)})
+        temperature = states.column("kelv")
+        self.assertLess(np.abs(temperature - self.exact(states.column("x"), 2.0)).mean() / (HOT - COLD), 2e-4)
+        # The energy is that of heating from the room temperature, at the start and at any time.
+        mass = 0.25**3
+        for which in (0, -1):
+            energy = states.column("engi", which) / (mass * SPECIFIC_HEAT)
+            self.assertLess(np.abs(energy - (states.column("kelv", which) - ROOM)).max(), 1e-3 * (HOT - COLD))
+        self.assertEqual(self.hot_and_cold("two", ranks=2)[0].state, outcome.state)
+        again = self.run_in("two", [_mpm.restarts(self.folder / "two")[0]], ranks=1)
+        self.assertEqual(again.state, outcome.state)
+
+    def test_a_restart_keeps_its_temperatures(self):
+        self.hot_and_cold("out")
+        text = (self.folder / "case.xmp").read_text()
+        restart = _mpm.restarts(self.folder / "out")[0]
+        self.run_in("same", [restart, "-rt", self.write(text, "other.xmp")])
+        self.write(text.replace(f'<InitialTemperature value="{HOT}"/>', '<InitialTemperature value="350"/>'), "other.xmp")
+        outcome = self.run_in("bad", [restart, "-rt", self.folder / "other.xmp"], code=_mpm.INPUT_ERROR)
+        self.assertRegex(outcome.err, r'other\.xmp:\d+: <Body name="left">: differs from the input of the restart file')
+
+    def test_a_hot_body_is_softer(self):
+        """Johnson-Cook: the yield stress at the start is that at the body's temperature, and so is the blow's end."""
+        law = ('type="JohnsonCook" Young="1000" Poisson="0.3" Yield0="10" B="0" n="1" C="0" m="1" melt="1293" SpecHeat="1e3" '
+               'epso="1" roomt="293"')
+        yields = {}
+        for temperature in (293, 793):
+            body = _mpm.block("bar", (0, 1, 1), (4, 2, 2), (-3, 0, 0), more=f'<InitialTemperature value="{temperature}"/>')
+            text = _mpm.scene([body], _mpm.grid((0, 0, 0), (8, 4, 4), "200000"), _mpm.solution(0.5), [_mpm.material(strength=law)],
+                              output='<PostProcessing time_interval="0.5" h5part="1" var="sigy|epef|kelv"/>')
+            self.run_in("jc", [self.write(text)])
+            states = _cases.States(self.folder / "jc")
+            yields[temperature] = states.column("sigy", 0), states.column("epef").max()
+        np.testing.assert_allclose(yields[293][0], 10, rtol=1e-6)
+        np.testing.assert_allclose(yields[793][0], 5, rtol=1e-6)
+        self.assertGreater(yields[793][1], 1.2 * yields[293][1])
+
+    def test_density_of_a_hot_body(self):
+        """Heat presses where the equation of state knows of it; the log names a density with which it hardly does."""
+        law = ('type="JohnsonCook" Young="117e3" Poisson="0.35" Yield0="90" B="292" n="0.31" C="0.025" epso="1" m="1.09" '
+               'melt="1356" SpecHeat="383"')  # mm, g, ms
+        more = '<EquationOfState type="Gruneisen" C0="3940" S1="1.49" gamma0="1.96"/>'
+
+        def start(attributes):
+            body = _mpm.block("bar", (1, 1, 1), (2, 2, 2), more='<InitialTemperature value="600"/>', attributes=attributes)
+            text = _mpm.scene([body], _mpm.grid((0, 0, 0), (4, 4, 4)), _mpm.solution(1e-5),
+                              [_mpm.material(density="8.93e-3", strength=law, more=more)],
+                              output='<PostProcessing time_interval="1e-5" h5part="1" var="pres"/>')
+            self.run_in("hot", [self.write(text)])
+            notes = re.findall(r"body 'bar' starts with the pressure (\S+), its heat's included; with density=\"(\S+)\"",
+                               (self.folder / "hot/case.out").read_text())
+            return _cases.States(self.folder / "hot").column("pres", 0), notes
+
+        pressure, notes = start("")
+        np.testing.assert_allclose(pressure, 1.96 * 8.93e-3 * 383 * (600 - 293), rtol=1e-6)
+        self.assertEqual(len(notes), 1)
+        relieved, _ = start(f'density="{notes[0][1]}"')
+        self.assertLess(np.abs(relieved).max(), 0.05 * pressure.max())
+
+    def test_only_what_carries_a_temperature_has_one(self):
+        body = _mpm.block("b", (1, 1, 1), (2, 2, 2), more='<InitialTemperature value="400"/>')
+        text = _mpm.scene([body], _mpm.grid((0, 0, 0), (4, 4, 4)), _mpm.solution(1))
+        self.write(text)
+        for program in ("mpm_run", "mpm_check"):
+            outcome = _mpm.run([self.folder / "case.xmp"], program=program)
+            self.assertEqual(outcome.code, _mpm.INPUT_ERROR)
+            self.assertRegex(outcome.err, r"case\.xmp:\d+: <InitialTemperature>: material `soft` of body `b` carries no "
+                                          "temperature")
 
     def test_the_same_on_any_ranks(self):
         self.assertEqual(len({self.slabs(24, 1.0, f"ranks{n}", ranks=n)[0].state for n in (1, 2, 3)}), 1)

@@ -154,7 +154,8 @@ std::string bodies() {
                                   "id7='1' id8='2'/></Geometry>");
   text += body("BlockForFEM", block, "<LocalBoundaryCond FixedDirection='3' Normal='0' Min='0' Max='1'/>");
   text += body("Block", block,
-               "<InitialVelocity vx='0' vy='0' vz='0'/><PrescribedVelocity vx='0' vy='0' vz='0'/>"
+               "<InitialVelocity vx='0' vy='0' vz='0'/><InitialTemperature value='400'/><PrescribedVelocity "
+               "vx='0' vy='0' vz='0'/>"
                "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'>"
                "<Coefficient time='0' cx='1' cy='0' cz='0' crx='0' cry='0' crz='0'/></PrescribedAcceleration>"
                "<ConstrainRigidPosition value='1'/><AdaptiveSplit value='0.5'/><CountFragDp value='1'/>"

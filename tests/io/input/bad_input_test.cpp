@@ -132,6 +132,17 @@ TEST_CASE("values") {
       {"vz=\"-190\"",
        "vz=\"\"",
        {"line 14: <InitialVelocity vz=\"\">: expected a number, written like 1.5e-3"}},
+      {"<InitialVelocity",
+       "<InitialTemperature value='0'/><InitialVelocity",
+       {"line 14: <InitialTemperature value=\"0\">: expected a number greater than 0"}},
+      {"<InitialVelocity",
+       "<InitialTemperature value='inf'/><InitialVelocity",
+       {"line 14: <InitialTemperature value=\"inf\">: expected a number greater than 0, written like "
+        "1.5e-3"}},
+      {"<InitialVelocity",
+       "<InitialTemperature/><InitialVelocity",
+       {"line 14: <InitialTemperature>: attribute 'value' is missing: a number greater than 0 "
+        "(temperature; the material must carry one)"}},
       {"dp=\"0.38\"", "dp=\"0\"", {"line 13: <Geometry dp=\"0\">: expected a number greater than 0"}},
       {"boundary=\"2\"", "boundary=\"5\"", {"line 19: <XMin boundary=\"5\">: expected one of 0, 1, 2, 3, 4"}},
       {"boundary=\"2\"",

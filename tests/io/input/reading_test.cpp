@@ -153,6 +153,14 @@ TEST_CASE("a body's own density") {
   CHECK(scene.materials[0].reference_density == 8.93e-3);
 }
 
+TEST_CASE("a body's own temperature, also when written down again") {
+  const core::Scene scene =
+      test::parse(replaced(bar, "<InitialVelocity", "<InitialTemperature value='600.5'/><InitialVelocity"));
+  CHECK(scene.components[0].bodies[0].initial_temperature == 600.5);
+  CHECK(test::parse(io::to_text(scene)).components[0].bodies[0].initial_temperature == 600.5);
+  CHECK_FALSE(test::parse(std::string(bar)).components[0].bodies[0].initial_temperature);
+}
+
 TEST_CASE("work planes are orthonormal whatever lengths the input gives") {
   const core::Scene scene = test::parse(replaced(
       bar, "<WorkPlane", "<WorkPlane name='w' ex='3' ey='0' ez='0' a11='0' a21='0' a31='2'/><WorkPlane"));
