@@ -21,15 +21,17 @@ bool is_restart(const std::string& job) { return std::filesystem::path(job).exte
 
 /// The file itself, or for `Job.pe`, which names no step, the newest one that is whole, once the run that
 /// writes them is over. Collective.
-std::string find_restart(const std::string& named, const parallel::Communicator& world) {
+std::string find_restart(const RunOptions& options, const parallel::Communicator& world) {
   namespace fs = std::filesystem;
+  const std::string& named = options.job;
+  const bool only_reads = options.dry_run || options.to_h5part;
   parallel::MpiExchange exchange(world);
   if (exchange.any(world.rank() == 0 && fs::exists(named))) return named;
   const fs::path path(named);
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
   std::vector<std::string> notices;
   const auto newest_of = [&](const std::string& job) {
-    if (world.rank() == 0) io::JobLock::wait_for(folder + "/" + job + ".lock");
+    if (world.rank() == 0 && !only_reads) io::JobLock::wait_for(folder + "/" + job + ".lock");
     return io::find_newest_restart(folder, job, exchange, notices);
   };
   const std::string job = path.stem().string();
@@ -121,7 +123,7 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world) {
     }
     return from_input(options.job, world);
   }
-  const std::string restart = find_restart(options.job, world);
+  const std::string restart = find_restart(options, world);
   Case c;
   if (options.restart_input) {
     c = from_input(*options.restart_input, world);

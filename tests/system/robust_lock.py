@@ -40,8 +40,10 @@ class Lock(Case):
             self.assertEqual(_mpm.contents(self.out), before)
         # What only reads, what writes elsewhere, and another job in the same folder are let through.
         newest = _mpm.restarts(self.out)[-1]
-        self.run_in("out", [self.case, "--dry-run"])
-        self.run_in("converted", [newest, "-h5pt"])
+        for words in ([self.case, "--dry-run"], [self.out / "case.pe", "--dry-run"]):
+            self.run_in("out", words)
+        for words in (newest, self.out / "case.pe"):
+            self.run_in("converted", [words, "-h5pt"])
         self.run_in("elsewhere", [newest, "-nsteps", "1"])
         other = self.write(_resume.scene(0.1, pictures=None), "other.xmp")
         self.run_in("out", [other])
