@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@
 #include "io/input/reader.hpp"
 #include "io/input/reference.hpp"
 #include "io/input/user_specification.hpp"
+#include "io/output/variables.hpp"
 #include "physics/catalogue.hpp"
 #include "physics/material/material.hpp"
 
@@ -49,7 +51,8 @@ std::string summary(const core::Scene& scene) {
 
 /// What no description of the language says: materials, and all that a run sets up. Throws every complaint.
 double make_everything(const core::Scene& scene) {
-  return core::check_setup(scene, physics::make_materials(scene));
+  return core::check_setup(std::make_shared<const core::Scene>(scene), physics::make_materials(scene),
+                           io::columns_for(scene.output));
 }
 
 class Checker {

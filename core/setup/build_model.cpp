@@ -366,27 +366,72 @@ ModelPlan plan_of(const Model& model) {
   return plan;
 }
 
-double check_setup(const Scene& scene, const std::vector<std::unique_ptr<ConstitutiveModel>>& materials) {
+namespace {
+
+using Sources = std::vector<std::unique_ptr<SeedSource>>;
+
+/// A few particles of a body, whose first state is like that of all others.
+std::vector<Seed> sample_of(const SeedSource& source) {
+  constexpr std::size_t few = 8;
+  constexpr std::uint64_t most_units = 1 << 16;  // that may be empty before the first with particles
+  std::vector<Seed> seeds;
+  for (std::uint64_t u = 0; u < std::min(source.units(), most_units) && seeds.empty(); ++u)
+    source.generate(u, u + 1, seeds);
+  seeds.resize(std::min(seeds.size(), few));
+  return seeds;
+}
+
+/// Starts a model of the samples alone, which throws what the start of a run would.
+void check_start(Model model, const std::vector<const BodyInput*>& inputs,
+                 const std::vector<std::vector<Seed>>& samples) {
+  const GridGeometry& geometry = model.grid->geometry();
+  std::vector<BrickCount> counts;
+  Travellers travellers;
+  std::vector<double> columns;
+  for (std::size_t b = 0; b < samples.size(); ++b) {
+    const ColumnLayout& layout = model.bodies[b].pool->layout();
+    for (const Seed& s : samples[b]) {
+      const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
+      if (!geometry.contains(x)) continue;
+      fill_columns(layout, model.bodies[b], *inputs[b], s, static_cast<double>(s.identity), columns);
+      counts.push_back({geometry.brick_at(x), 1});
+      travellers.add(counts.back().brick, static_cast<int>(b), columns.data(), layout.columns());
+    }
+  }
+  SoloExchange alone;
+  alone.partition(*model.grid, counts, {});
+  insert_travellers(model, travellers);
+  settle(model);
+  start_clock(model, alone);
+}
+
+}  // namespace
+
+double check_setup(std::shared_ptr<const Scene> scene,
+                   std::vector<std::unique_ptr<ConstitutiveModel>> materials,
+                   const ColumnSet& output_columns) {
   Complaints wrong;
-  const std::vector<const BodyInput*> inputs = active_bodies(scene);
-  std::vector<std::unique_ptr<SeedSource>> sources;
+  const std::vector<const BodyInput*> inputs = active_bodies(*scene);
+  Sources sources;
   double particles = 0;
   for (const BodyInput* input : inputs) {
-    wrong.collect([&] { refuse_bar_material(scene, *input, *materials[input->material]); });
+    wrong.collect([&] { refuse_bar_material(*scene, *input, *materials[input->material]); });
     wrong.collect([&] { refuse_temperature(*input, *materials[input->material]); });
     wrong.collect([&] {
-      sources.push_back(make_seed_source(scene, *input));
+      sources.push_back(make_seed_source(*scene, *input));
       particles += sources.back()->expected_particles();
     });
   }
   wrong.raise_if_any();
   refuse_uncounted(sources, inputs);
-  const GridGeometry geometry = geometry_of(scene);
+  const GridGeometry geometry = geometry_of(*scene);
   // Whose box is inside has no particle outside; of the others every particle is looked at, in a few seconds.
   constexpr double most_looked_at = 1 << 30;
-  std::vector<std::unique_ptr<SeedSource>> doubtful;
+  std::vector<std::vector<Seed>> samples;
+  Sources doubtful;
   std::vector<const BodyInput*> owners;
   for (std::size_t b = 0; b < sources.size(); ++b) {
+    samples.push_back(sample_of(*sources[b]));
     const auto [lower, upper] = sources[b]->bounds();
     const bool inside = geometry.contains({lower[0], lower[1], lower[2]}) &&
                         geometry.contains({upper[0], upper[1], upper[2]});
@@ -395,7 +440,8 @@ double check_setup(const Scene& scene, const std::vector<std::unique_ptr<Constit
     owners.push_back(inputs[b]);
   }
   SoloExchange alone;
-  refuse_outside(scene, geometry, take_census(geometry, doubtful, owners, alone, nullptr), alone);
+  refuse_outside(*scene, geometry, take_census(geometry, doubtful, owners, alone, nullptr), alone);
+  check_start(prepare_model(scene, std::move(materials), output_columns), inputs, samples);
   return particles;
 }
 

@@ -27,10 +27,13 @@ struct ModelPlan {
   double state_bytes = 0;  ///< all ranks
 };
 
-/// What the set-up refuses for reasons that stand in the input, found without a model: bodies outside the
-/// grid, more particles than can be numbered, materials for bars, too many cells. Memory and the number of
-/// ranks are a machine's matter. The number of particles, an estimate. Throws InputErrors.
-double check_setup(const Scene& scene, const std::vector<std::unique_ptr<ConstitutiveModel>>& materials);
+/// What the set-up refuses for reasons that stand in the input, found without making the particles but a few
+/// of each body: bodies outside the grid, more particles than can be numbered, materials for bars, too many
+/// cells, a first state that no run can start from. Memory and the number of ranks are a machine's matter.
+/// The number of particles, an estimate. Throws InputErrors.
+double check_setup(std::shared_ptr<const Scene> scene,
+                   std::vector<std::unique_ptr<ConstitutiveModel>> materials,
+                   const ColumnSet& output_columns);
 
 /// Bodies without particles, an empty grid: enough to know the columns. `output_columns`: what outputs ask
 /// for. Throws InputErrors for what does not fit the grid's limits.

@@ -30,7 +30,7 @@ PATIENCE = 120  # seconds: some hundred times what any of these needs
 WALL = 5  # after so long a run is asked to stop, and says so with exit code 4
 MOST_PARTICLES = 200_000  # of a mutant that still runs here
 MEMORY = 6 << 30  # address space of one program
-PROMISED = {0, 2, 3, 4, 5}
+PROMISED = {int(code) for code in re.findall(r"(?m)(?:^|· )(\d) ", (_mpm.SOURCE / "README.md").read_text().split("## Exit codes")[1])}
 MACHINE = re.compile(r"GiB are free|must equal the number of ranks")
 
 # Scenes -----------------------------------------------------------------------------------------------------------
