@@ -12,6 +12,7 @@
 
 #include "apps/common/case.hpp"
 #include "core/setup/build_model.hpp"
+#include "core/step/node_update.hpp"
 #include "core/step/stepper.hpp"
 #include "io/input/reader.hpp"
 #include "io/output/variables.hpp"

@@ -43,7 +43,7 @@ struct Census {
 Census census(MpiExchange& exchange, const Travellers& travellers, bool arrived) {
   std::vector<std::int64_t> sums(3);
   for (std::size_t i = 0; i < travellers.size(); ++i) {
-    const auto& [to, body] = travellers.heads[i];
+    const auto& [to, body, unused] = travellers.heads[i];
     const double* columns = travellers.columns.data() + travellers.offsets[i];
     const auto identity = std::bit_cast<std::uint64_t>(columns[1]);
     const std::vector<double> made = make_columns(to, body, identity);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/step/speeds.hpp"
 #include "core/step/stepper.hpp"
 #include "tests/support/reference_stepper.hpp"
 

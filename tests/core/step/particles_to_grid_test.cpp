@@ -17,7 +17,7 @@ using mpm::tests::TransferCase;
 namespace {
 
 template <NodeFields what>
-std::vector<double> mapped(const TransferCase& c) {
+std::vector<double> by_kernel(const TransferCase& c) {
   constexpr int width = record_doubles(what.array);
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
   Linear::Scatter<what> sums;
@@ -56,7 +56,7 @@ std::vector<double> plain(const TransferCase& c) {
 
 template <NodeFields what>
 void compare(const TransferCase& c) {
-  const std::vector<double> one = mapped<what>(c), two = plain<what>(c);
+  const std::vector<double> one = by_kernel<what>(c), two = plain<what>(c);
   double worst = 0, scale = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {
     worst = std::max(worst, std::abs(one[i] - two[i]));
@@ -84,7 +84,7 @@ TEST_CASE("All that is mapped to the nodes is what a plain loop maps") {
 
 TEST_CASE("The nodes get all the mass and momentum there is, and forces that balance each other") {
   const TransferCase c({1, 1, 1}, 333, 5);
-  const std::vector<double> nodes = mapped<mapped::momentum_mass_force>(c);
+  const std::vector<double> nodes = by_kernel<mapped::momentum_mass_force>(c);
   double sum[8] = {}, size[8] = {}, all[4] = {};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     sum[i % 8] += nodes[i];
@@ -102,10 +102,10 @@ TEST_CASE("The nodes get all the mass and momentum there is, and forces that bal
 
 TEST_CASE("Lanes out of use add nothing, whatever is in them") {
   TransferCase c({1, 0, 1}, 11, 6);
-  const std::vector<double> before = mapped<mapped::momentum_mass_force>(c);
+  const std::vector<double> before = by_kernel<mapped::momentum_mass_force>(c);
   double* block = c.pool.block(c.cohort.blocks[1]);
   for (int column = 0; column < c.pool.layout().columns(); ++column) {
     for (int lane = 3; lane < block_lanes; ++lane) block[block_lanes * column + lane] = std::nan("");
   }
-  CHECK(mapped<mapped::momentum_mass_force>(c) == before);
+  CHECK(by_kernel<mapped::momentum_mass_force>(c) == before);
 }

@@ -140,7 +140,7 @@ TEST_CASE("A particle that is gone stays so through a restart, and the log learn
     tracked = file.tracked();
   }
   model.clock.step = 2;
-  io::HistoryFile file(folder / "a_curv.dat", model, io::HistoryFile::Continuation{1, tracked}, solo);
+  io::HistoryFile file(folder / "a_curv.dat", model, io::HistoryFile::Continuation{{1, {}}, tracked}, solo);
   CHECK(file.tracked() == tracked);
   file.add(model, solo);
   file.flush(solo);
