@@ -118,7 +118,7 @@ class Stop(Case):
                     process.stdout.readline()
                 _mpm.send(process.pid, number)
                 outcome = _mpm.finish(process)
-                self.assertEqual(outcome.code, 1, outcome)
+                self.assertNotIn(outcome.code, (DONE, None), outcome)  # 1 in Open MPI 4.1
                 self.go_on_from_endless()
 
     def test_wall_time(self):
