@@ -41,7 +41,9 @@ ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
   app.footer(
       "Exit codes: 0 done, 2 wrong input, 3 numerical failure, 4 stopped early (a restart file is there), 5 "
       "file error (file descriptors that run out included), 6 out of memory or threads.\n"
-      "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and leave.");
+      "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and leave with exit code 4. Under mpirun take\n"
+      "SIGUSR1, sent to mpirun, or --max-wall-time: after Ctrl+C or SIGTERM mpirun ends with exit code 1\n"
+      "and kills its ranks within seconds, whether or not they have written a restart file.");
   app.set_version_flag("--version", std::string(core::version) + " (" + std::string(core::git_hash) + ")");
   app.add_option("job", o.job,
                  "input file Job.xmp (the ending may be left out) or restart file Job_<step>.pe")
