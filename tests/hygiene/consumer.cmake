@@ -18,9 +18,9 @@ endif()
 run(${CMAKE_COMMAND} --install ${MPM_BUILD} --prefix ${work}/prefix)
 run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${work}/build
   -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_FLAGS=${flags}
-  -DCMAKE_C_COMPILER=${C_COMPILER} -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CXX_LAUNCHER})
+  -DCMAKE_C_COMPILER=${C_COMPILER} -DCMAKE_CXX_COMPILER=${CXX_COMPILER})
 run(${CMAKE_COMMAND} --build ${work}/build)
-run(${work}/build/consumer)
+run(${CMAKE_COMMAND} -E env ASAN_OPTIONS=detect_leaks=0 ${work}/build/consumer)  # what MPI leaves is not its matter
 if(NOT output MATCHES "^mpm ${VERSION} ")
   message(FATAL_ERROR "expected version ${VERSION}, the program printed: ${output}")
 endif()
