@@ -1,7 +1,9 @@
 #!/bin/sh
-# build.sh PRESET: installs what is missing, configures and builds build/PRESET.
+# build.sh PRESET [TARGET...]: installs what is missing, configures and builds build/PRESET, or only these targets of it.
 set -eu
 cd "$(dirname "$0")/.."
+preset=$1
+shift
 
 sh cmake/setup.sh
 
@@ -12,5 +14,5 @@ fitting=$((memory_kb / 1500000))
 [ "$fitting" -ge 1 ] || fitting=1
 [ "$jobs" -le "$fitting" ] || jobs=$fitting
 
-cmake --preset "$1"
-cmake --build --preset "$1" -j "$jobs"
+cmake --preset "$preset"
+cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}

@@ -1,0 +1,35 @@
+#!/bin/sh
+# test_builds.sh [BUILD...]: what test.sh cannot see, each in a build of its own, all of them or those named:
+#   lanes1 lanes2 lanes4   the unit tests of core and physics with vectors of other widths
+#   sanitize               all unit tests under the address and undefined-behaviour sanitizers
+#   clang                  all unit tests by another compiler, every warning an error, every file with its own includes
+#   race                   data races between the threads of a rank
+set -eu
+cd "$(dirname "$0")/.."
+[ $# -gt 0 ] || set -- lanes1 lanes2 lanes4 sanitize clang race
+
+report=""
+for build in "$@"; do
+  echo "test_builds.sh: $build"
+  start=$(date +%s)
+  case $build in
+    lanes*)
+      sh cmake/build.sh "$build" test_core test_physics
+      built=$(date +%s)
+      ctest --preset "$build" -j "$(nproc)" -R '^unit\.(core|physics)$'
+      ;;
+    race)
+      sh cmake/build.sh "$build" race_programs
+      built=$(date +%s)
+      cmake --build --preset "$build" --target race
+      ;;
+    *)
+      sh cmake/build.sh "$build" unit_programs
+      built=$(date +%s)
+      ctest --preset "$build" -j "$(nproc)" -L unit
+      ;;
+  esac
+  report="$report
+  $build: built in $((built - start)) s, tested in $(($(date +%s) - built)) s"
+done
+echo "test_builds.sh: passed$report"
