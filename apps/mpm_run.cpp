@@ -1,47 +1,4 @@
 // mpm_run JobName[.xmp|.pe] [options]: reads, checks and runs a case; also as `mpirun -np N mpm_run ...`.
-#include <cstdio>
-#include <exception>
-#include <new>
+#include "apps/mpm.hpp"
 
-#include "apps/common/options.hpp"
-#include "apps/common/resources.hpp"
-#include "apps/common/run.hpp"
-#include "core/scene/errors.hpp"
-#include "io/output/file_error.hpp"
-#include "parallel/mpi.hpp"
-
-int main(int argc, char** argv) {
-  using namespace mpm;
-  // MPI ends the program, or crashes, where it can open no files.
-  if (const std::string refusal = apps::why_no_descriptors(); !refusal.empty()) {
-    std::fprintf(stderr, "mpm_run: %s\n", refusal.c_str());
-    return apps::file_error;
-  }
-  const parallel::Environment environment(argc, argv);
-  const parallel::Communicator world = parallel::Communicator::world();
-  const bool speak = world.rank() == 0;
-
-  const auto [options, leave] = apps::parse_command_line(argc, argv, speak);
-  if (leave) return *leave;
-
-  // Errors of the input and of files are thrown on every rank alike, so all leave here with one message.
-  const auto failed = [&](const std::exception& e, apps::ExitCode code) {
-    if (speak) std::fprintf(stderr, "%s\n", e.what());
-    return code;
-  };
-  try {
-    return apps::run(options, world);
-  } catch (const core::InputErrors& e) {
-    return failed(e, apps::input_error);
-  } catch (const io::FileError& e) { return failed(e, apps::file_error); } catch (const apps::NoThreads& e) {
-    return failed(e, apps::out_of_resources);
-  } catch (const std::bad_alloc&) {
-    // On this rank; the others may wait for it.
-    std::fprintf(stderr, "rank %d: out of memory: use a larger dp, or more machines\n", world.rank());
-    parallel::abort(apps::out_of_resources);
-  } catch (const std::exception& e) {
-    // A bug, or memory that is gone, on one rank perhaps: the others must not wait for it.
-    std::fprintf(stderr, "rank %d: %s\n", world.rank(), e.what());
-    parallel::abort(1);
-  }
-}
+int main(int argc, char** argv) { return mpm::run(argc, argv, {}); }

@@ -57,10 +57,13 @@ else()
   message(FATAL_ERROR "MPM_SIMD_LANES=${MPM_SIMD_LANES}: expected 1, 2, 4, 8 or auto")
 endif()
 
-# Everything that changes the layout of vectors or the value of a result is PUBLIC on mpm_core: a consumer's
-# copies of our inline functions must agree with the library's. Contraction is spelled out because compilers differ
-# in its default; reassociation (-ffast-math) would end the same bits on any number of ranks.
-set(mpm_public_options ${mpm_arch_flags} -ffp-contract=fast -fno-math-errno -fno-trapping-math)
+# Everything that changes the value of a result is PUBLIC on mpm_core. Contraction is spelled out because compilers
+# differ in its default; reassociation (-ffast-math) would end the same bits on any number of ranks. Projects that use
+# the installed library get all of it but -march, which is theirs to choose: no vector crosses the library's boundary
+# (apps/CMakeLists.txt), so g++'s notes on how vectors are passed do not concern them.
+set(mpm_value_options -ffp-contract=fast -fno-math-errno -fno-trapping-math)
+set(mpm_public_options ${mpm_arch_flags} ${mpm_value_options})
+set(mpm_consumer_options ${mpm_value_options} -Wno-psabi)
 set(mpm_public_definitions MPM_SIMD_LANES=${mpm_simd_lanes})
 set(mpm_private_options -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wno-psabi)
 if(MPM_WERROR)

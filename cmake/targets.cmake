@@ -1,5 +1,5 @@
 # mpm_library(core LINK dep...): library mpm_core, alias mpm::core, from every source below the current folder and
-# SOURCES; without any, a library of headers.
+# SOURCES; without any, a library of headers. Not installed by itself: libmpm (apps/CMakeLists.txt) holds them all.
 function(mpm_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
@@ -16,11 +16,9 @@ function(mpm_library name)
   endif()
   add_library(mpm::${name} ALIAS ${target})
   target_include_directories(${target} ${scope}
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/mpm>)
+    ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
   target_link_libraries(${target} ${scope} ${arg_LINK})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  install(TARGETS ${target} EXPORT mpm)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()
 
 # mpm_programs(out_targets LINK dep...): one program per source directly in the current folder.

@@ -2,7 +2,7 @@
 //
 // A law names its columns once, as `static constexpr std::array state`; each point type says which of its
 // members holds which column. What a law does not name is neither loaded nor stored
-// (tests/physics/columns_test.cpp).
+// (tests/physics/laws_test.cpp).
 #pragma once
 
 #include <array>

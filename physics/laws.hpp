@@ -1,27 +1,22 @@
-// What the lists of laws are asked: a law by its word in the input, and every law in turn.
+// What every list of laws can be asked for: each law in turn; and how a law is made of its input.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <variant>
 
 #include "core/scene/errors.hpp"
 #include "physics/parameter.hpp"
 
 namespace mpm::physics {
 
-/// A law that the input can name; the others are built in.
-template <class Law>
-concept Named = requires {
-  Law::name;
-};
+template <class... Law>
+struct LawList {};
 
-/// f(std::type_identity<Law>) for every law of a list.
+/// f(std::type_identity<Law>()) for every law of a list.
 template <class List, class F>
 constexpr void for_each_law(F f) {
-  [&]<class... Law>(std::type_identity<std::variant<Law...>>) {
+  [&]<class... Law>(std::type_identity<LawList<Law...>>) {
     (f(std::type_identity<Law>{}), ...);
   }(std::type_identity<List>{});
 }
@@ -43,24 +38,13 @@ void finish(Law& law, const core::LawInput& input, std::string_view element, dou
   }
 }
 
-/// The law of the list that the input names, ready for use.
-template <class List>
-List make_law(const core::LawInput& input, std::string_view element, double reference_density) {
-  std::optional<List> made;
-  for_each_law<List>([&]<class Law>(std::type_identity<Law>) {
-    if constexpr (Named<Law>) {
-      if (input.type != Law::name) return;
-      if constexpr (requires { Law::chosen_by(input); }) {
-        if (!Law::chosen_by(input)) return;
-      }
-      Law law;
-      read_parameters(law, input);
-      finish(law, input, element, reference_density);
-      made = law;
-    }
-  });
-  if (!made) throw core::InputErrors(input.source, std::string(element), input.type + " is not implemented");
-  return *made;
+/// The law with the input's numbers, ready for use.
+template <class Law>
+Law read_law(const core::LawInput& input, std::string_view element, double reference_density) {
+  Law law;
+  read_parameters(law, input);
+  finish(law, input, element, reference_density);
+  return law;
 }
 
 }  // namespace mpm::physics

@@ -10,7 +10,6 @@
 #include "io/restart/restart.hpp"
 #include "parallel/launch.hpp"
 #include "parallel/mpi_exchange.hpp"
-#include "physics/catalogue.hpp"
 #include "physics/material/material.hpp"
 
 namespace mpm::apps {
@@ -48,24 +47,25 @@ std::string find_restart(const RunOptions& options, const parallel::Communicator
       (sibling ? "; the newest restart file of the job is " + *sibling : "; nothing was started"));
 }
 
-Case parsed(const std::string& bytes, const std::string& path) {
+Case parsed(const std::string& bytes, const std::string& path, const core::Catalogue& catalogue) {
   Case c;
   c.bytes = bytes;
   c.scene = std::make_shared<const core::Scene>(
-      io::parse_scene(bytes, path, physics::catalogue(), {.check_files = false, .notes = &c.notes}));
+      io::parse_scene(bytes, path, catalogue, {.check_files = false, .notes = &c.notes}));
   return c;
 }
 
 /// The bytes of an input file that rank 0 has checked. Collective.
-Case from_input(const std::string& job, const parallel::Communicator& world) {
+Case from_input(const std::string& job, const parallel::Communicator& world,
+                const core::Catalogue& catalogue) {
   std::string path;
   std::string bytes = parallel::on_root_then_all<io::FileError>(world, [&] {
     path = io::find_input(job).string();
     std::string read = io::read_bytes(path);
-    io::parse_scene(read, path, physics::catalogue());
+    io::parse_scene(read, path, catalogue);
     return read;
   });
-  return parsed(bytes, parallel::broadcast(world, path));
+  return parsed(bytes, parallel::broadcast(world, path), catalogue);
 }
 
 const core::BodyInput* find_body(const core::Scene& scene, const std::string& name) {
@@ -115,22 +115,23 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
 
 std::string to_line(const core::Diagnostic& note) { return "note       " + to_text(note); }
 
-Case load_case(const RunOptions& options, const parallel::Communicator& world) {
+Case load_case(const RunOptions& options, const parallel::Communicator& world,
+               const core::Catalogue& catalogue) {
   if (!is_restart(options.job)) {
     if (options.restart_input) {
       throw core::InputErrors(core::SourceLocation{options.job, 0}, "-rt",
                               "needs a restart file (Job_<step>.pe) to start from");
     }
-    return from_input(options.job, world);
+    return from_input(options.job, world, catalogue);
   }
   const std::string restart = find_restart(options, world);
   Case c;
   if (options.restart_input) {
-    c = from_input(*options.restart_input, world);
+    c = from_input(*options.restart_input, world, catalogue);
     c.restart_job = parallel::on_root_then_all<io::FileError>(world, [&] {
       const io::RestartScene before = io::read_restart_scene(restart);
-      refuse_what_is_over(
-          io::parse_scene(before.text, before.path, physics::catalogue(), {.check_files = false}), *c.scene);
+      refuse_what_is_over(io::parse_scene(before.text, before.path, catalogue, {.check_files = false}),
+                          *c.scene);
       return before.job_name;
     });
   } else {
@@ -138,22 +139,23 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world) {
     const std::string bytes = parallel::on_root_then_all<io::FileError>(world, [&] {
       io::RestartScene scene = io::read_restart_scene(restart);
       path = scene.path;
-      io::parse_scene(scene.text, path, physics::catalogue(), {.check_files = false});
+      io::parse_scene(scene.text, path, catalogue, {.check_files = false});
       return scene.text;
     });
-    c = parsed(bytes, parallel::broadcast(world, path));
+    c = parsed(bytes, parallel::broadcast(world, path), catalogue);
     c.restart_job = c.scene->provenance.job_name;
   }
   c.restart = restart;
   return c;
 }
 
-ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world) {
+ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world,
+                         const core::Catalogue& catalogue) {
   if (!is_restart(options.job)) {
     throw core::InputErrors(core::SourceLocation{options.job, 0}, "-h5pt",
                             "converts a restart file: name a Job_<step>.pe");
   }
-  const Case c = load_case(options, world);
+  const Case c = load_case(options, world, catalogue);
   const std::string& restart = *c.restart;
   std::vector<io::Variable> variables;
   if (c.scene->output.post_processing)

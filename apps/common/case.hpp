@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/common/options.hpp"
+#include "core/scene/catalogue.hpp"
 #include "core/scene/scene.hpp"
 #include "parallel/mpi.hpp"
 
@@ -24,9 +25,11 @@ struct Case {
 std::string to_line(const core::Diagnostic& note);
 
 /// Rank 0 reads, every rank gets the same scene or the same InputErrors. Collective.
-Case load_case(const RunOptions& options, const parallel::Communicator& world);
+Case load_case(const RunOptions& options, const parallel::Communicator& world,
+               const core::Catalogue& catalogue);
 
 /// -h5pt. Collective.
-ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world);
+ExitCode convert_restart(const RunOptions& options, const parallel::Communicator& world,
+                         const core::Catalogue& catalogue);
 
 }  // namespace mpm::apps

@@ -150,13 +150,13 @@ void say_thermal_pressures(const core::Model& model, core::Exchange& exchange, i
 /// One run in its stages; the members are in the order in which they come to life.
 class Run {
  public:
-  Run(const RunOptions& options, const parallel::Communicator& world)
-      : options_(options), exchange_(world), case_(load_case(options, world)) {
+  Run(const RunOptions& options, const parallel::Communicator& world, const physics::Registry& registry)
+      : options_(options), exchange_(world), case_(load_case(options, world, registry.catalogue())) {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
     start_threads(threads_, exchange_);
     core::check_decomposition(case_.scene->decomposition, exchange_.size());
-    model_ = core::prepare_model(case_.scene, physics::make_materials(*case_.scene),
+    model_ = core::prepare_model(case_.scene, physics::make_materials(*case_.scene, registry),
                                  io::columns_for(case_.scene->output));
     std::vector<std::string> notices;
     if (case_.restart) {
@@ -176,6 +176,7 @@ class Run {
                 model_.clock.time);
     stepper_.emplace(model_, exchange_);
     describe(model_, *stepper_, exchange_, threads_, *log_);
+    for (const std::string& law : registry.added()) log_->note("law        {}, of this program", law);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
     if (!case_.restart) say_thermal_pressures(model_, exchange_, *log_);
     setup_seconds_ = clock_.seconds();
@@ -389,15 +390,16 @@ class Run {
 
 }  // namespace
 
-ExitCode run(const RunOptions& options, const parallel::Communicator& world) {
+ExitCode run(const RunOptions& options, const parallel::Communicator& world,
+             const physics::Registry& registry) {
   if (options.lsdyna) {
     throw core::InputErrors(
         core::SourceLocation{options.job, 0}, "-lsdyna",
         "known, but not implemented yet: leave the option out; .h5part and .vtu files hold the particles");
   }
-  if (options.to_h5part) return convert_restart(options, world);
+  if (options.to_h5part) return convert_restart(options, world, registry.catalogue());
   if (!options.dry_run) watch_signals();
-  return Run(options, world).go();
+  return Run(options, world, registry).go();
 }
 
 }  // namespace mpm::apps

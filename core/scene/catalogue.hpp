@@ -29,6 +29,8 @@ struct ParameterInfo {
   /// Attributes of one law with the same non-empty group are given all together or not at all (D1 .. D5).
   std::string_view group = {};
   bool implemented = true;  ///< false: the reader refuses every value but the default
+  /// Every finite number makes sense: what a parameter of a law from outside says that has no range.
+  bool any_number = false;
 };
 
 /// One type of strength model, equation of state or failure model.

@@ -10,13 +10,14 @@
 
 namespace mpm::physics {
 
-/// A strength model that burns: it states dF/dmu of the fraction that compression alone burns.
+/// A strength model that burns: it keeps F in the column burn_fraction and states -dF/d(V/V0) of what
+/// compression alone burns, which is one number for the whole of the burn; 0: compression burns nothing.
 template <class Law>
 concept Burns = requires(const Law& law) {
-  law.burn_slope(1.0);
+  law.compression_burn;
 };
 
-template <class Eos, Burns Law>
+template <class Eos>
 struct Burning : Eos {
   static constexpr auto state = [] {
     std::array<core::Column, Eos::state.size() + 1> columns{};
@@ -25,15 +26,16 @@ struct Burning : Eos {
     return columns;
   }();
 
-  const Law& law;
+  double compression_burn = 0;  ///< -dF/d(V/V0)
 
-  Burning(const Eos& eos, const Law& burning_law) : Eos(eos), law(burning_law) {}
+  Burning(const Eos& eos, double burn) : Eos(eos), compression_burn(burn) {}
 
   /// Of the products, for the wave speed.
   template <class T>
   EosLine<T> line(EosPoint<T>& point) const {
     EosLine<T> products = Eos::line(point);
-    const T slope = core::select(point.burn_fraction < 1.0, law.burn_slope(point.relative_volume), 0.0);
+    const T burning = compression_burn * (point.relative_volume * point.relative_volume);  // dF/dmu
+    const T slope = core::select(point.burn_fraction < 1.0, burning, 0.0);
     products.da += slope * products.a;
     products.db += slope * products.b;
     return products;
@@ -45,16 +47,6 @@ struct Burning : Eos {
     return {f * products.a, f * products.b, products.da, products.db};
   }
 };
-
-/// The equation as the pressure stage is to see it beside this strength model.
-template <class Eos, class Law>
-const Eos& beside(const Eos& eos, const Law&) {
-  return eos;
-}
-template <class Eos, Burns Law>
-Burning<Eos, Law> beside(const Eos& eos, const Law& law) {
-  return {eos, law};
-}
 
 /// The part of the products' line that presses: all of it, but for an explosive.
 template <class T, class Eos>

@@ -1,6 +1,6 @@
 // The pressure of a material whose strength law computes it with the deviator (`sets_pressure`): the strength
 // stage leaves it and its modulus in the batch, and the energy follows from it. Not a type of the input.
-// Shown by tests/physics/energy_test.cpp over the samples of such laws.
+// Shown by tests/physics/laws_test.cpp over the samples of such laws.
 #pragma once
 
 #include <array>

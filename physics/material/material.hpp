@@ -1,5 +1,5 @@
 // A material: strength model, equation of state and failure models composed, as the input states them, behind
-// the interface that the step knows. Each stage is one pass over the batch, and each law is chosen once per
+// the interface that the step knows. Each stage is one pass over the batch, and each law is called once per
 // batch.
 #pragma once
 
@@ -11,20 +11,20 @@
 #include "core/scene/body.hpp"
 #include "core/scene/material.hpp"
 #include "core/scene/scene.hpp"
-#include "physics/eos/list.hpp"
-#include "physics/failure/list.hpp"
 #include "physics/failure/threshold_scatter.hpp"
 #include "physics/material/common_parameters.hpp"
-#include "physics/material/pressure_stage.hpp"
-#include "physics/material/strength_stage.hpp"
-#include "physics/strength/list.hpp"
+#include "physics/material/eos_law.hpp"
+#include "physics/material/failure_law.hpp"
+#include "physics/material/strength_law.hpp"
 
 namespace mpm::physics {
 
+class Registry;
+
 class Material final : public core::ConstitutiveModel {
  public:
-  struct FailureEntry {
-    FailureModel model;
+  struct Failure {
+    std::unique_ptr<FailureLaw> model;
     bool erodes = false;
   };
   /// Laws read and prepared; make_material does that from the input.
@@ -33,9 +33,9 @@ class Material final : public core::ConstitutiveModel {
     double reference_density = 0;
     CommonParameters common;
     CommonEosParameters common_eos;
-    StrengthModel strength;
-    EquationOfState eos;
-    std::vector<FailureEntry> failures;
+    std::unique_ptr<StrengthLaw> strength;
+    std::unique_ptr<EosLaw> eos;
+    std::vector<Failure> failures;
     core::RandomFailureInput random_failure;
   };
   explicit Material(Laws laws);
@@ -45,8 +45,8 @@ class Material final : public core::ConstitutiveModel {
   double initial_sound_speed() const override { return initial_sound_speed_; }
   double initial_shear_speed() const override { return initial_shear_speed_; }
   double reference_density() const override { return laws_.reference_density; }
-  bool rigid() const override { return rigid_; }
-  bool uniaxial() const override { return uniaxial_; }
+  bool rigid() const override { return strength_traits_.rigid; }
+  bool uniaxial() const override { return strength_traits_.uniaxial; }
   double specific_heat() const override { return laws_.common.specific_heat; }
   double conductivity() const override { return laws_.common.conductivity; }
   core::FailedComponentRule failed_component_rule() const override {
@@ -55,21 +55,17 @@ class Material final : public core::ConstitutiveModel {
   void initialise(core::Batch& batch, const core::UpdateOptions& options) const override;
   void update(core::Batch& batch, const core::UpdateOptions& options) const override;
 
-  /// The same update with another value type: double or a Lanes<L>, for the comparison of instances.
-  template <class T>
-  void update_as(core::Batch& batch, const core::UpdateOptions& options) const;
-  template <class T>
-  void initialise_as(core::Batch& batch, const core::UpdateOptions& options) const;
+  /// The same update one particle after the other, for the comparison of instances.
+  void update_scalars(core::Batch& batch, const core::UpdateOptions& options) const;
 
   const Laws& laws() const { return laws_; }
 
  private:
-  template <class T, class Law, class PlainEos>
-  void initialise_pair(core::Batch& batch, const PressureRules& rules, const Law& law,
-                       const PlainEos& plain_eos) const;
+  template <class T>
+  void update_as(core::Batch& batch, const core::UpdateOptions& options, Instance instance) const;
   StrengthRules strength_rules() const;
   PressureRules pressure_rules(const core::UpdateOptions& options) const;
-  void scatter_thresholds();
+  void add_failures_of_damage();
   void draw_thresholds(core::Batch& batch) const;
 
   Laws laws_;
@@ -81,16 +77,20 @@ class Material final : public core::ConstitutiveModel {
   bool expands_ = false;              ///< with heat: carries the columns `temperature` and `thermal_strain`
   bool scatters_ = false;             ///< carries the column `threshold_factor`
   bool follows_deformation_ = false;  ///< carries the deformation gradient
-  TensionRules tension_;              ///< of the strength model
-  bool rigid_ = false, uniaxial_ = false;
+  StrengthTraits strength_traits_;
 };
 
 /// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict
-/// each other.
-std::unique_ptr<core::ConstitutiveModel> make_material(
-    const core::MaterialInput& input, const std::vector<core::DetonationItem>& detonations = {});
+/// each other. Without a registry: of the laws of the lists.
+std::unique_ptr<Material> make_material(const core::MaterialInput& input,
+                                        const std::vector<core::DetonationItem>& detonations,
+                                        const Registry& registry);
+std::unique_ptr<Material> make_material(const core::MaterialInput& input,
+                                        const std::vector<core::DetonationItem>& detonations = {});
 
 /// All materials of a scene, in its order. Throws what is wrong with any of them, together.
+std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene,
+                                                                     const Registry& registry);
 std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene);
 
 }  // namespace mpm::physics

@@ -4,7 +4,7 @@
 // h takes the place of V^{n+1/2} tr(de)/2 (2-88), so that -p dV is the work of the volume that really
 // changes. The sound speed in q is that of the new volume with the old energy and pressure. Then the wave
 // speed of the state reached (2-57) and the speed of the critical step (2-74). Shown by
-// tests/physics/energy_test.cpp.
+// tests/physics/energy_test.cpp and laws_test.cpp.
 #pragma once
 
 #include "physics/eos/burning.hpp"

@@ -2,7 +2,7 @@
 // (Hughes and Winget 1980; orthogonal to round-off, in the place of thesis 2-81). The strain increment
 // belongs to the middle of the step and is turned by the other half, to first order in the angle: with that
 // the whole is of second order, where an unturned increment leaves it of first
-// (tests/physics/objectivity_test.cpp). Then the law. Failed particles have the stress of a fluid, s = 2
+// (tests/physics/laws_test.cpp). Then the law. Failed particles have the stress of a fluid, s = 2
 // FailViscosity D', and their state rests.
 #pragma once
 

@@ -32,7 +32,7 @@ struct HighExpBurn {
   double mu = 0;   ///< stress time
   std::vector<core::DetonationItem> sources;
   double reference_density = 0;  ///< derived
-  double compression_burn = 0;   ///< rho0 D^2/PCJ, derived; 0: compression does not burn
+  double compression_burn = 0;   ///< rho0 D^2/PCJ = -dF2/d(V/V0), derived; 0: compression does not burn
 
   static constexpr auto parameters() {
     using P = HighExpBurn;
@@ -75,9 +75,13 @@ struct HighExpBurn {
     compression_burn = beta == 2 ? 0 : density * detonation_velocity * detonation_velocity / pcj;
   }
 
+  /// Takes the places of lighting; returns what is wrong with them: nothing can ever light it.
+  std::string light(const std::vector<core::DetonationItem>& detonations) {
+    sources = detonations;
+    if (beta != 2 || !sources.empty()) return {};
+    return "HighExpBurn with beta 2 burns only where it is lit: add a Detonation";
+  }
   bool programmed() const { return beta != 1 && !sources.empty(); }
-  /// Nothing can ever light it.
-  bool inert() const { return beta == 2 && sources.empty(); }
   bool is_viscous() const { return mu > 0; }
   bool carries(core::Column column) const { return column != core::Column::lighting_time || programmed(); }
 
@@ -122,12 +126,6 @@ struct HighExpBurn {
       fraction = max(fraction, run / max(run, width));
     }
     point.burn_fraction = min(fraction, 1.0);
-  }
-
-  /// dF2/dmu
-  template <class T>
-  T burn_slope(const T& relative_volume) const {
-    return compression_burn * (relative_volume * relative_volume);
   }
 };
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "physics/eos/traits.hpp"
 #include "physics/strength/brittle.hpp"
 
 namespace mpm::physics {
@@ -69,9 +70,8 @@ struct HolmquistJohnsonCook : BrittlePlasticity {
   void prepare() { derive_moduli(); }
 
   /// What the other half of the material says: whether it crushes.
-  template <class Eos>
-  std::string couple(const Eos&) {
-    crushes = std::ranges::find(Eos::state, core::Column::plastic_volumetric_strain) != Eos::state.end();
+  std::string couple(const EosTraits& eos) {
+    crushes = eos.columns.has(core::Column::plastic_volumetric_strain);
     return {};
   }
   bool carries(core::Column column) const {

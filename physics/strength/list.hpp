@@ -1,8 +1,7 @@
 // The strength models. To add one: a file beside these, and its name here.
 #pragma once
 
-#include <variant>
-
+#include "physics/laws.hpp"
 #include "physics/strength/cauchy_elastic.hpp"
 #include "physics/strength/deshpande_fleck.hpp"
 #include "physics/strength/drucker_prager.hpp"
@@ -23,9 +22,8 @@
 
 namespace mpm::physics {
 
-using StrengthModel =
-    std::variant<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook, JohnsonCook, Null,
-                 HighExpBurn, HolmquistJohnsonCook, RHT, JH2, DruckerPrager, DFFoam, Gurson, MooneyRivlin,
-                 Elastic1D, LinHarElaPlastic1D, Rigid>;
+using StrengthModels = LawList<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook, JohnsonCook,
+                               Null, HighExpBurn, HolmquistJohnsonCook, RHT, JH2, DruckerPrager, DFFoam,
+                               Gurson, MooneyRivlin, Elastic1D, LinHarElaPlastic1D, Rigid>;
 
 }  // namespace mpm::physics

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "physics/eos/traits.hpp"
 #include "physics/strength/brittle.hpp"
 
 namespace mpm::physics {
@@ -41,6 +42,7 @@ struct RHT : BrittlePlasticity {
   static constexpr std::string_view name = "RHT";
   static constexpr std::string_view summary = "Riedel-Hiermaier-Thoma concrete";
   static constexpr std::array state{core::Column::effective_plastic_strain, core::Column::damage};
+  static constexpr bool follows_strain_rate = true;
 
   double fc = 0;          ///< stress
   double ft = 0, fs = 0;  ///< over fc
@@ -109,11 +111,10 @@ struct RHT : BrittlePlasticity {
                    : "fs_fc must be greater than ft_fc: the failure surface would have no tip in tension";
   }
   void prepare() { derive_moduli(); }
-  template <class Eos>
-  std::string couple(const Eos& eos) {
+  std::string couple(const EosTraits& eos) {
     if (cap_flag == 0) return {};
-    if constexpr (requires { eos.p_crush; }) {
-      cap_end = eos.p_crush / fc;
+    if (eos.crush_pressure) {
+      cap_end = *eos.crush_pressure / fc;
       if (cap_end > 1.0 / 3) return {};
     }
     return "CapFlag 1 needs an EquationOfState with a crush pressure above fc/3 (PAlpha); set CapFlag to 0 "

@@ -1,6 +1,8 @@
 // Drucker-Prager plasticity (thesis 6.2): strength in triaxial compression and extension and in plane strain
 // against Mohr-Coulomb, the return to cone, cut-off and edge, dilation, and what the input may not say.
 
+#include "physics/strength/drucker_prager.hpp"
+
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -34,7 +36,7 @@ core::MaterialInput soil(const core::ParameterValues& more) {
 }
 
 const DruckerPrager& law(const physics::Material& material) {
-  return std::get<DruckerPrager>(material.laws().strength);
+  return *physics::law_cast<DruckerPrager>(*material.laws().strength);
 }
 
 double tau(const PointDriver& point) { return std::sqrt(0.5 * contract(point.deviator(), point.deviator())); }

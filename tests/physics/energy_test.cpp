@@ -1,12 +1,11 @@
-// Energy and pressure solved together (thesis 2-82 to 2-92): isentropes with their order of convergence, the
-// balance of energy against the work of the stresses, and the sound speed (2-57).
+// Energy and pressure solved together (thesis 2-82 to 2-92): isentropes with their order of convergence and
+// the sound speed (2-57). The balance of energy against the work of the stresses stands in laws_test.cpp.
 
 #include <cmath>
 
 #include <catch2/catch.hpp>
 
 #include "physics/point/point_driver.hpp"
-#include "tests/physics/random_path.hpp"
 #include "tests/physics/samples.hpp"
 
 namespace mpm::tests {
@@ -72,43 +71,6 @@ TEST_CASE("the isentrope of Grueneisen copper converges with second order", "[ph
   const double coarse = error(50), fine = error(200);
   CHECK(fine < 1e-5);
   CHECK(std::log2(coarse / fine) / 2 == Approx(2).margin(0.05));
-}
-
-TEST_CASE("internal energy is the work of all stresses, viscous ones included once", "[physics][energy]") {
-  for (const Sample& s : samples()) {
-    if (!s.solid) continue;
-    if (!s.input.failures.empty()) continue;  // a failing particle keeps its energy and loses its stress
-    INFO(s.label);
-    const auto material = make(s.input);
-    const double duration = 2e-5;
-    const RandomPath path(11, s.strain, duration);
-    const auto balance = [&](int steps) {
-      PointDriver point(*material, {.cell_size = 1e-3});
-      const double start = point.energy(), dt = duration / steps;
-      const double v0 = point.value(Column::mass) / s.input.reference_density;
-      double work = 0;
-      for (int i = 0; i < steps; ++i) {
-        const core::Mat3<double> l = path.gradient((i + 0.5) * dt);
-        const core::Sym3<double> strain{dt * l.xx,
-                                        dt * l.yy,
-                                        dt * l.zz,
-                                        0.5 * dt * (l.xy + l.yx),
-                                        0.5 * dt * (l.yz + l.zy),
-                                        0.5 * dt * (l.xz + l.zx)};
-        const core::Sym3<double> before = point.stress();
-        const double v = point.value(Column::volume);
-        point.step(l, dt);
-        work +=
-            0.5 * (v + point.value(Column::volume)) / v0 * 0.5 * contract(before + point.stress(), strain);
-      }
-      return std::abs(point.energy() - start - work) / std::max(std::abs(work), 1e-3 * start);
-    };
-    const double coarse = balance(1000), fine = balance(4000);
-    INFO("error " << coarse << " -> " << fine);
-    // The trapezoid here does not know the turn of the stress within the step: second order all the same.
-    CHECK(fine < 1e-3);
-    CHECK((std::log2(coarse / fine) / 2 > 0.9 || fine < 1e-9));
-  }
 }
 
 TEST_CASE("E0 is the energy at the start, whatever the density", "[physics][energy]") {

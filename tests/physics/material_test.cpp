@@ -1,11 +1,8 @@
-// The material as a whole: neighbours in a batch, padding lanes, what contradicts itself in the input, and
+// The material as a whole: padding lanes, what contradicts itself in the input, and
 // the catalogue that the input reader works from.
 
 #include "physics/material/material.hpp"
 
-#include <bit>
-#include <cstdint>
-#include <random>
 #include <set>
 #include <string>
 
@@ -22,10 +19,7 @@ using core::Column;
 
 namespace {
 
-constexpr int particles = core::batch_particles;
-
-/// A batch of particles, each with its own state and strain, at chosen places: `place[i]` is where particle i
-/// is.
+/// A batch of particles.
 struct Crowd {
   Crowd(const physics::Material& material, int blocks) {
     core::ColumnSet set = core::ColumnSet::mechanics();
@@ -46,11 +40,6 @@ struct Crowd {
   Batch batch{};
 };
 
-double gradient_of(int particle, int component, int step) {
-  std::mt19937 random(static_cast<unsigned>(1000 * particle + 10 * component + step));
-  return std::uniform_real_distribution<double>(-3e4, 3e4)(random);
-}
-
 std::string complaint(const core::MaterialInput& input) {
   try {
     make(input);
@@ -59,41 +48,6 @@ std::string complaint(const core::MaterialInput& input) {
 }
 
 }  // namespace
-
-TEST_CASE("a particle's result does not depend on its place or its neighbours", "[physics][material]") {
-  for (const Sample& s : samples()) {
-    INFO(s.label);
-    const auto material = make(s.input);
-    Crowd crowd(*material, core::batch_blocks);
-    std::vector<Crowd> alone;
-    for (int i = 0; i < particles; i += 7) alone.emplace_back(*material, 1);
-    for (Crowd& one : alone) one.batch.layout = &one.layout, one.batch.block[0] = one.memory.data();
-    for (int step = 0; step < 10; ++step) {
-      for (int c = 0; c < 9; ++c) {
-        for (int i = 0; i < particles; ++i) crowd.batch.gradient[c][i] = gradient_of(i, c, step);
-      }
-      material->update(crowd.batch, {});
-      for (std::size_t k = 0; k < alone.size(); ++k) {
-        // The lone particle sits in another lane; the others hold still.
-        for (int c = 0; c < 9; ++c) {
-          for (int lane = 0; lane < 8; ++lane) alone[k].batch.gradient[c][lane] = 0;
-          alone[k].batch.gradient[c][3] = gradient_of(static_cast<int>(7 * k), c, step);
-        }
-        material->update(alone[k].batch, {});
-      }
-    }
-    int different = 0;
-    for (std::size_t k = 0; k < alone.size(); ++k) {
-      for (int i = 0; i < core::column_count; ++i) {
-        const auto c = static_cast<Column>(i);
-        if (!crowd.layout.has(c)) continue;
-        different += std::bit_cast<std::uint64_t>(crowd.at(c, static_cast<int>(7 * k))) !=
-                     std::bit_cast<std::uint64_t>(alone[k].at(c, 3));
-      }
-    }
-    CHECK(different == 0);
-  }
-}
 
 TEST_CASE("lanes beyond the last particle are not counted", "[physics][material]") {
   const auto material = make(copper("IsoHarden", true));

@@ -1,4 +1,5 @@
-// A law from outside this tree, with state of its own: what a researcher writes, run through the same stages.
+// Laws from outside the lists, with state of their own, run through the same stages. How a program comes to
+// know such a law stands in registry_test.cpp.
 
 #include <cmath>
 
@@ -70,7 +71,7 @@ struct OneBlock {
 
 TEST_CASE("a strength law with state of its own", "[physics][own-law]") {
   core::LawInput input{"Wearing", {{"Young", 1e9}, {"Poisson", 0.25}, {"wear", 100.0}}, {}};
-  const auto law = std::get<Wearing>(physics::make_law<std::variant<Wearing>>(input, "StrengthModel", 1000));
+  const auto law = physics::read_law<Wearing>(input, "StrengthModel", 1000);
   OneBlock one(physics::columns_of(law));
   std::fill_n(one.batch.gradient[1], 8, 1e3);  // d v_x / d y, and no spin: symmetric
   std::fill_n(one.batch.gradient[3], 8, 1e3);

@@ -10,6 +10,7 @@
 
 #include "physics/eos/list.hpp"
 #include "physics/point/point_driver.hpp"
+#include "physics/strength/rht.hpp"
 #include "tests/physics/brittle_path.hpp"
 #include "tests/physics/samples.hpp"
 
@@ -249,7 +250,7 @@ TEST_CASE("RHT with a cap needs the crush pressure of its equation of state", "[
   CHECK_THROWS_WITH(make(concrete({{"CapFlag", 1.0}})), Catch::Contains("set CapFlag to 0"));
   core::MaterialInput input = sample("RHT + PAlpha").input;
   const auto material = make(input);
-  CHECK(std::get<RHT>(material->laws().strength).cap_end == Approx(23.3 / 35).epsilon(1e-14));
+  CHECK(physics::law_cast<RHT>(*material->laws().strength)->cap_end == Approx(23.3 / 35).epsilon(1e-14));
   input.eos->values["Pcrush"] = 11e6;
   CHECK_THROWS_WITH(make(input), Catch::Contains("above fc/3"));
   CHECK_THROWS_WITH(make(concrete({{"fs_fc", 0.1}})), Catch::Contains("fs_fc must be greater than ft_fc"));

@@ -301,58 +301,14 @@ MaterialInput copper(const std::string& strength, bool with_gruneisen) {
   throw std::logic_error("no strength law is called " + strength);
 }
 
-double Units::factor(std::string_view dimension, double exponent) const {
-  const std::map<std::string_view, double> factors{
-      {"1", 1},
-      {"stress", stress()},
-      {"density", density()},
-      {"velocity", velocity()},
-      {"time", time},
-      {"1/time", 1 / time},
-      {"temperature", 1},
-      {"degree", 1},
-      {"1/temperature", 1},
-      {"stress time", stress() * time},
-      {"stress time^nn", stress() * std::pow(time, exponent)},
-      {"energy/(mass temperature)", velocity() * velocity()},
-      {"power/(length temperature)", mass * length / (time * time * time)},
-  };
-  const auto found = factors.find(dimension);
-  if (found == factors.end())
-    throw std::logic_error("unknown dimension '" + std::string(dimension) + "' in a table of parameters");
-  return found->second;
+core::MaterialInput convert(const core::MaterialInput& input, const Units& units) {
+  return physics::in_units(input, physics::catalogue(), units.length, units.mass, units.time);
 }
 
-core::MaterialInput convert(const core::MaterialInput& input, const Units& units) {
-  const core::Catalogue catalogue = physics::catalogue();
-  const double exponent = input.strength.value_or("nn", 1);
-  const auto convert_law = [&](LawInput& law, const std::vector<core::TypeInfo>& types,
-                               const std::vector<core::ParameterInfo>& common) {
-    for (auto& [name, value] : law.values) {
-      std::string_view dimension = "unknown";
-      for (const core::ParameterInfo& info : common) {
-        if (info.name == name) dimension = info.dimension;
-      }
-      for (const core::TypeInfo& type : types) {
-        if (type.name != law.type) continue;
-        for (const core::ParameterInfo& info : type.parameters) {
-          if (info.name == name) dimension = info.dimension;
-        }
-      }
-      value *= units.factor(dimension, exponent);
-    }
-  };
-  core::MaterialInput converted = input;
-  converted.reference_density *= units.density();
-  convert_law(converted.strength, catalogue.strength, catalogue.common_strength);
-  if (converted.eos) convert_law(*converted.eos, catalogue.eos, catalogue.common_eos);
-  for (core::FailureInput& failure : converted.failures) convert_law(failure, catalogue.failure, {});
-  return converted;
-}
+physics::LawSample of(const Sample& sample) { return {sample.input, lit, sample.strain}; }
 
 std::unique_ptr<physics::Material> make(const core::MaterialInput& input) {
-  auto model = physics::make_material(input, lit);
-  return std::unique_ptr<physics::Material>(dynamic_cast<physics::Material*>(model.release()));
+  return physics::make_material(input, lit);
 }
 
 }  // namespace mpm::tests

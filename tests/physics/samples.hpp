@@ -10,6 +10,7 @@
 
 #include "core/scene/catalogue.hpp"
 #include "core/scene/material.hpp"
+#include "physics/checks/law_checks.hpp"
 #include "physics/material/material.hpp"
 
 namespace mpm::tests {
@@ -32,12 +33,11 @@ const Sample& sample(const std::string& label);
 /// Factors from one system of units to another: value in the new unit = factor * value in the old.
 struct Units {
   double length = 1, mass = 1, time = 1;
-  double factor(std::string_view dimension, double power_law_exponent) const;
-  double stress() const { return mass / (length * time * time); }
-  double density() const { return mass / (length * length * length); }
-  double velocity() const { return length / time; }
 };
 inline constexpr Units mm_g_ms{1e3, 1e3, 1e3};  // from m, kg, s
+
+/// For the checks that hold for every law; lit long ago.
+physics::LawSample of(const Sample& sample);
 
 core::MaterialInput convert(const core::MaterialInput& input, const Units& units);
 

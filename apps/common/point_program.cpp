@@ -1,0 +1,218 @@
+// mpm_point: one particle of a material, of an input file or of the library, driven along a path of strains
+// and stresses as in a laboratory; prints the response as a table (CSV) and draws it (SVG). For calibration,
+// and to see what a law does. Exit code 0 done, 2 wrong input, 3 where the material gave no defined answer, 5
+// file error.
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/common/faults.hpp"
+#include "apps/common/options.hpp"
+#include "apps/common/point_path.hpp"
+#include "apps/common/point_table.hpp"
+#include "apps/mpm.hpp"
+#include "core/scene/errors.hpp"
+#include "io/input/material_reader.hpp"
+#include "physics/checks/law_checks.hpp"
+#include "physics/material/material.hpp"
+
+namespace mpm {
+
+namespace {
+
+struct Settings {
+  std::string input, material, library, units, path, output, plot, data;
+  std::vector<std::string> set;
+  apps::PathDefaults defaults;
+  bool isothermal = false;
+  bool test = false;
+  double strain = 0.02, duration = 0;
+  double density = 0;
+  double cell_size = 0;
+  int every = 1;
+};
+
+io::MaterialChoice choose(Settings& settings, const Registry& registry) {
+  if (settings.input.empty() == settings.library.empty())
+    throw CLI::ValidationError("mpm_point", "name an input file or --library NAME; see --help");
+  if (settings.isothermal) settings.set.emplace_back("PlasticWorkCoefficient=0");
+  if (settings.library.empty())
+    return io::read_material(settings.input, registry.catalogue(), {settings.material, settings.set});
+  if (settings.units.empty())
+    throw CLI::ValidationError("--units",
+                               "library values are converted to units of yours, as in --units \"mm g ms\"");
+  return io::library_material(settings.library, settings.units, registry.catalogue(), settings.set);
+}
+
+bool write(const std::string& file, const std::string& text) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "w"), &std::fclose);
+  return stream && std::fwrite(text.data(), 1, text.size(), stream.get()) == text.size() &&
+         std::fflush(stream.get()) == 0;
+}
+
+/// Says on standard error what the table does not show; the exit code.
+int report(const physics::PathEnd& end, const std::vector<physics::Leg>& legs,
+           const physics::PointDriver& point, const std::string& stress_unit) {
+  int code = 0;
+  if (!end.reached) {
+    fmt::print(stderr,
+               "mpm_point: leg {} ({}): at time {} a stress of {:.6g} {} cannot be reached, the nearest is "
+               "{:.6g}; the table ends there\n",
+               end.leg + 1, legs[static_cast<std::size_t>(end.leg)].kind, point.time(), end.wanted,
+               stress_unit, end.found);
+    code = 3;
+  }
+  const core::MaterialEvents& events = point.events();
+  if (events.not_finite > 0) {
+    fmt::print(stderr, "mpm_point: the state is no number in {} steps\n", events.not_finite);
+    code = 3;
+  }
+  if (events.failed > 0) fmt::print(stderr, "mpm_point: the material failed on the way (column failed)\n");
+  return code;
+}
+
+/// A time or length in SI, in the units of the input; where it names none, the number itself.
+double in_units_of(const io::MaterialChoice& choice, double si, const core::Dimension& dimension) {
+  return choice.units ? si / choice.units->in_si(dimension) : si;
+}
+
+/// Puts the material through the tests that hold for every law.
+int test(Settings& settings, const Registry& registry) {
+  const io::MaterialChoice choice = choose(settings, registry);
+  physics::LawSample sample{choice.material, choice.detonations};
+  sample.strain = settings.strain;
+  sample.duration = settings.duration > 0 ? settings.duration : in_units_of(choice, 2e-5, {.time = 1});
+  sample.cell_size = settings.cell_size > 0 ? settings.cell_size : in_units_of(choice, 1e-3, {.length = 1});
+  int failed = 0;
+  for (const physics::LawCheck& check : physics::law_checks()) {
+    const std::vector<std::string> complaints = check.complaints(sample, registry);
+    fmt::print("{:<7}{:<13}{}\n", complaints.empty() ? "passed" : "FAILED", check.name, check.statement);
+    for (const std::string& complaint : complaints) fmt::print("       {:<13}{}\n", "", complaint);
+    failed += complaints.empty() ? 0 : 1;
+  }
+  if (std::fflush(stdout) != 0) return 5;
+  if (failed > 0)
+    fmt::print(stderr, "mpm_point: \"{}\" fails {} of {} tests\n", choice.material.name, failed,
+               physics::law_checks().size());
+  return failed > 0 ? 3 : 0;
+}
+
+int drive(Settings& settings, const Registry& registry) {
+  const std::vector<physics::Leg> legs = apps::parse_path(settings.path, settings.defaults);
+  const std::vector<apps::Measurement> measured =
+      settings.data.empty() ? std::vector<apps::Measurement>{} : apps::read_measurements(settings.data);
+  const io::MaterialChoice choice = choose(settings, registry);
+  const auto material = physics::make_material(choice.material, choice.detonations, registry);
+  physics::PointDriver point(*material, {.density = settings.density,
+                                         .cell_size = settings.cell_size,
+                                         .update = {.volume_update = choice.volume_update},
+                                         .extra_columns = {core::Column::yield_stress}});
+  const apps::PointTable table(point, choice.units);
+  std::string text = table.heading();
+  std::vector<apps::PointSample> samples;
+  std::string last;
+  const physics::PathEnd end = physics::walk(point, legs, [&](const physics::PathPoint& at) {
+    const bool shown = samples.size() % static_cast<std::size_t>(settings.every) == 0;
+    samples.push_back(apps::sample(point, at));
+    if (shown) text += table.row(at);
+    last = shown ? std::string() : table.row(at);
+  });
+  text += last;  // the end of the path is always there
+
+  if (settings.output.empty()) {
+    fmt::print("{}", text);
+    if (std::fflush(stdout) != 0) return 5;
+  } else if (!write(settings.output, text)) {
+    fmt::print(stderr, "mpm_point: cannot write {}\n", settings.output);
+    return 5;
+  }
+  const std::string unit = table.unit("stress");
+  const std::string title = fmt::format("{}: {}", choice.material.name, settings.path);
+  if (!settings.plot.empty() && !write(settings.plot, apps::plot(title, samples, measured, unit))) {
+    fmt::print(stderr, "mpm_point: cannot write {}\n", settings.plot);
+    return 5;
+  }
+  if (!measured.empty()) {
+    const apps::Misfit fit = apps::misfit(apps::stress_strain(samples), measured);
+    fmt::print(stderr, "mpm_point: {} of {} measured points compared; rms difference {:.4g} {} ({:.3g} %)\n",
+               fit.points, measured.size(), fit.rms, unit,
+               fit.largest > 0 ? 100 * fit.rms / fit.largest : 0.0);
+  }
+  return report(end, legs, point, unit);
+}
+
+}  // namespace
+
+int run_point(int argc, char** argv, const Registry& registry) {
+  if (apps::say_faults(registry, true)) return 2;
+  Settings settings;
+  CLI::App app(
+      "Drives one particle of a material along a path of strains and stresses: what a law does, without a "
+      "grid.\n\n"
+      "  mpm_point --library OFHC-Cu-JC --units \"mm g ms\" --path \"uniaxial_stress 0.2 rate 1000\" --plot "
+      "cu.svg\n"
+      "  mpm_point case.xmp --material cu --path \"uniaxial_strain -0.1 rate 10\" -o cu.csv");
+  app.add_option("INPUT", settings.input,
+                 "input file with the material, with or without .xmp; materials alone will do");
+  app.add_option("-m,--material", settings.material, "its name; not needed where the file has only one");
+  app.add_option("-l,--library", settings.library,
+                 "material of the library; mpm_check --materials lists them");
+  app.add_option("-u,--units", settings.units, "units of path and table with --library, as in \"mm g ms\"");
+  app.add_option("-s,--set", settings.set, "NAME=VALUE: sets one parameter anew; may be repeated")
+      ->allow_extra_args(false);
+  app.add_flag("--isothermal", settings.isothermal,
+               "plastic work does not heat: --set PlasticWorkCoefficient=0");
+  app.add_option("-p,--path", settings.path, "the path, see below");
+  app.add_flag("--test", settings.test,
+               "in the place of a path: puts the material through the tests that hold for every law; exit "
+               "code 3 where it fails one");
+  app.add_option("--strain", settings.strain, "with --test: strain that the paths reach, beyond yield")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option(
+         "--duration", settings.duration,
+         "with --test: time that a path takes; 2e-5 s, or 2e-5 where the input does not name its units")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--repeat", settings.defaults.repeat, "the whole path so many times")
+      ->check(CLI::PositiveNumber);
+  app.add_option("-r,--rate", settings.defaults.rate, "strain rate of legs that name none")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("-n,--steps", settings.defaults.steps, "steps of legs that name none")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--density", settings.density, "density at the start, if not the reference density")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--cell-size", settings.cell_size, "cell size, for the artificial viscosity; none without")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--every", settings.every, "print every so many steps")->check(CLI::PositiveNumber);
+  app.add_option("-o,--output", settings.output, "file for the table; standard output without");
+  app.add_option("--plot", settings.plot,
+                 "file for a picture (SVG): stress over strain, q over p, p over volume");
+  app.add_option("--data", settings.data,
+                 "measured strain and stress, two columns: drawn, and the difference is printed");
+  app.footer(apps::path_help());
+  try {
+    app.parse(argc, argv);
+    if (settings.test == !settings.path.empty())
+      throw CLI::ValidationError("mpm_point", "give --path, or --test; see --help");
+    return settings.test ? test(settings, registry) : drive(settings, registry);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const core::InputErrors& errors) {
+    fmt::print(stderr, "{}\n", errors.what());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "mpm_point: out of memory\n");
+    return apps::out_of_resources;
+  } catch (const std::exception& error) { fmt::print(stderr, "mpm_point: {}\n", error.what()); }
+  return 2;
+}
+
+}  // namespace mpm

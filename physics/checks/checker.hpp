@@ -1,0 +1,91 @@
+// What the checks of the laws share: the sample's material and its paths, and the complaints.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "physics/checks/law_checks.hpp"
+#include "physics/checks/random_path.hpp"
+#include "physics/material/material.hpp"
+#include "physics/point/point_driver.hpp"
+
+namespace mpm::physics::checks {
+
+inline double norm(const core::Sym3<double>& a) { return std::sqrt(contract(a, a)); }
+
+class Checker {
+ public:
+  Checker(const LawSample& of, const Registry& laws)
+      : sample(of), registry(laws), material(make()), traits(material->laws().strength->traits()) {}
+
+  const LawSample& sample;
+  const Registry& registry;
+  std::unique_ptr<Material> material;
+  StrengthTraits traits;
+  std::vector<std::string> complaints;
+
+  std::unique_ptr<Material> make() const { return make_material(sample.input, sample.detonations, registry); }
+  RandomPath path(unsigned seed) const { return {seed, sample.strain, sample.duration}; }
+  PointDriver::Options with_viscosity() const { return {.cell_size = sample.cell_size}; }
+  /// rho0 c0^2, the scale of what round-off leaves.
+  double stiffness() const {
+    return sample.input.reference_density * std::pow(material->initial_sound_speed(), 2);
+  }
+  /// False for bars, whose axis is x, and rigid bodies: not for statements on tensors.
+  bool solid() const { return !traits.rigid && !traits.uniaxial; }
+
+  /// Complains unless `found` is at most `allowed`; what is no number never is.
+  void at_most(double found, double allowed, const std::string& what) {
+    if (found <= allowed) return;
+    std::ostringstream text;
+    text.precision(6);
+    text << what << ": " << found << ", allowed is " << allowed;
+    complaints.push_back(text.str());
+  }
+  void require(bool holds, const std::string& what) {
+    if (!holds) complaints.push_back(what);
+  }
+  /// |a - b| within `relative` of the larger, and `margin`.
+  void near(double a, double b, double relative, double margin, const std::string& what) {
+    at_most(std::abs(a - b), relative * std::max(std::abs(a), std::abs(b)) + margin, what);
+  }
+};
+
+/// Along the path; `visit()` after every step. The largest stress, as the scale of what is negligible.
+template <class Visit>
+double walk(PointDriver& point, const RandomPath& path, int steps, Visit visit) {
+  double largest = 0;
+  const double dt = path.duration() / steps;
+  for (int i = 0; i < steps; ++i) {
+    point.step(path.gradient((i + 0.5) * dt), dt);
+    largest = std::max(largest, norm(point.stress()));
+    visit();
+  }
+  return largest;
+}
+inline double walk(PointDriver& point, const RandomPath& path, int steps) {
+  return walk(point, path, steps, [] {});
+}
+
+using Complaints = std::vector<std::string>;
+// checks/state.cpp
+Complaints instances_agree(const LawSample& sample, const Registry& registry);
+Complaints rest_stays(const LawSample& sample, const Registry& registry);
+Complaints restarts(const LawSample& sample, const Registry& registry);
+Complaints units_agree(const LawSample& sample, const Registry& registry);
+Complaints neighbours_do_not_matter(const LawSample& sample, const Registry& registry);
+Complaints columns_suffice(const LawSample& sample, const Registry& registry);
+Complaints columns_are_used(const LawSample& sample, const Registry& registry);
+// checks/mechanics.cpp
+Complaints ends_on_yield_surface(const LawSample& sample, const Registry& registry);
+Complaints dissipates(const LawSample& sample, const Registry& registry);
+Complaints converges(const LawSample& sample, const Registry& registry);
+Complaints objective(const LawSample& sample, const Registry& registry);
+Complaints energy_balances(const LawSample& sample, const Registry& registry);
+Complaints wave_speed_bounds_tangent(const LawSample& sample, const Registry& registry);
+
+}  // namespace mpm::physics::checks

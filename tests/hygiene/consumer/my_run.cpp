@@ -1,0 +1,4 @@
+#include "laws.hpp"
+
+#include "apps/mpm.hpp"
+int main(int argc, char** argv) { return mpm::run(argc, argv, mine::laws()); }
