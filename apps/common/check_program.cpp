@@ -53,8 +53,7 @@ std::string summary(const core::Scene& scene) {
 /// What no description of the language says: materials, and all that a run sets up. Throws every complaint.
 double make_everything(const core::Scene& scene, const Registry& registry) {
   return core::check_setup(std::make_shared<const core::Scene>(scene),
-                           physics::make_materials(scene, registry),
-                           io::columns_for(scene.output));
+                           physics::make_materials(scene, registry), io::columns_for(scene.output));
 }
 
 class Checker {
