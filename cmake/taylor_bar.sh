@@ -1,11 +1,11 @@
 #!/bin/sh
-# taylor_bar.sh [RANKS]: installs what is missing, builds the programs, runs the copper Taylor bar (on 2 ranks) in out/taylor_bar
+# taylor_bar.sh [RANKS]: installs what is missing, builds the programs that a user needs first, runs the copper Taylor bar (on 2 ranks) in out/taylor_bar
 # and reports it against the experiment.
 set -eu
 cd "$(dirname "$0")/.."
 ranks=${1:-2}
 
-sh cmake/build.sh release programs
+sh cmake/build.sh release mpm_run mpm_check mpm_point
 
 # Root in a container and more ranks than cores are normal here. Single-copy messages need ptrace rights, which
 # containers withhold.
