@@ -1,6 +1,6 @@
 #!/bin/sh
-# taylor_bar.sh [RANKS]: installs what is missing, builds the programs that a user needs first, runs the copper Taylor bar (on 2 ranks) in out/taylor_bar
-# and reports it against the experiment.
+# taylor_bar.sh [RANKS]: installs what is missing, builds the programs that a user needs first, runs the copper Taylor
+# bar (on 2 ranks) in out/taylor_bar and reports it against the experiment.
 set -eu
 cd "$(dirname "$0")/.."
 ranks=${1:-2}
