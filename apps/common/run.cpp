@@ -147,6 +147,19 @@ void say_thermal_pressures(const core::Model& model, core::Exchange& exchange, i
   }
 }
 
+/// Bodies that the restart file does not have would enter without particles. Throws InputErrors.
+void refuse_new_bodies(const core::Scene& scene, const std::vector<std::size_t>& numbers) {
+  const std::vector<const core::BodyInput*> inputs = core::active_bodies(scene);
+  std::vector<core::Diagnostic> wrong;
+  for (const std::size_t b : numbers) {
+    const core::BodyInput& body = *inputs[b];
+    wrong.push_back({body.source.file, body.source.line, "Body", "name", body.name,
+                     "takes no part in the restart file, and a restart cannot bring bodies in: give it "
+                     "Deactive=\"1\", or start anew"});
+  }
+  if (!wrong.empty()) throw core::InputErrors(wrong);
+}
+
 /// One run in its stages; the members are in the order in which they come to life.
 class Run {
  public:
@@ -161,6 +174,7 @@ class Run {
     std::vector<std::string> notices;
     if (case_.restart) {
       const io::RestartResult state = io::read_restart(*case_.restart, model_, exchange_);
+      refuse_new_bodies(*case_.scene, state.new_bodies);
       notices = state.notices;
       last_restart_ = *case_.restart;
       if (continues_files()) continuation_ = Continuation{state.extra.tracked, state.extra.marks};

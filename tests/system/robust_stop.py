@@ -272,6 +272,19 @@ class Restart(Case):
             self.assertEqual([body["name"] for body in found["bodies"]], ["left"])
             self.assertLess(abs(found["energy"]["relative_drift"]), 0.05, outcome)
 
+    def test_a_body_that_would_come_in(self):
+        """-rt that activates a body: refused, as long as it would enter without particles."""
+        left, right = _mpm.BOUNCING
+        apart = [left, right.replace('type="Block"', 'type="Block" Deactive="1"')]
+        self.write(bounce(end=END / 8, bodies=apart, output=f'<Restart time_interval="{END / 32}"/>'), "apart.xmp")
+        self.run_in("apart", [self.folder / "apart.xmp"])
+        whole = self.write(bounce(end=END / 8), "whole.xmp")
+        for ranks in (1, 2):
+            outcome = self.run_in("in", [_mpm.restarts(self.folder / "apart", "apart")[0], "-rt", whole], code=INPUT_ERROR,
+                                  ranks=ranks)
+            self.assertEqual(outcome.complaint.count('<Body name="right">: takes no part in the restart file'), 1)
+        self.assertFalse((self.folder / "in").exists())
+
 
 if __name__ == "__main__":
     _mpm.main()
