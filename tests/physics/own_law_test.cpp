@@ -19,7 +19,6 @@ namespace {
 
 /// Elastic with a shear stiffness that wears off with the length of the strain path.
 struct Wearing : physics::IsotropicElasticity {
-  static constexpr std::string_view name = "Wearing";
   static constexpr std::array state{Column::history_0};
   double wear = 0;
   static constexpr auto parameters() {
