@@ -130,9 +130,9 @@ class Stop(Case):
                 self.continue_and_compare(self.check_stopped(outcome, "asked to stop: .*--max-wall-time"))
 
     def test_wall_time_of_a_run_without_end(self):
-        self.write(bounce(end=ENDLESS))
         for ranks in (1, 2):
             with self.subTest(ranks=ranks):
+                self.write(bounce(end=ENDLESS))
                 shutil.rmtree(self.out, ignore_errors=True)
                 outcome = _mpm.run([*self.line, "--max-wall-time", "0.5"], ranks=ranks)
                 self.check_stopped(outcome, "asked to stop: .*--max-wall-time", end=ENDLESS)
