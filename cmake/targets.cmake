@@ -61,6 +61,13 @@ function(mpm_compile target)
   endif()
 endfunction()
 
+# mpm_optimise_little(source...): for sources that run once or that check: short compilation before speed.
+function(mpm_optimise_little)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O1>")
+  endif()
+endfunction()
+
 # mpm_precompile(target owner header...): the headers that many sources include, and those given, are compiled once, for
 # `owner`, and so for each target of the same kind that names it.
 function(mpm_precompile target owner)

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "apps/common/case.hpp"
+#include "apps/common/command_line.hpp"
 #include "apps/common/faults.hpp"
 #include "apps/common/options.hpp"
 #include "apps/mpm.hpp"
@@ -114,19 +114,16 @@ std::string specification_beside(const char* program) {
 int run_check(int argc, char** argv, const Registry& registry) {
   if (apps::say_faults(registry, true)) return 2;
   Settings settings;
-  CLI::App app("Checks input files of mpm_run.");
-  app.add_option("FILE", settings.files, "input files, with or without .xmp");
-  app.add_option(
-      "--specification", settings.specification,
-      "check the files against this Specification.xml too (the manual's notation, 5.1); default: the "
-      "one beside the program, if there is one");
-  app.add_flag("--reference", settings.reference, "print the keyword reference in Markdown");
-  app.add_flag("--echo", settings.echo, "print each file as it was understood, with all defaults");
-  app.add_flag("--materials", settings.materials, "list the material library: laws, values, sources");
-  app.add_flag("--accept-later", settings.accept_later, "let pass what is known but not implemented yet");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? 0 : 2; }
+  apps::CommandLine line("Checks input files of mpm_run.");
+  line.option("FILE", settings.files, "input files, with or without .xmp");
+  line.option("--specification", settings.specification,
+              "check the files against this Specification.xml too (the manual's notation, 5.1); default: the "
+              "one beside the program, if there is one");
+  line.flag("--reference", settings.reference, "print the keyword reference in Markdown");
+  line.flag("--echo", settings.echo, "print each file as it was understood, with all defaults");
+  line.flag("--materials", settings.materials, "list the material library: laws, values, sources");
+  line.flag("--accept-later", settings.accept_later, "let pass what is known but not implemented yet");
+  if (const std::optional<int> code = line.parse(argc, argv)) return *code;
   if (settings.specification.empty()) settings.specification = specification_beside(argv[0]);
   if (settings.reference) fmt::print("{}", io::keyword_reference(registry.catalogue()));
   if (settings.materials) fmt::print("{}", io::library_listing(io::library(), registry.catalogue()));

@@ -7,12 +7,14 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/common/command_line.hpp"
 #include "apps/common/faults.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/point_path.hpp"
@@ -41,13 +43,13 @@ struct Settings {
 
 io::MaterialChoice choose(Settings& settings, const Registry& registry) {
   if (settings.input.empty() == settings.library.empty())
-    throw CLI::ValidationError("mpm_point", "name an input file or --library NAME; see --help");
+    throw std::invalid_argument("name an input file or --library NAME; see --help");
   if (settings.isothermal) settings.set.emplace_back("PlasticWorkCoefficient=0");
   if (settings.library.empty())
     return io::read_material(settings.input, registry.catalogue(), {settings.material, settings.set});
   if (settings.units.empty())
-    throw CLI::ValidationError("--units",
-                               "library values are converted to units of yours, as in --units \"mm g ms\"");
+    throw std::invalid_argument(
+        "--units: library values are converted to units of yours, as in --units \"mm g ms\"");
   return io::library_material(settings.library, settings.units, registry.catalogue(), settings.set);
 }
 
@@ -153,59 +155,50 @@ int drive(Settings& settings, const Registry& registry) {
 int run_point(int argc, char** argv, const Registry& registry) {
   if (apps::say_faults(registry, true)) return 2;
   Settings settings;
-  CLI::App app(
+  apps::CommandLine line(
       "Drives one particle of a material along a path of strains and stresses: what a law does, without a "
       "grid.\n\n"
       "  mpm_point --library OFHC-Cu-JC --units \"mm g ms\" --path \"uniaxial_stress 0.2 rate 1000\" --plot "
       "cu.svg\n"
       "  mpm_point case.xmp --material cu --path \"uniaxial_strain -0.1 rate 10\" -o cu.csv");
-  app.add_option("INPUT", settings.input,
-                 "input file with the material, with or without .xmp; materials alone will do");
-  app.add_option("-m,--material", settings.material, "its name; not needed where the file has only one");
-  app.add_option("-l,--library", settings.library,
-                 "material of the library; mpm_check --materials lists them");
-  app.add_option("-u,--units", settings.units, "units of path and table with --library, as in \"mm g ms\"");
-  app.add_option("-s,--set", settings.set, "NAME=VALUE: sets one parameter anew; may be repeated")
-      ->allow_extra_args(false);
-  app.add_flag("--isothermal", settings.isothermal,
-               "plastic work does not heat: --set PlasticWorkCoefficient=0");
-  app.add_option("-p,--path", settings.path, "the path, see below");
-  app.add_flag("--test", settings.test,
-               "in the place of a path: puts the material through the tests that hold for every law; exit "
-               "code 3 where it fails one");
-  app.add_option("--strain", settings.strain, "with --test: strain that the paths reach, beyond yield")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option(
-         "--duration", settings.duration,
-         "with --test: time that a path takes; 2e-5 s, or 2e-5 where the input does not name its units")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--repeat", settings.defaults.repeat, "the whole path so many times")
-      ->check(CLI::PositiveNumber);
-  app.add_option("-r,--rate", settings.defaults.rate, "strain rate of legs that name none")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("-n,--steps", settings.defaults.steps, "steps of legs that name none")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--density", settings.density, "density at the start, if not the reference density")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--cell-size", settings.cell_size, "cell size, for the artificial viscosity; none without")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--every", settings.every, "print every so many steps")->check(CLI::PositiveNumber);
-  app.add_option("-o,--output", settings.output, "file for the table; standard output without");
-  app.add_option("--plot", settings.plot,
-                 "file for a picture (SVG): stress over strain, q over p, p over volume");
-  app.add_option("--data", settings.data,
-                 "measured strain and stress, two columns: drawn, and the difference is printed");
-  app.footer(apps::path_help());
+  line.option("INPUT", settings.input,
+              "input file with the material, with or without .xmp; materials alone will do");
+  line.option("-m,--material", settings.material, "its name; not needed where the file has only one");
+  line.option("-l,--library", settings.library, "material of the library; mpm_check --materials lists them");
+  line.option("-u,--units", settings.units, "units of path and table with --library, as in \"mm g ms\"");
+  line.option("-s,--set", settings.set, "NAME=VALUE: sets one parameter anew; may be repeated");
+  line.flag("--isothermal", settings.isothermal,
+            "plastic work does not heat: --set PlasticWorkCoefficient=0");
+  line.option("-p,--path", settings.path, "the path, see below");
+  line.flag("--test", settings.test,
+            "in the place of a path: puts the material through the tests that hold for every law; exit "
+            "code 3 where it fails one");
+  line.option("--strain", settings.strain, "with --test: strain that the paths reach, beyond yield",
+              apps::Range::positive, true);
+  line.option("--duration", settings.duration,
+              "with --test: time that a path takes; 2e-5 s, or 2e-5 where the input does not name its units",
+              apps::Range::positive);
+  line.option("--repeat", settings.defaults.repeat, "the whole path so many times", apps::Range::positive);
+  line.option("-r,--rate", settings.defaults.rate, "strain rate of legs that name none",
+              apps::Range::positive, true);
+  line.option("-n,--steps", settings.defaults.steps, "steps of legs that name none", apps::Range::positive,
+              true);
+  line.option("--density", settings.density, "density at the start, if not the reference density",
+              apps::Range::positive);
+  line.option("--cell-size", settings.cell_size, "cell size, for the artificial viscosity; none without",
+              apps::Range::positive);
+  line.option("--every", settings.every, "print every so many steps", apps::Range::positive);
+  line.option("-o,--output", settings.output, "file for the table; standard output without");
+  line.option("--plot", settings.plot,
+              "file for a picture (SVG): stress over strain, q over p, p over volume");
+  line.option("--data", settings.data,
+              "measured strain and stress, two columns: drawn, and the difference is printed");
+  line.footer(apps::path_help());
+  if (const std::optional<int> code = line.parse(argc, argv)) return *code;
   try {
-    app.parse(argc, argv);
     if (settings.test == !settings.path.empty())
-      throw CLI::ValidationError("mpm_point", "give --path, or --test; see --help");
+      throw std::invalid_argument("give --path, or --test; see --help");
     return settings.test ? test(settings, registry) : drive(settings, registry);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
   } catch (const core::InputErrors& errors) {
     fmt::print(stderr, "{}\n", errors.what());
   } catch (const std::bad_alloc&) {
