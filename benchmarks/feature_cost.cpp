@@ -25,6 +25,7 @@
 #include "benchmarks/common/clock.hpp"
 #include "benchmarks/common/features.hpp"
 #include "benchmarks/common/table_file.hpp"
+#include "core/particle_range.hpp"
 #include "core/simd/denormals.hpp"
 #include "io/output/particle_order.hpp"
 #include "tests/physics/samples.hpp"
@@ -187,9 +188,8 @@ class Contestant {
   }
   double state_bytes() const {
     double bytes = 0;
-    core::for_each_block(bar_.model, [&](int, const core::ColumnLayout& layout, const double*, int used) {
-      bytes += used * layout.bytes_per_particle();
-    });
+    for (const core::ConstParticleBlock& block : core::blocks_of(bar_.model))
+      bytes += block.used * block.layout->bytes_per_particle();
     return bytes / bar_.particles();
   }
   double held_bytes() const { return bar_.state_bytes() / bar_.particles(); }

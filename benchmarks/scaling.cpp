@@ -18,10 +18,10 @@
 #include "benchmarks/common/bar.hpp"
 #include "benchmarks/common/clock.hpp"
 #include "benchmarks/common/machine.hpp"
-#include "benchmarks/common/timed_exchange.hpp"
+#include "benchmarks/common/timed_communication.hpp"
 #include "io/output/particle_order.hpp"
+#include "parallel/communication.hpp"
 #include "parallel/mpi.hpp"
-#include "parallel/mpi_exchange.hpp"
 
 namespace mpm::benchmarks {
 namespace {
@@ -38,81 +38,81 @@ struct Options {
 int cores() { return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)); }
 
 /// Ranks on this rank's machine. Collective.
-int ranks_here(core::Exchange& exchange) {
+int ranks_here(core::Communication& communication) {
   char name[256] = {};
   gethostname(name, sizeof name - 1);
-  const std::vector<std::string> names = exchange.gather(name);
+  const std::vector<std::string> names = communication.reductions.gather(name);
   return static_cast<int>(std::count(names.begin(), names.end(), std::string(name)));
 }
 
-Json to_json(const core::Exchange::Spread& s) { return {{"min", s.min}, {"mean", s.mean}, {"max", s.max}}; }
+Json to_json(const core::Spread& s) { return {{"min", s.min}, {"mean", s.mean}, {"max", s.max}}; }
 
 /// Seconds per step of one repeat.
 struct Repeat {
-  double step = 0;                 ///< of the slowest rank
-  core::Exchange::Spread compute;  ///< over the ranks
-  std::array<core::Exchange::Spread, TimedExchange::parts> parts;
+  double step = 0;       ///< of the slowest rank
+  core::Spread compute;  ///< over the ranks
+  std::array<core::Spread, TimedCommunication::parts> parts;
 };
 
 /// Steps of one tidy interval. `by_processor`: more threads than cores. Collective.
-Repeat repeat(BarRun& bar, TimedExchange& exchange, int threads, bool by_processor) {
+Repeat repeat(BarRun& bar, TimedCommunication& communication, int threads, bool by_processor) {
   constexpr int steps = core::Stepper::tidy_interval;
-  exchange.any(false);  // all start together
-  exchange.take();
+  communication.reductions.any(false);  // all start together
+  communication.take();
   const double process = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   const Seconds start = Seconds::now();
   for (int i = 0; i < steps; ++i) bar.stepper->step();
   const Seconds passed = Seconds::now() - start;
   const double process_passed = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - process;
-  const TimedExchange::Times times = exchange.take();
+  const TimedCommunication::Times times = communication.take();
   Seconds talk;
   for (const Seconds& t : times) talk += t;
   const double busy = by_processor   ? (process_passed - talk.cpu) / threads
                       : threads == 1 ? passed.cpu - talk.cpu
                                      : passed.wall - talk.wall;
   Repeat r;
-  r.compute = exchange.spread(busy / steps);
-  r.step = by_processor ? r.compute.max : exchange.spread(passed.wall / steps).max;
+  r.compute = communication.reductions.spread(busy / steps);
+  r.step = by_processor ? r.compute.max : communication.reductions.spread(passed.wall / steps).max;
   for (std::size_t p = 0; p < times.size(); ++p) {
-    r.parts[p] = exchange.spread((by_processor ? times[p].cpu : times[p].wall) / steps);
+    r.parts[p] = communication.reductions.spread((by_processor ? times[p].cpu : times[p].wall) / steps);
   }
   return r;
 }
 
 /// Collective.
 Json measure(const Options& o, const parallel::Communicator& world) {
-  parallel::MpiExchange ranks(world);
-  TimedExchange exchange(ranks);
+  parallel::MpiCommunication ranks(world);
+  TimedCommunication communication(ranks);
   omp_set_num_threads(o.threads);
   const bool crowded = ranks_here(ranks) * o.threads > cores();
   BarInput input{.particles = o.particles, .scheme = o.scheme};
   input.more = fmt::format(R"(<DomainDecomposition method="{}"/>)", o.partition);
-  BarRun bar(input.scene(), exchange);
+  BarRun bar(input.scene(), communication);
   for (int i = 0; i < o.warm_up; ++i) bar.stepper->step();
 
   Series steps;
   Repeat best;
   for (int i = 0; i < o.repeats; ++i) {
-    const Repeat r = repeat(bar, exchange, o.threads, crowded);
+    const Repeat r = repeat(bar, communication, o.threads, crowded);
     steps.add(r.step);
     if (steps.index_of_best() + 1 == steps.size()) best = r;
   }
-  const auto particles = ranks.spread(bar.particles());
-  const auto bricks = ranks.spread(bar.model.grid->owned());
+  const auto particles = ranks.reductions.spread(bar.particles());
+  const auto bricks = ranks.reductions.spread(bar.model.grid->owned());
   Json parts;
   for (std::size_t p = 0; p < best.parts.size(); ++p)
-    parts[std::string(TimedExchange::part_names[p])] = to_json(best.parts[p]);
+    parts[std::string(TimedCommunication::part_names[p])] = to_json(best.parts[p]);
   Json facts;
   for (const auto& [name, value] : machine_facts()) facts[name] = value;
-  return {{"ranks", ranks.size()},
+  return {{"ranks", ranks.reductions.size()},
           {"threads", o.threads},
           {"cores", cores()},
           {"oversubscribed", crowded},
           {"clock", crowded ? "processor" : "wall"},
           {"partition", o.partition},
           {"scheme", o.scheme},
-          {"particles", particles.mean * ranks.size()},
-          {"bricks", bricks.mean * ranks.size()},
+          {"particles", particles.mean * ranks.reductions.size()},
+          {"bricks", bricks.mean * ranks.reductions.size()},
           {"particle_imbalance", particles.max / particles.mean},
           {"repeats", o.repeats},
           {"step_s", steps.best()},

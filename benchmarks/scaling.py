@@ -7,7 +7,7 @@ copies  as many programs that know nothing of each other, each with the bar of t
 core_ns is the time of a core per particle-step, time per step x cores / particles. Efficiency, strong or weak,
 is that of the study's first case over that of the case: 1 where twice the cores do twice the work. Efficiency of
 computing counts the busiest rank's own processor time, without what waits for others (ranks only). Shares are of
-the time of a step, means over the ranks; waiting in end_halo and agree holds what imbalance costs. Cases of the
+the time of a step, means over the ranks; waiting in end_halo and reduce holds what imbalance costs. Cases of the
 same bar whose states differ in one bit end the study.
 
 With more ranks and threads than cores the wall's time means nothing. The step is then the processor's time of the
@@ -23,7 +23,7 @@ from math import nan
 
 from common import results
 
-PARTS = "begin_halo", "end_halo", "agree", "bricks", "migrate"
+PARTS = "begin_halo", "end_halo", "reduce", "bricks", "migrate"
 
 
 def doubling(most):

@@ -81,18 +81,4 @@ inline std::vector<BlockPool*> pools_of(const Model& model) {
   return pools;
 }
 
-/// Walk over this rank's particles: f(body index, layout, block, lanes in use), blocks in storage order.
-template <class F>
-void for_each_block(const Model& model, F f) {
-  for (const Brick& brick : model.grid->bricks()) {
-    for (const Cohort& cohort : brick.cohorts) {
-      const BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
-      for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-        const int used = cohort.used_lanes(b);
-        f(cohort.body, pool.layout(), pool.block(cohort.blocks[b]), used);
-      }
-    }
-  }
-}
-
 }  // namespace mpm::core

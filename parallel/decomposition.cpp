@@ -10,7 +10,7 @@
 
 #include <metis.h>
 
-#include "parallel/directory.hpp"
+#include "parallel/brick_table.hpp"
 
 namespace mpm::parallel {
 
@@ -97,7 +97,7 @@ std::optional<Graph> graph_of(std::span<const BrickCount> bricks, const core::No
   // 26 neighbours each must be numbered with idx_t.
   if (bricks.size() > static_cast<std::size_t>(std::numeric_limits<idx_t>::max()) / core::neighbourhood)
     return {};
-  Directory index;
+  BrickTable index;
   for (std::size_t i = 0; i < bricks.size(); ++i) index.assign(bricks[i].brick, static_cast<std::int32_t>(i));
 
   Graph graph;
@@ -107,7 +107,7 @@ std::optional<Graph> graph_of(std::span<const BrickCount> bricks, const core::No
       if (n == core::self_index) continue;
       const BrickCoord offset = core::neighbour_offset(n);
       const std::int32_t other = index.owner(b.brick + offset);
-      if (other == Directory::nobody) continue;
+      if (other == BrickTable::nobody) continue;
       graph.adjacent.push_back(other);
       graph.shared.push_back(shared_nodes(shape, offset));
     }

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "core/communication/brick_directory.hpp"
 #include "core/grid/brick.hpp"
-#include "core/step/exchange.hpp"
 
 namespace mpm::parallel {
 

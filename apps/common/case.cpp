@@ -8,8 +8,8 @@
 #include "io/output/job_lock.hpp"
 #include "io/output/variables.hpp"
 #include "io/restart/restart.hpp"
+#include "parallel/communication.hpp"
 #include "parallel/launch.hpp"
-#include "parallel/mpi_exchange.hpp"
 #include "physics/material/material.hpp"
 
 namespace mpm::apps {
@@ -24,14 +24,14 @@ std::string find_restart(const RunOptions& options, const parallel::Communicator
   namespace fs = std::filesystem;
   const std::string& named = options.job;
   const bool only_reads = options.dry_run || options.to_h5part;
-  parallel::MpiExchange exchange(world);
-  if (exchange.any(world.rank() == 0 && fs::exists(named))) return named;
+  parallel::MpiCommunication communication(world);
+  if (communication.reductions.any(world.rank() == 0 && fs::exists(named))) return named;
   const fs::path path(named);
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
   std::vector<std::string> notices;
   const auto newest_of = [&](const std::string& job) {
     if (world.rank() == 0 && !only_reads) io::JobLock::wait_for(folder + "/" + job + ".lock");
-    return io::find_newest_restart(folder, job, exchange, notices);
+    return io::find_newest_restart(folder, job, communication, notices);
   };
   const std::string job = path.stem().string();
   const auto newest = newest_of(job);
@@ -160,13 +160,13 @@ ExitCode convert_restart(const RunOptions& options, const parallel::Communicator
   std::vector<io::Variable> variables;
   if (c.scene->output.post_processing)
     variables = io::variables_of(c.scene->output.post_processing->variables);
-  parallel::MpiExchange exchange(world);
+  parallel::MpiCommunication communication(world);
   const std::string target =
       options.output_dir + "/" + std::filesystem::path(restart).stem().string() + ".h5part";
-  io::together(exchange, [&] {
-    if (exchange.rank() == 0) io::make_folder(options.output_dir);
+  io::together(communication, [&] {
+    if (communication.reductions.rank() == 0) io::make_folder(options.output_dir);
   });
-  io::restart_to_h5part(restart, target, variables, false, exchange);
+  io::restart_to_h5part(restart, target, variables, false, communication);
   if (world.rank() == 0) std::printf("%s\n", target.c_str());
   return done;
 }

@@ -18,7 +18,7 @@
 #include "apps/common/options.hpp"
 #include "apps/mpm.hpp"
 #include "core/scene/scene.hpp"
-#include "core/setup/build_model.hpp"
+#include "core/setup/check_setup.hpp"
 #include "core/simd/denormals.hpp"
 #include "io/input/echo.hpp"
 #include "io/input/library.hpp"

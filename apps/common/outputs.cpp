@@ -72,9 +72,9 @@ std::optional<io::HistoryFile::Continuation> history_from(const std::optional<Co
 
 }  // namespace
 
-bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Exchange& exchange) {
+bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Reductions& ranks) {
   return std::erase_if(from.marks, [&](const auto& mark) {
-           return !exchange.any(exchange.rank() == 0 && std::filesystem::exists(stem + mark.first));
+           return !ranks.any(ranks.rank() == 0 && std::filesystem::exists(stem + mark.first));
          }) > 0;
 }
 
@@ -92,12 +92,12 @@ std::string log_notice(const std::string& path, const Continuation& from) {
 
 double Interval::passed(double now) const { return std::floor(now / every_ * (1 + 1e-12)); }
 
-Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exchange& exchange,
+Outputs::Outputs(const std::string& folder, const core::Model& model, core::Reductions& ranks,
                  const std::optional<Continuation>& from, io::Log& log)
     : stem_(folder + "/" + model.scene->provenance.job_name),
       log_(log),
-      status_(stem_ + status_ending, model, status_from(from, model), exchange),
-      history_(stem_ + history_ending, model, history_from(from, model), exchange),
+      status_(stem_ + status_ending, model, status_from(from, model), ranks),
+      history_(stem_ + history_ending, model, history_from(from, model), ranks),
       report_(model.scene->output.console.print_time, model.clock.time),
       start_time_(model.clock.time),
       wall_start_(wall()),
@@ -111,11 +111,11 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Exch
   for (const auto& history : out.histories) say_absent(history.variables);
   if (out.post_processing) say_absent(out.post_processing->variables);
   for (const std::string& notice : absent) log_.note("note       {}", notice);
-  open_pictures(folder, model, exchange, from);
+  open_pictures(folder, model, ranks, from);
   say_notices();
 }
 
-void Outputs::open_pictures(const std::string& folder, const core::Model& model, core::Exchange& exchange,
+void Outputs::open_pictures(const std::string& folder, const core::Model& model, core::Reductions& ranks,
                             const std::optional<Continuation>& from) {
   const core::OutputInput& out = model.scene->output;
   if (!out.post_processing) return;
@@ -126,13 +126,13 @@ void Outputs::open_pictures(const std::string& folder, const core::Model& model,
   if (post.h5part) {
     h5part_.emplace(io::H5PartWriter::Settings{stem_ + h5part_ending, variables, false,
                                                picture_from(from, h5part_ending)},
-                    model, exchange);
+                    model, ranks);
   }
   if (post.vtk != Vtk::none) {
     vtu_.emplace(
         io::VtuWriter::Settings{folder, model.scene->provenance.job_name, post.vtk == Vtk::file_per_body,
                                 variables, false, picture_from(from, vtu_ending)},
-        model, exchange);
+        model, ranks);
   }
 }
 
@@ -147,64 +147,64 @@ void Outputs::say_notices() {
   }
 }
 
-std::map<std::string, std::string> Outputs::marks(core::Exchange& exchange) {
+std::map<std::string, std::string> Outputs::marks(core::Reductions& ranks) {
   const double before = wall();
   std::map<std::string, std::string> marks;
-  status_.sync(exchange);
+  status_.sync(ranks);
   marks[status_ending] = status_.mark().text();
-  history_.sync(exchange);
+  history_.sync(ranks);
   marks[history_ending] = history_.mark().text();
-  if (h5part_) marks[h5part_ending] = h5part_->mark(exchange);
+  if (h5part_) marks[h5part_ending] = h5part_->mark(ranks);
   if (vtu_) {
-    vtu_->sync(exchange);
+    vtu_->sync(ranks);
     marks[vtu_ending] = vtu_->mark();
   }
-  log_.sync(exchange);
+  log_.sync(ranks);
   marks[log_ending] = std::to_string(log_.bytes());
   seconds_ += wall() - before;
   return marks;
 }
 
-void Outputs::write_pictures(const core::Model& model, core::Exchange& exchange) {
+void Outputs::write_pictures(const core::Model& model, core::Reductions& ranks) {
   const std::int64_t step = model.clock.step;
   const auto write = [&](auto& pictures) {
     if (!pictures || pictures->last_step() == step) return;
-    core::require_finite(model, exchange);
-    pictures->write(model, exchange);
+    core::require_finite(model, ranks);
+    pictures->write(model, ranks);
     if (!pictures->warning().empty()) log_.warn("{}", pictures->warning());
   };
   write(h5part_);
   write(vtu_);
-  history_.flush(exchange);
+  history_.flush(ranks);
 }
 
-void Outputs::after_step(const core::Model& model, core::Exchange& exchange) {
+void Outputs::after_step(const core::Model& model, core::Reductions& ranks) {
   const double before = wall();
   const double now = model.clock.time;
   if (history_.each_step()) {
-    history_.add(model, exchange);
+    history_.add(model, ranks);
     for (const std::string& gone : history_.gone()) log_.note("note       {}", gone);
   }
   if (model.clock.step == 0 || pictures_.due(now)) {
-    write_pictures(model, exchange);
+    write_pictures(model, ranks);
     pictures_.done(now);
   }
   seconds_ += wall() - before;
 }
 
-const core::Totals& Outputs::report(const core::Model& model, core::Exchange& exchange) {
+const core::Totals& Outputs::report(const core::Model& model, core::Reductions& ranks) {
   const double before = wall();
-  totals_ = core::compute_totals(model, exchange);
+  totals_ = core::compute_totals(model, ranks);
   const core::EnergyBalance balance = core::energy_balance(totals_, model.initial_energy);
   core::require_finite(
       model,
       std::array{totals_.kinetic, totals_.internal, totals_.external_work, totals_.momentum.x,
                  totals_.momentum.y, totals_.momentum.z, balance.total, balance.relative_drift},
-      exchange);
-  status_.add(model, totals_, exchange);
+      ranks);
+  status_.add(model, totals_, ranks);
   if (!history_.each_step()) {
-    history_.add(model, {totals_.kinetic, totals_.internal}, exchange);
-    history_.flush(exchange);
+    history_.add(model, {totals_.kinetic, totals_.internal}, ranks);
+    history_.flush(ranks);
   }
   const core::Clock& clock = model.clock;
   const double end = model.scene->solution.end_time;
@@ -221,21 +221,21 @@ const core::Totals& Outputs::report(const core::Model& model, core::Exchange& ex
     log_.say("{:>9} momentum {:.10g} {:.10g} {:.10g}", "", totals_.momentum.x, totals_.momentum.y,
              totals_.momentum.z);
   }
-  log_.flush(exchange);
+  log_.flush(ranks);
   report_.done(clock.time);
   report_step_ = clock.step;
   seconds_ += wall() - before;
   return totals_;
 }
 
-void Outputs::finish(const core::Model& model, core::Exchange& exchange) {
-  if (report_step_ != model.clock.step) report(model, exchange);
+void Outputs::finish(const core::Model& model, core::Reductions& ranks) {
+  if (report_step_ != model.clock.step) report(model, ranks);
   const double before = wall();
-  write_pictures(model, exchange);
-  if (h5part_) h5part_->finish(exchange);
-  if (vtu_) vtu_->sync(exchange);
-  status_.sync(exchange);
-  history_.sync(exchange);
+  write_pictures(model, ranks);
+  if (h5part_) h5part_->finish(ranks);
+  if (vtu_) vtu_->sync(ranks);
+  status_.sync(ranks);
+  history_.sync(ranks);
   const auto say_cut = [&](const auto& pictures, const char* ending) {
     const std::string text = pictures ? pictures->cut_values().total(stem_ + ending) : std::string();
     if (!text.empty()) log_.say("counted    {}", text);

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 #include "core/step/totals.hpp"
 #include "io/output/h5part.hpp"
 #include "io/output/history_file.hpp"
@@ -40,7 +40,7 @@ struct Continuation {
 
 /// Of a run that goes on in another folder than its restart file's: files `<stem><ending>` that are not there
 /// begin anew, and their marks go. True if there are any. Collective.
-bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Exchange& exchange);
+bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Reductions& ranks);
 
 /// What the user should know about the log that is to go on, before it is opened; mostly nothing. On one
 /// rank.
@@ -48,20 +48,20 @@ std::string log_notice(const std::string& path, const Continuation& from);
 
 class Outputs {
  public:
-  Outputs(const std::string& folder, const core::Model& model, core::Exchange& exchange,
+  Outputs(const std::string& folder, const core::Model& model, core::Reductions& ranks,
           const std::optional<Continuation>& from, io::Log& log);
 
   /// After a step, or before the first one: whatever is due. Collective.
-  void after_step(const core::Model& model, core::Exchange& exchange);
+  void after_step(const core::Model& model, core::Reductions& ranks);
   /// The state's row in .sta and on the console, and what it was made from. Collective.
-  const core::Totals& report(const core::Model& model, core::Exchange& exchange);
+  const core::Totals& report(const core::Model& model, core::Reductions& ranks);
   bool report_due(const core::Model& model) const { return report_.due(model.clock.time); }
   /// At the end, the state if it is not yet in the files; everything to the disk. Collective.
-  void finish(const core::Model& model, core::Exchange& exchange);
+  void finish(const core::Model& model, core::Reductions& ranks);
 
   /// All that has been written so far to the disk itself, and where each file stands, for a restart file:
   /// what a run that goes on does not write again is safe before the restart file counts. Collective.
-  std::map<std::string, std::string> marks(core::Exchange& exchange);
+  std::map<std::string, std::string> marks(core::Reductions& ranks);
 
   const core::Totals& last_totals() const { return totals_; }
   std::int64_t status_rows() const { return status_.rows_added(); }
@@ -71,8 +71,8 @@ class Outputs {
   std::vector<std::string> pictures() const;
 
  private:
-  void write_pictures(const core::Model& model, core::Exchange& exchange);
-  void open_pictures(const std::string& folder, const core::Model& model, core::Exchange& exchange,
+  void write_pictures(const core::Model& model, core::Reductions& ranks);
+  void open_pictures(const std::string& folder, const core::Model& model, core::Reductions& ranks,
                      const std::optional<Continuation>& from);
   void say_notices();
 

@@ -16,9 +16,11 @@
 #include "apps/common/resources.hpp"
 #include "apps/common/stop.hpp"
 #include "apps/common/watch.hpp"
+#include "core/particle_range.hpp"
 #include "core/scene/limits.hpp"
 #include "core/setup/build_model.hpp"
 #include "core/setup/memory.hpp"
+#include "core/setup/prepare_model.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/finite.hpp"
 #include "core/step/stepper.hpp"
@@ -29,7 +31,7 @@
 #include "io/output/provenance.hpp"
 #include "io/output/summary.hpp"
 #include "io/restart/restart.hpp"
-#include "parallel/mpi_exchange.hpp"
+#include "parallel/communication.hpp"
 #include "physics/material/material.hpp"
 
 namespace mpm::apps {
@@ -52,10 +54,10 @@ int choose_threads(const core::Scene& scene) {
 
 /// Starts the threads, all at once. OpenMP ends the program when the system refuses one, so it is asked
 /// first. Throws NoThreads on every rank if it refuses on any. Collective.
-void start_threads(int threads, core::Exchange& exchange) {
+void start_threads(int threads, core::Communication& communication) {
   const std::string refusal = why_no_threads(threads - 1);
-  if (exchange.any(!refusal.empty())) {
-    for (const std::string& text : exchange.gather(refusal)) {
+  if (communication.reductions.any(!refusal.empty())) {
+    for (const std::string& text : communication.reductions.gather(refusal)) {
       if (!text.empty())
         throw NoThreads(
             fmt::format("the system refuses {} threads per rank: {}; ask for fewer with OpenMPSetting "
@@ -92,18 +94,18 @@ void describe_bodies(const core::Model& model, io::Log& log) {
 }
 
 /// What the scene pays for, in the words of a dry run and of the log's head.
-void describe(const core::Model& model, const core::Stepper& stepper, core::Exchange& exchange, int threads,
-              io::Log& log) {
+void describe(const core::Model& model, const core::Stepper& stepper, core::Communication& communication,
+              int threads, io::Log& log) {
   const core::GridGeometry& g = model.grid->geometry();
   std::int64_t counts[2] = {static_cast<std::int64_t>(model.local_particles()), model.grid->owned()};
-  const auto particles = exchange.spread(static_cast<double>(counts[0]));
+  const auto particles = communication.reductions.spread(static_cast<double>(counts[0]));
   const core::MemoryNeed need = core::memory_need(model);
-  const auto memory = exchange.spread(need.total());
-  exchange.sum(std::span<std::int64_t>(counts));
+  const auto memory = communication.reductions.spread(need.total());
+  communication.reductions.sum(std::span<std::int64_t>(counts));
   log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use",
           g.cells[0], g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
-  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0], exchange.size(),
-          threads, particles.min, particles.max);
+  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0],
+          communication.reductions.size(), threads, particles.min, particles.max);
   log.say("memory     {} for particles, bricks and bodies on the fullest rank", bytes_in_words(memory.max));
   describe_bodies(model, log);
   std::string phases;
@@ -117,21 +119,20 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Exch
 
 /// A body that starts hot at the density of a cold one is under the pressure of its heat: said, with the
 /// density (to first order) at which it would not be. Collective.
-void say_thermal_pressures(const core::Model& model, core::Exchange& exchange, io::Log& log) {
+void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log) {
   const std::vector<const core::BodyInput*> inputs = core::active_bodies(*model.scene);
   if (std::ranges::none_of(inputs, [](const auto* input) { return input->initial_temperature.has_value(); }))
     return;
   std::vector<double> lowest(2 * model.bodies.size(), 0.0);  // of the pressure and of its negative
-  core::for_each_block(model, [&](int body, const core::ColumnLayout& layout, const double* block, int used) {
-    const auto b = static_cast<std::size_t>(body);
-    if (!inputs[b]->initial_temperature) return;
-    const double* pressure = block + layout.offset(core::Column::pressure);
-    for (int i = 0; i < used; ++i) {
-      lowest[2 * b] = std::min(lowest[2 * b], pressure[i]);
-      lowest[2 * b + 1] = std::min(lowest[2 * b + 1], -pressure[i]);
+  for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+    const auto b = static_cast<std::size_t>(block.body);
+    if (!inputs[b]->initial_temperature) continue;
+    for (const core::ConstParticle p : block) {
+      lowest[2 * b] = std::min(lowest[2 * b], p[core::Column::pressure]);
+      lowest[2 * b + 1] = std::min(lowest[2 * b + 1], -p[core::Column::pressure]);
     }
-  });
-  exchange.minimum(lowest);
+  }
+  ranks.minimum(lowest);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const double p = -lowest[2 * b + 1] > -lowest[2 * b] ? -lowest[2 * b + 1] : lowest[2 * b];
     const core::ConstitutiveModel& material = *model.bodies[b].model;
@@ -147,40 +148,42 @@ void say_thermal_pressures(const core::Model& model, core::Exchange& exchange, i
   }
 }
 
-/// Bodies that the restart file does not have would enter without particles. Throws InputErrors.
-void refuse_new_bodies(const core::Scene& scene, const std::vector<std::size_t>& numbers) {
-  const std::vector<const core::BodyInput*> inputs = core::active_bodies(scene);
-  std::vector<core::Diagnostic> wrong;
+/// Bodies that the restart file does not have come in now. What to say of them. Collective.
+std::vector<std::string> add_new_bodies(core::Model& model, const std::vector<std::size_t>& numbers,
+                                        core::Communication& communication) {
+  std::vector<std::string> notices;
+  if (numbers.empty()) return notices;
+  core::add_bodies(model, numbers, communication);
+  const core::Totals totals = core::compute_totals(model, communication);
   for (const std::size_t b : numbers) {
-    const core::BodyInput& body = *inputs[b];
-    wrong.push_back({body.source.file, body.source.line, "Body", "name", body.name,
-                     "takes no part in the restart file, and a restart cannot bring bodies in: give it "
-                     "Deactive=\"1\", or start anew"});
+    notices.push_back(fmt::format(
+        "body '{}' was not in the restart file: its {} particles come in now, as its input states them",
+        model.bodies[b].name, totals.bodies[b].particles));
   }
-  if (!wrong.empty()) throw core::InputErrors(wrong);
+  return notices;
 }
 
 /// One run in its stages; the members are in the order in which they come to life.
 class Run {
  public:
   Run(const RunOptions& options, const parallel::Communicator& world, const physics::Registry& registry)
-      : options_(options), exchange_(world), case_(load_case(options, world, registry.catalogue())) {
+      : options_(options), communication_(world), case_(load_case(options, world, registry.catalogue())) {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
-    start_threads(threads_, exchange_);
-    core::check_decomposition(case_.scene->decomposition, exchange_.size());
+    start_threads(threads_, communication_);
+    core::check_decomposition(case_.scene->decomposition, communication_.reductions.size());
     model_ = core::prepare_model(case_.scene, physics::make_materials(*case_.scene, registry),
                                  io::columns_for(case_.scene->output));
     std::vector<std::string> notices;
     if (case_.restart) {
-      const io::RestartResult state = io::read_restart(*case_.restart, model_, exchange_);
-      refuse_new_bodies(*case_.scene, state.new_bodies);
+      const io::RestartResult state = io::read_restart(*case_.restart, model_, communication_);
       notices = state.notices;
+      for (std::string& notice : add_new_bodies(model_, state.new_bodies, communication_))
+        notices.push_back(std::move(notice));
       last_restart_ = *case_.restart;
       if (continues_files()) continuation_ = Continuation{state.extra.tracked, state.extra.marks};
     } else {
-      core::discretise(model_, exchange_);
-      core::start_clock(model_, exchange_);
+      core::build_model(model_, communication_);
     }
     // Nothing is written before all that can be wrong with the input is known not to be.
     open_log();
@@ -188,20 +191,20 @@ class Run {
     if (case_.restart)
       log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step,
                 model_.clock.time);
-    stepper_.emplace(model_, exchange_);
-    describe(model_, *stepper_, exchange_, threads_, *log_);
+    stepper_.emplace(model_, communication_);
+    describe(model_, *stepper_, communication_, threads_, *log_);
     for (const std::string& law : registry.added()) log_->note("law        {}, of this program", law);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
-    if (!case_.restart) say_thermal_pressures(model_, exchange_, *log_);
+    if (!case_.restart) say_thermal_pressures(model_, communication_, *log_);
     setup_seconds_ = clock_.seconds();
   }
 
   ExitCode go() {
     if (options_.dry_run) {
-      log_->flush(exchange_);
+      log_->flush(communication_);
       return done;
     }
-    outputs_.emplace(options_.output_dir, model_, exchange_, continuation_, *log_);
+    outputs_.emplace(options_.output_dir, model_, communication_, continuation_, *log_);
     watch_.emplace(*case_.scene, model_.clock.time);
     restart_ = Interval(case_.scene->output.restart_interval.value_or(0), model_.clock.time);
     const double loop_start = clock_.seconds();
@@ -214,7 +217,7 @@ class Run {
         code = status_rows_reached() ? done : stopped_early;
       }
       if (code == stopped_early) save();
-      outputs_->finish(model_, exchange_);
+      outputs_->finish(model_, communication_);
     } catch (const core::NumericalFailure& failure) {
       status = "failed";
       reason = failure.what();
@@ -232,21 +235,21 @@ class Run {
  private:
   /// From here on the files of the job are this run's.
   void open_log() {
-    io::together(exchange_, [&] {
-      if (exchange_.rank() == 0) io::make_folder(options_.output_dir);
+    io::together(communication_, [&] {
+      if (communication_.reductions.rank() == 0) io::make_folder(options_.output_dir);
     });
     bool elsewhere = false;
     std::string cut;
     if (!options_.dry_run) {
-      lock_.emplace(file(".lock"), exchange_);
+      lock_.emplace(file(".lock"), communication_);
       elsewhere = continuation_ && goes_on_elsewhere() &&
-                  forget_what_is_elsewhere(file(""), *continuation_, exchange_);
-      if (exchange_.rank() == 0) {
+                  forget_what_is_elsewhere(file(""), *continuation_, communication_);
+      if (communication_.reductions.rank() == 0) {
         io::remove_file(file(".summary.json"));  // of an earlier run, should this one not get so far
         if (continuation_) cut = log_notice(file(".out"), *continuation_);
       }
     }
-    log_.emplace(file(".out"), continues_files() || options_.dry_run, true, exchange_);
+    log_.emplace(file(".out"), continues_files() || options_.dry_run, true, communication_);
     for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
     if (lock_ && !lock_->notice().empty()) log_->note("note       {}", lock_->notice());
     if (!cut.empty()) log_->warn("{}", cut);
@@ -258,8 +261,9 @@ class Run {
     namespace fs = std::filesystem;
     std::error_code error;
     const fs::path folder = fs::path(*case_.restart).parent_path();
-    return exchange_.any(exchange_.rank() == 0 &&
-                         !fs::equivalent(folder.empty() ? "." : folder, options_.output_dir, error));
+    return communication_.reductions.any(
+        communication_.reductions.rank() == 0 &&
+        !fs::equivalent(folder.empty() ? "." : folder, options_.output_dir, error));
   }
 
   /// `folder/Job<ending>`
@@ -281,8 +285,8 @@ class Run {
   /// Runs to the end, or until something asks to stop: why, in words.
   std::string loop() {
     if (!case_.restart) {
-      outputs_->after_step(model_, exchange_);
-      outputs_->report(model_, exchange_);
+      outputs_->after_step(model_, communication_);
+      outputs_->report(model_, communication_);
     }
     const double end = case_.scene->solution.end_time;
     while (model_.clock.time < end * (1 - 1e-12)) {
@@ -291,9 +295,9 @@ class Run {
       }
       stepper_->step();
       particle_steps_ += static_cast<double>(model_.local_particles());
-      watch_->after_step(model_, stepper_->incidents(), exchange_, *log_);
-      outputs_->after_step(model_, exchange_);
-      if (outputs_->report_due(model_)) outputs_->report(model_, exchange_);
+      watch_->after_step(model_, stepper_->incidents(), communication_, *log_);
+      outputs_->after_step(model_, communication_);
+      if (outputs_->report_due(model_)) outputs_->report(model_, communication_);
       if (restart_.due(model_.clock.time)) {
         save();
         restart_.done(model_.clock.time);
@@ -302,18 +306,18 @@ class Run {
         return noted_signal() != 0 ? fmt::format("signal {}", noted_signal())
                                    : "asked to stop: signal or --max-wall-time";
       if (status_rows_reached()) return fmt::format("{} rows in the .sta file", outputs_->status_rows());
-      if (watch_->near_boundary(model_, exchange_))
+      if (watch_->near_boundary(model_, communication_))
         return "a particle is next to an open boundary of the grid";
     }
     return {};
   }
 
   void save() {
-    const io::RestartExtra extra{case_.bytes, outputs_->tracked(), outputs_->marks(exchange_)};
+    const io::RestartExtra extra{case_.bytes, outputs_->tracked(), outputs_->marks(communication_)};
     const double before = clock_.seconds();
-    core::require_finite(model_, exchange_);
-    const std::string path =
-        io::write_restart(options_.output_dir, case_.scene->provenance.job_name, model_, extra, exchange_);
+    core::require_finite(model_, communication_);
+    const std::string path = io::write_restart(options_.output_dir, case_.scene->provenance.job_name, model_,
+                                               extra, communication_);
     log_->say("restart    {} at step {}, time {:.6g}", path, model_.clock.step, model_.clock.time);
     last_restart_ = path;
     save_seconds_ += clock_.seconds() - before;
@@ -333,7 +337,7 @@ class Run {
         "strained too far in one step for their law to end on its yield surface: take a smaller TimeStep "
         "factor",
         "held by LimitVelocity"};
-    exchange_.sum(std::span<std::int64_t>(counts));
+    communication_.reductions.sum(std::span<std::int64_t>(counts));
     for (std::size_t i = 0; i < std::size(counts); ++i) {
       if (counts[i] > 0) log_->say("counted    {} particle(s) {}", counts[i], words[i]);
     }
@@ -347,14 +351,15 @@ class Run {
     report.seconds_total = clock_.seconds();
     report.seconds_setup = setup_seconds_;
     report.seconds_loop = loop_seconds;
-    report.output = exchange_.spread(outputs_->seconds() + save_seconds_);
+    report.output = communication_.reductions.spread(outputs_->seconds() + save_seconds_);
     for (const core::Phase& p : stepper_->phases())
-      report.phases.emplace_back(p.name, exchange_.spread(p.seconds));
-    report.particle_steps = exchange_.spread(particle_steps_).mean * exchange_.size();
-    const core::Totals totals = core::compute_totals(model_, exchange_);
+      report.phases.emplace_back(p.name, communication_.reductions.spread(p.seconds));
+    report.particle_steps =
+        communication_.reductions.spread(particle_steps_).mean * communication_.reductions.size();
+    const core::Totals totals = core::compute_totals(model_, communication_);
     log_->say("\n{}", io::timing_table(report));
     log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads",
-              io::state_hash(model_, exchange_));
+              io::state_hash(model_, communication_));
     if (totals.left_grid > 0 || totals.eroded > 0) {
       log_->say(
           "{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal "
@@ -367,7 +372,7 @@ class Run {
     if (status == "failed") {
       log_->say("FAILED     {}", reason);
       if (!last_restart_.empty()) log_->say("           the last good state is in {}", last_restart_);
-      if (exchange_.rank() == 0) std::fprintf(stderr, "%s\n", reason.c_str());
+      if (communication_.reductions.rank() == 0) std::fprintf(stderr, "%s\n", reason.c_str());
     } else if (status == "stopped") {
       log_->say("stopped    {}", reason);
     } else {
@@ -375,9 +380,9 @@ class Run {
     }
     for (const std::string& picture : outputs_->pictures()) log_->say("open       {}", picture);
     try {
-      io::write_summary(file(".summary.json"), model_, totals, report, exchange_);
-      log_->sync(exchange_);
-      lock_->release(exchange_);
+      io::write_summary(file(".summary.json"), model_, totals, report, communication_);
+      log_->sync(communication_);
+      lock_->release(communication_);
     } catch (const io::FileError&) {
       if (status != "failed") throw;  // else the disk that ended the run takes no summary either
     }
@@ -385,7 +390,7 @@ class Run {
 
   RunOptions options_;
   WallClock clock_;
-  parallel::MpiExchange exchange_;
+  parallel::MpiCommunication communication_;
   Case case_;
   int threads_ = 1;
   std::optional<io::JobLock> lock_;

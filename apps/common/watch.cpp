@@ -5,8 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "core/particle_range.hpp"
 #include "core/step/finite.hpp"
-#include "core/step/witness.hpp"
+#include "core/step/offending_particle.hpp"
 
 namespace mpm::apps {
 
@@ -25,27 +26,27 @@ Watch::Watch(const core::Scene& scene, double time) : warn_(scene.solution.warn)
 }
 
 void Watch::after_step(const core::Model& model, const core::Stepper::Incidents& mine,
-                       core::Exchange& exchange, io::Log& log) {
+                       core::Reductions& ranks, io::Log& log) {
   for (; !load_ends_.empty() && load_ends_.begin()->first < model.clock.time;
        load_ends_.erase(load_ends_.begin())) {
     log.warn("time {:.6g}: the last Coefficient of {} has passed, its load is zero from now on",
              model.clock.time, load_ends_.begin()->second);
   }
-  if (scene_.solution.energy_fraction) check_energy(model, exchange);
+  if (scene_.solution.energy_fraction) check_energy(model, ranks);
   if (!warn_.negative_internal_energy && !warn_.negative_volume && !warn_.outside_grid) return;
   std::int64_t counts[3] = {warn_.negative_internal_energy ? mine.events.negative_energy : 0,
                             warn_.negative_volume ? mine.events.negative_volume : 0,
                             warn_.outside_grid ? mine.left_grid : 0};
-  exchange.sum(std::span<std::int64_t>(counts));
+  ranks.sum(std::span<std::int64_t>(counts));
   for (int i = 0; i < 3; ++i) {
     Kind& kind = kinds_[i];
     kind.incidents += counts[i];
     const bool all_named = kind.named.size() == core::Witnesses::most;
     if (counts[i] == 0 || all_named) continue;
     warn(kind, counts[i],
-         core::first_of_all(exchange, i == 0   ? mine.negative
-                                      : i == 1 ? mine.vanishing
-                                               : mine.first_left),
+         core::first_of_all(ranks, i == 0   ? mine.negative
+                                   : i == 1 ? mine.vanishing
+                                            : mine.first_left),
          model, log);
   }
 }
@@ -79,9 +80,9 @@ void Watch::conclude(io::Log& log) const {
   }
 }
 
-void Watch::check_energy(const core::Model& model, core::Exchange& exchange) const {
-  const core::Totals totals = core::compute_energy_totals(model, exchange);
-  core::require_finite(model, std::array{totals.kinetic, totals.internal, totals.external_work}, exchange);
+void Watch::check_energy(const core::Model& model, core::Reductions& ranks) const {
+  const core::Totals totals = core::compute_energy_totals(model, ranks);
+  core::require_finite(model, std::array{totals.kinetic, totals.internal, totals.external_work}, ranks);
   const double drift = core::energy_balance(totals, model.initial_energy).relative_drift;
   if (std::abs(drift) <= *scene_.solution.energy_fraction) return;
   throw core::NumericalFailure(fmt::format(
@@ -89,22 +90,22 @@ void Watch::check_energy(const core::Model& model, core::Exchange& exchange) con
       model.clock.step, model.clock.time, drift, *scene_.solution.energy_fraction));
 }
 
-bool Watch::near_boundary(const core::Model& model, core::Exchange& exchange) const {
+bool Watch::near_boundary(const core::Model& model, core::Reductions& ranks) const {
   if (!scene_.solution.near_boundary_stop) return false;
   const core::GridGeometry& g = model.grid->geometry();
   bool near = false;
-  core::for_each_block(model, [&](int, const core::ColumnLayout& layout, const double* block, int used) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const double* x = block + layout.offset(core::next(core::Column::position_x, axis));
-      for (int i = 0; i < used; ++i) {
-        const std::int64_t cell = g.cell_index(x[i], axis);
+  for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+    for (const core::ConstParticle p : block) {
+      const core::Vec3<double> x = p.vector(core::Column::position_x);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const std::int64_t cell = g.cell_index(x[axis], axis);
         near = near || (cell == 0 && g.boundary[2 * a] == core::Boundary::free) ||
                (cell == g.cells[a] - 1 && g.boundary[2 * a + 1] == core::Boundary::free);
       }
     }
-  });
-  return exchange.any(near);
+  }
+  return ranks.any(near);
 }
 
 }  // namespace mpm::apps

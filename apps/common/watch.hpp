@@ -20,13 +20,13 @@ class Watch {
 
   /// Warnings of the step just done. Throws core::NumericalFailure at level 2, and if the energy error
   /// exceeds EnergyFraction, on every rank. Collective.
-  void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Exchange& exchange,
+  void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Reductions& ranks,
                   io::Log& log);
   /// What level 1 has counted beyond the particles that it named.
   void conclude(io::Log& log) const;
   /// True, on all ranks, if the scene wants to stop near the boundary and a particle is in the outermost
   /// cells of an open face. Collective.
-  bool near_boundary(const core::Model& model, core::Exchange& exchange) const;
+  bool near_boundary(const core::Model& model, core::Reductions& ranks) const;
 
  private:
   /// Something unphysical that a particle may do.
@@ -37,7 +37,7 @@ class Watch {
   };
   void warn(Kind& kind, std::int64_t count, const core::Witnesses& first, const core::Model& model,
             io::Log& log) const;
-  void check_energy(const core::Model& model, core::Exchange& exchange) const;
+  void check_energy(const core::Model& model, core::Reductions& ranks) const;
 
   core::WarnInput warn_;
   const core::Scene& scene_;

@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 
 #include "apps/common/case.hpp"
+#include "core/communication/solo.hpp"
 #include "core/setup/build_model.hpp"
+#include "core/setup/prepare_model.hpp"
 #include "core/step/node_update.hpp"
 #include "core/step/stepper.hpp"
 #include "io/input/reader.hpp"
@@ -82,17 +84,17 @@ struct BarInput {
   core::Scene scene() const { return io::parse_scene(text(), "bar.xmp", physics::catalogue()); }
 };
 
-/// A case in memory, ready to step; on one rank unless the exchange says otherwise.
+/// A case in memory, ready to step; on one rank unless the communication says otherwise.
 struct BarRun {
   std::shared_ptr<const core::Scene> scene;
   core::Model model;
-  core::SoloExchange alone;
+  core::SoloCommunication alone;
   std::optional<core::Stepper> stepper;
 
   explicit BarRun(const BarInput& input) : BarRun(input.scene()) {}
   explicit BarRun(core::Scene of) : BarRun(std::move(of), nullptr) {}
   /// Collective.
-  BarRun(core::Scene of, core::Exchange& exchange) : BarRun(std::move(of), &exchange) {}
+  BarRun(core::Scene of, core::Communication& communication) : BarRun(std::move(of), &communication) {}
   BarRun(const BarRun&) = delete;
   BarRun& operator=(const BarRun&) = delete;
 
@@ -114,13 +116,12 @@ struct BarRun {
   }
 
  private:
-  BarRun(core::Scene of, core::Exchange* others)
+  BarRun(core::Scene of, core::Communication* others)
       : scene(std::make_shared<const core::Scene>(std::move(of))),
         model(core::prepare_model(scene, physics::make_materials(*scene), io::columns_for(scene->output))) {
-    core::Exchange& exchange = others != nullptr ? *others : alone;
-    core::discretise(model, exchange);
-    core::start_clock(model, exchange);
-    stepper.emplace(model, exchange);
+    core::Communication& communication = others != nullptr ? *others : alone;
+    core::build_model(model, communication);
+    stepper.emplace(model, communication);
   }
 };
 

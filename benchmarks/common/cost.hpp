@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/model.hpp"
+#include "core/particle_range.hpp"
 #include "core/scene/solution.hpp"
 #include "core/step/node_update.hpp"
 #include "core/step/stepper.hpp"
@@ -42,10 +43,10 @@ struct Filling {
 
   explicit Filling(const core::Model& model) {
     double particles = 0, blocks = 0;
-    core::for_each_block(model, [&](int, const core::ColumnLayout&, const double*, int used) {
-      particles += used;
+    for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+      particles += block.used;
       blocks += 1;
-    });
+    }
     const double bricks = model.grid->owned(), nodes = model.grid->shape().nodes();
     line = sizeof(double) * core::block_lanes * blocks / particles;
     first = sizeof(double) * core::record_doubles(core::NodeArray::first) * nodes * bricks / particles;

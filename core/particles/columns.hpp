@@ -187,6 +187,8 @@ class ColumnLayout {
   }
   /// Doubles from the start of a block to the column's eight values; -1 if absent.
   int offset(Column c) const { return offset_[static_cast<std::size_t>(c)]; }
+  /// Place among a particle's columns where they stand one after the other.
+  std::size_t index(Column c) const { return static_cast<std::size_t>(offset(c) / block_lanes); }
   bool has(Column c) const { return offset(c) >= 0; }
   int columns() const { return columns_; }
   int block_doubles() const { return block_lanes * columns_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/particle_range.hpp"
 #include "core/shape/linear.hpp"
 #include "core/step/node_update.hpp"
 #include "core/threads.hpp"
@@ -28,12 +29,12 @@ double sharpest_curvature(const GridGeometry& g) { return 2 * dot(g.inverse_cell
 template <ShapePolicy S>
 class ConductionWith final : public Conduction {
  public:
-  ConductionWith(Model& model, Exchange& exchange);
+  ConductionWith(Model& model, NodeHalo& halo);
   bool any() const override { return any_; }
   void map_heat() override;
   void map_flux() override;
   void update_temperatures(double dt) override;
-  void finish_exchange() override { exchange_.end_halo(*model_.grid); }
+  void finish_exchange() override { halo_.end(*model_.grid); }
 
  private:
   /// f(layout, body, block, place, lanes in use) for the blocks of the bodies that conduct.
@@ -43,15 +44,15 @@ class ConductionWith final : public Conduction {
   void temperatures(Slot s, double* nodes) const;
 
   Model& model_;
-  Exchange& exchange_;
+  NodeHalo& halo_;
   SharedNodes shared_;
   std::vector<AlignedDoubles> heat_, flow_;  ///< of the brick at hand, by thread
   bool any_ = false;
 };
 
 template <ShapePolicy S>
-ConductionWith<S>::ConductionWith(Model& model, Exchange& exchange)
-    : model_(model), exchange_(exchange), shared_(model.grid->shape()), any_(conducts_heat(model)) {
+ConductionWith<S>::ConductionWith(Model& model, NodeHalo& halo)
+    : model_(model), halo_(halo), shared_(model.grid->shape()), any_(conducts_heat(model)) {
   if (!any_) return;
   heat_.resize(static_cast<std::size_t>(omp_get_max_threads()));
   flow_.resize(heat_.size());
@@ -67,14 +68,10 @@ void ConductionWith<S>::for_each_block(Slot s, F f) const {
   const BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
-  for (const Cohort& cohort : brick.cohorts) {
-    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
-    if (!conducts(body)) continue;
-    const ColumnLayout& layout = body.pool->layout();
-    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      double* block = body.pool->block(cohort.blocks[b]);
-      f(layout, body, block, typename S::Place(frame, layout, block), cohort.used_lanes(b));
-    }
+  for (const ParticleBlock& block : blocks_of(model_, brick)) {
+    const Body& body = model_.bodies[static_cast<std::size_t>(block.body)];
+    if (conducts(body))
+      f(*block.layout, body, block.data, typename S::Place(frame, *block.layout, block.data), block.used);
   }
 }
 
@@ -100,7 +97,7 @@ void ConductionWith<S>::map_heat() {
     });
   };
   for_each_by_threads(0, grid.boundary(), 4, map);
-  exchange_.begin_halo(grid, mapped::heat);
+  halo_.begin(grid, mapped::heat);
   for_each_by_threads(grid.boundary(), grid.owned(), 4, map);
 }
 
@@ -144,7 +141,7 @@ void ConductionWith<S>::map_flux() {
     });
   };
   for_each_by_threads(0, grid.boundary(), 4, map);
-  exchange_.begin_halo(grid, mapped::heat_flow);
+  halo_.begin(grid, mapped::heat_flow);
   for_each_by_threads(grid.boundary(), grid.owned(), 4, map);
 }
 
@@ -184,8 +181,8 @@ void ConductionWith<S>::update_temperatures(double dt) {
 
 }  // namespace
 
-std::unique_ptr<Conduction> make_conduction(Model& model, Exchange& exchange) {
-  return std::make_unique<ConductionWith<Linear>>(model, exchange);
+std::unique_ptr<Conduction> make_conduction(Model& model, NodeHalo& halo) {
+  return std::make_unique<ConductionWith<Linear>>(model, halo);
 }
 
 bool conducts_heat(const Model& model) { return std::ranges::any_of(model.bodies, conducts); }
@@ -193,11 +190,11 @@ bool conducts_heat(const Model& model) { return std::ranges::any_of(model.bodies
 double conduction_step(const Model& model) {
   double most = 0;
   if (std::ranges::any_of(model.bodies, conducts)) {
-    core::for_each_block(model, [&](int number, const ColumnLayout&, const double* block, int used) {
-      const Body& body = model.bodies[static_cast<std::size_t>(number)];
-      if (!conducts(body)) return;
-      for (int l = 0; l < used; ++l) most = std::max(most, diffusivity(body, block, l));
-    });
+    for (const ConstParticleBlock& block : blocks_of(model)) {
+      const Body& body = model.bodies[static_cast<std::size_t>(block.body)];
+      if (!conducts(body)) continue;
+      for (int l = 0; l < block.used; ++l) most = std::max(most, diffusivity(body, block.data, l));
+    }
   }
   return 1 / (most * sharpest_curvature(model.grid->geometry()));
 }

@@ -18,8 +18,8 @@
 
 #include <memory>
 
+#include "core/communication/node_halo.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 
 namespace mpm::core {
 
@@ -39,7 +39,7 @@ class Conduction {
 };
 
 /// With the scene's shape.
-std::unique_ptr<Conduction> make_conduction(Model& model, Exchange& exchange);
+std::unique_ptr<Conduction> make_conduction(Model& model, NodeHalo& halo);
 
 /// Whether any body of the model conducts heat.
 bool conducts_heat(const Model& model);

@@ -48,8 +48,10 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   return step;
 }
 
-ExplicitIntegrator::ExplicitIntegrator(Model& model, Exchange& exchange)
-    : model_(model), heat_(make_conduction(model, exchange)), passes_(make_passes(model, exchange)) {}
+ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communication)
+    : model_(model),
+      heat_(make_conduction(model, communication.halo)),
+      passes_(make_passes(model, communication.halo)) {}
 
 double ExplicitIntegrator::next_step(const Clock& clock) const {
   const TimeStepInput& how = model_.scene->solution.time_step;
@@ -63,8 +65,8 @@ double ExplicitIntegrator::stable_step(const StepStatistics& statistics) const {
   return std::min(critical_step(*model_.grid, statistics.fastest), conduction_step(model_));
 }
 
-std::unique_ptr<Integrator> make_integrator(Model& model, Exchange& exchange) {
-  return std::make_unique<ExplicitIntegrator>(model, exchange);
+std::unique_ptr<Integrator> make_integrator(Model& model, Communication& communication) {
+  return std::make_unique<ExplicitIntegrator>(model, communication);
 }
 
 }  // namespace mpm::core

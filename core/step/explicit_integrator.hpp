@@ -9,7 +9,7 @@ namespace mpm::core {
 
 class ExplicitIntegrator final : public Integrator {
  public:
-  ExplicitIntegrator(Model& model, Exchange& exchange);
+  ExplicitIntegrator(Model& model, Communication& communication);
 
   std::vector<Phase> phases() override;
   double next_step(const Clock& clock) const override;

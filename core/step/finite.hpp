@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
-#include "core/step/witness.hpp"
+#include "core/step/offending_particle.hpp"
 
 namespace mpm::core {
 
@@ -15,12 +15,12 @@ namespace mpm::core {
 Witness first_not_finite(const Model& model, int* body = nullptr);
 
 /// The fastest particle of all ranks and its speed, in words; empty without particles. Collective.
-std::string fastest_in_words(const Model& model, Exchange& exchange);
+std::string fastest_in_words(const Model& model, Reductions& ranks);
 
 /// `totals`: sums over all particles, the same on all ranks. Throws NumericalFailure on every rank if one of
 /// them is not finite. Collective.
-void require_finite(const Model& model, std::span<const double> totals, Exchange& exchange);
+void require_finite(const Model& model, std::span<const double> totals, Reductions& ranks);
 /// The same for the energies of the present state. Collective.
-void require_finite(const Model& model, Exchange& exchange);
+void require_finite(const Model& model, Reductions& ranks);
 
 }  // namespace mpm::core

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/communication/communication.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
-#include "core/step/witness.hpp"
+#include "core/step/offending_particle.hpp"
 
 namespace mpm::core {
 
@@ -59,6 +59,6 @@ class Integrator {
 };
 
 /// The scheme that the scene names.
-std::unique_ptr<Integrator> make_integrator(Model& model, Exchange& exchange);
+std::unique_ptr<Integrator> make_integrator(Model& model, Communication& communication);
 
 }  // namespace mpm::core

@@ -5,8 +5,8 @@
 
 namespace mpm::core {
 
-std::unique_ptr<Passes> make_passes(Model& model, Exchange& exchange) {
-  return std::make_unique<PassesWith<Linear, Flip>>(model, exchange);
+std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo) {
+  return std::make_unique<PassesWith<Linear, Flip>>(model, halo);
 }
 
 ColumnSet transfer_columns(const Scene&) { return Flip::columns(); }

@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "core/communication/communication.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 #include "core/step/integrator.hpp"
-#include "core/step/witness.hpp"
+#include "core/step/offending_particle.hpp"
 
 namespace mpm::core {
 
 class Migration {
  public:
-  Migration(Model& model, Exchange& exchange);
+  Migration(Model& model, Communication& communication);
 
   /// Take the departing particles out of every brick; those that leave the grid or are eroded are booked and
   /// gone.
@@ -40,7 +40,7 @@ class Migration {
  private:
   /// What one thread finds; threads share the bricks out among themselves.
   struct Harvest {
-    Travellers travellers;
+    MigrationBuffer particles;
     std::vector<BrickCoord> wanted;
     Books books;
     std::int64_t left = 0;
@@ -52,28 +52,15 @@ class Migration {
   void merge(Harvest& harvest);
 
   Model& model_;
-  Exchange& exchange_;
+  Communication& communication_;
   std::vector<Harvest> harvests_;  ///< by thread
-  Travellers travellers_;
+  MigrationBuffer particles_;
   std::vector<BrickCoord> wanted_;
   std::vector<int> columns_of_;
   std::int64_t left_now_ = 0;
   Witnesses first_left_;
   Witness complaint_;
 };
-
-/// Append travellers to their bricks, which must be ours: each cohort's in ascending order of identity.
-void insert_travellers(Model& model, const Travellers& travellers);
-
-/// Every brick's blocks one after the other in memory. Particles that came in pieces, and by several threads,
-/// lie all over the place: the passes of two threads were a tenth slower.
-void arrange_blocks(Model& model);
-
-/// Particles of a cohort in ascending order of their cells, otherwise as they were.
-void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort);
-
-/// Particles of a cohort in ascending order of identity.
-void sort_by_identity(BlockPool& pool, Cohort& cohort);
 
 /// `particle 17 of body "bar" at (1.2, 3, 4)`
 std::string describe_particle(const Body& body, const double* columns);

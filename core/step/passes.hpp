@@ -45,7 +45,7 @@ class Passes {
 };
 
 /// The passes for the scene's shape and transfer: the one place where they are chosen.
-std::unique_ptr<Passes> make_passes(Model& model, Exchange& exchange);
+std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo);
 /// The columns that the scene's transfer adds to every particle.
 ColumnSet transfer_columns(const Scene& scene);
 /// The nodes that a brick keeps for the scene's shape.

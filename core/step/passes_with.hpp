@@ -23,7 +23,7 @@ namespace mpm::core {
 template <ShapePolicy S, TransferPolicy T>
 class PassesWith final : public Passes {
  public:
-  PassesWith(Model& model, Exchange& exchange);
+  PassesWith(Model& model, NodeHalo& halo);
 
   const Loads& loads() const override { return loads_; }
   void begin_step(double length) override {
@@ -33,7 +33,7 @@ class PassesWith final : public Passes {
 
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
-  void finish_exchange() override { exchange_.end_halo(*model_.grid); }
+  void finish_exchange() override { halo_.end(*model_.grid); }
   void update_velocities_and_map_back() override;
   void update_stress_and_move() override;
   void update_stress_and_map_forces() override;
@@ -104,7 +104,7 @@ class PassesWith final : public Passes {
   }
 
   Model& model_;
-  Exchange& exchange_;
+  NodeHalo& halo_;
   SharedNodes shared_;
   NodeForces forces_;
   Loads loads_;
@@ -125,8 +125,8 @@ class PassesWith final : public Passes {
 inline constexpr double usl_mass_floor = 0.2;
 
 template <ShapePolicy S, TransferPolicy T>
-PassesWith<S, T>::PassesWith(Model& model, Exchange& exchange)
-    : model_(model), exchange_(exchange), shared_(model.grid->shape()), loads_(model) {
+PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
+    : model_(model), halo_(halo), shared_(model.grid->shape()), loads_(model) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = to_vec(solution.gravity);
   forces_.damping = solution.damping;
@@ -191,7 +191,7 @@ template <NodeFields what, class F>
 void PassesWith<S, T>::map_bricks(F work) {
   BrickGrid& grid = *model_.grid;
   for_bricks(0, grid.boundary(), work);
-  exchange_.begin_halo(grid, what);
+  halo_.begin(grid, what);
   for_bricks(grid.boundary(), grid.owned(), work);
 }
 

@@ -18,11 +18,11 @@ constexpr double smallest_step_ratio = 1e-7;
 
 }  // namespace
 
-Stepper::Stepper(Model& model, Exchange& exchange)
+Stepper::Stepper(Model& model, Communication& communication)
     : model_(model),
-      exchange_(exchange),
-      integrator_(make_integrator(model, exchange)),
-      migration_(model, exchange),
+      communication_(communication),
+      integrator_(make_integrator(model, communication)),
+      migration_(model, communication),
       phases_(make_phases()) {}
 
 std::vector<Phase> Stepper::make_phases() {
@@ -30,7 +30,7 @@ std::vector<Phase> Stepper::make_phases() {
   for (Phase& phase : integrator_->phases()) step.push_back(std::move(phase));
   step.push_back({"collect leavers", [this] { migration_.collect(integrator_->departing()); }});
   step.push_back({"agree", [this] { agree(); }});
-  step.push_back({"migrate", [this] { migration_.deliver(claim_); }});
+  step.push_back({"migrate", [this] { migration_.deliver(needs_bricks_); }});
   step.push_back({"tidy", [this] {
                     if (model_.clock.step % tidy_interval == 0) migration_.tidy();
                   }});
@@ -56,7 +56,7 @@ void Stepper::choose_time_step() {
   if (!(clock.time + dt > clock.time)) {
     throw NumericalFailure(fmt::format(
         "step {}, time {:.9g}: a time step of {:.3g} does not advance the time any more; the fastest: {}",
-        clock.step + 1, clock.time, dt, fastest_in_words(model_, exchange_)));
+        clock.step + 1, clock.time, dt, fastest_in_words(model_, communication_)));
   }
   clock.dt = dt;
   integrator_->begin_step(dt);
@@ -73,26 +73,23 @@ void Stepper::agree() {
   incidents_ = {found.events, found.vanishing, found.negative, migration_.left_now(),
                 migration_.first_left()};
 
-  // A rank's news: its smallest step, whether it wants bricks, whether it is in trouble, whether it is to
-  // stop.
-  const bool trouble = found.events.not_finite > 0 || !migration_.complaint().empty();
-  double news[4] = {integrator_->stable_step(found), migration_.wants_new_bricks() ? -1.0 : 0.0,
-                    trouble ? -1.0 : 0.0, stop_requested_ ? -1.0 : 0.0};
-  exchange_.minimum(news);
+  const bool failed = found.events.not_finite > 0 || !migration_.complaint().empty();
+  const StepStatus all = communication_.reductions.combine(
+      {integrator_->stable_step(found), migration_.wants_new_bricks(), failed, stop_requested_});
   ++clock.step;
   clock.time += clock.dt;
-  clock.critical_dt = news[0];
-  claim_ = news[1] < 0;
-  stop_agreed_ = news[3] < 0;
+  clock.critical_dt = all.stable_step;
+  needs_bricks_ = all.needs_bricks;
+  stop_agreed_ = all.stop;
 
   std::string what;
-  if (news[2] < 0) {
+  if (all.failed) {
     Witness mine = migration_.complaint();
     if (found.events.not_finite > 0) {
       const Witness lost = first_not_finite(model_);
       if (!lost.empty()) mine.offer(lost.identity, [&] { return lost.words; });
     }
-    what = first_of_all(exchange_, mine).words;
+    what = first_of_all(communication_, mine).words;
     if (what.empty()) what = "a particle on its way between bricks is no number";
   } else if (std::isfinite(clock.first_critical_dt) &&
              clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {

@@ -21,7 +21,7 @@ class NumericalFailure : public std::runtime_error {
 class Stepper {
  public:
   /// From here on denormal numbers count as zero in the calling thread and its OpenMP threads.
-  Stepper(Model& model, Exchange& exchange);
+  Stepper(Model& model, Communication& communication);
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
@@ -53,12 +53,12 @@ class Stepper {
   void agree();
 
   Model& model_;
-  Exchange& exchange_;
+  Communication& communication_;
   std::unique_ptr<Integrator> integrator_;
   Migration migration_;
   std::vector<Phase> phases_;
   Incidents incidents_;
-  bool claim_ = false;
+  bool needs_bricks_ = false;
   std::string failure_;  ///< agreed upon; thrown once every particle is home
   bool stop_requested_ = false;
   bool stop_agreed_ = false;

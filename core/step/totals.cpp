@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/particle_range.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {
@@ -119,21 +120,6 @@ struct BodyRange {
   std::size_t first = 0, last = 0;
 };
 
-/// f(body index, layout, block, lanes in use) over one brick.
-template <class F>
-void over_blocks(const Model& model, const Brick& brick, BodyRange bodies, F f) {
-  const auto begin =
-      std::ranges::lower_bound(brick.cohorts, static_cast<int>(bodies.first), {}, &Cohort::body);
-  for (auto at = begin; at != brick.cohorts.end() && static_cast<std::size_t>(at->body) < bodies.last; ++at) {
-    const Cohort& cohort = *at;
-    const BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
-    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      const int used = cohort.used_lanes(b);
-      f(static_cast<std::size_t>(cohort.body), pool.layout(), pool.block(cohort.blocks[b]), used);
-    }
-  }
-}
-
 Vec3<double> vector_of(const ExactSum* sum) { return {sum[0].value(), sum[1].value(), sum[2].value()}; }
 
 Quantities quantities_of(const ExactSum* sum) {
@@ -183,13 +169,14 @@ struct BodySums {
 };
 
 BodySums sums_of_bodies(const Model& model, const std::vector<double>& inverse_density, BodyRange bodies,
-                        Exchange& exchange) {
+                        Reductions& ranks) {
   std::vector<Partial> local(bodies.last - bodies.first);
   over_bricks(model, local, [&](const Brick& brick, std::vector<Partial>& to) {
-    over_blocks(model, brick, bodies,
-                [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
-                  add_block(layout, block, used, inverse_density[body], to[body - bodies.first]);
-                });
+    for (const ConstParticleBlock& b :
+         blocks_of(model, brick, static_cast<int>(bodies.first), static_cast<int>(bodies.last))) {
+      const auto body = static_cast<std::size_t>(b.body);
+      add_block(*b.layout, b.data, b.used, inverse_density[body], to[body - bodies.first]);
+    }
   });
   const Books& books = model.books;
   BodySums all;
@@ -200,15 +187,15 @@ BodySums sums_of_bodies(const Model& model, const std::vector<double>& inverse_d
     all.count.insert(all.count.end(),
                      {mine.particles, mine.failed, entry(books.body_eroded, b), entry(books.body_left, b)});
   }
-  exchange.sum(std::span(all.sum));
-  exchange.sum(std::span(all.count));
-  exchange.minimum(all.low);
+  ranks.sum(std::span(all.sum));
+  ranks.sum(std::span(all.count));
+  ranks.minimum(all.low);
   return all;
 }
 
 }  // namespace
 
-Totals compute_totals(const Model& model, Exchange& exchange) {
+Totals compute_totals(const Model& model, Reductions& ranks) {
   // An exact sum is half a kilobyte, a body has a dozen and each thread its own: of very many bodies, some at
   // a time; as many on every rank.
   constexpr std::size_t at_once = 256;
@@ -218,7 +205,7 @@ Totals compute_totals(const Model& model, Exchange& exchange) {
   std::array<ExactSum, sums> all;
   for (std::size_t first = 0; first < bodies; first += at_once) {
     const BodyRange range{first, std::min(first + at_once, bodies)};
-    const BodySums part = sums_of_bodies(model, inverse_density, range, exchange);
+    const BodySums part = sums_of_bodies(model, inverse_density, range, ranks);
     for (std::size_t b = 0; b < range.last - range.first; ++b) {
       const ExactSum* body_sum = &part.sum[sums * b];
       const std::int64_t* c = &part.count[4 * b];
@@ -237,8 +224,8 @@ Totals compute_totals(const Model& model, Exchange& exchange) {
   const Books& books = model.books;
   std::array booked{books.external_work, books.removed_mass, books.removed_kinetic, books.removed_internal};
   std::array<std::int64_t, 3> count{books.eroded, books.left_grid, books.velocity_limited};
-  exchange.sum(std::span<ExactSum>(booked));
-  exchange.sum(std::span<std::int64_t>(count));
+  ranks.sum(std::span<ExactSum>(booked));
+  ranks.sum(std::span<std::int64_t>(count));
   totals.external_work = booked[0].value();
   totals.removed_mass = booked[1].value();
   totals.removed_kinetic = booked[2].value();
@@ -264,31 +251,31 @@ EnergySums energy_sums(const Model& model) {
   const std::vector<double> inverse_density = inverse_densities(model);
   std::vector<EnergySums> local(1);
   over_bricks(model, local, [&](const Brick& brick, std::vector<EnergySums>& to) {
-    over_blocks(model, brick, {0, model.bodies.size()},
-                [&](std::size_t body, const ColumnLayout& layout, const double* block, int used) {
-                  const BlockEnergies sum = energies_of(layout, block, used, inverse_density[body]);
-                  to[0].kinetic.add(sum.kinetic);
-                  to[0].internal.add(sum.internal);
-                });
+    for (const ConstParticleBlock& b : blocks_of(model, brick)) {
+      const BlockEnergies sum =
+          energies_of(*b.layout, b.data, b.used, inverse_density[static_cast<std::size_t>(b.body)]);
+      to[0].kinetic.add(sum.kinetic);
+      to[0].internal.add(sum.internal);
+    }
   });
   return local[0];
 }
 
 }  // namespace
 
-Energies compute_energies(const Model& model, Exchange& exchange) {
+Energies compute_energies(const Model& model, Reductions& ranks) {
   const EnergySums local = energy_sums(model);
   std::array<ExactSum, 2> sum{local.kinetic, local.internal};
-  exchange.sum(std::span<ExactSum>(sum));
+  ranks.sum(std::span<ExactSum>(sum));
   return {sum[0].value(), sum[1].value()};
 }
 
-Totals compute_energy_totals(const Model& model, Exchange& exchange) {
+Totals compute_energy_totals(const Model& model, Reductions& ranks) {
   const EnergySums local = energy_sums(model);
   const Books& books = model.books;
   std::array<ExactSum, 5> sum{local.kinetic, local.internal, books.external_work, books.removed_kinetic,
                               books.removed_internal};
-  exchange.sum(std::span<ExactSum>(sum));
+  ranks.sum(std::span<ExactSum>(sum));
   Totals totals;
   totals.kinetic = sum[0].value();
   totals.internal = sum[1].value();
@@ -308,28 +295,25 @@ EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
   return balance;
 }
 
-std::int64_t occupied_cells(const Model& model, Exchange& exchange) {
+std::int64_t occupied_cells(const Model& model, Reductions& ranks) {
   const GridGeometry& geometry = model.grid->geometry();
   std::int64_t cells = 0;
   const int bricks = model.grid->owned();
 #pragma omp parallel for schedule(dynamic, 16) reduction(+ : cells)
   for (int s = 0; s < bricks; ++s) {
     std::uint64_t seen = 0;
-    over_blocks(model, model.grid->brick(s), {0, model.bodies.size()},
-                [&](std::size_t, const ColumnLayout& layout, const double* block, int used) {
-                  const double* x = block + layout.offset(Column::position_x);
-                  for (int i = 0; i < used; ++i) {
-                    int cell = 0;
-                    for (int a = 2; a >= 0; --a) {
-                      cell = brick_cells * cell +
-                             static_cast<int>(geometry.cell_index(x[i + block_lanes * a], a) % brick_cells);
-                    }
-                    seen |= std::uint64_t{1} << (cell & 63);
-                  }
-                });
+    for (const ConstParticleBlock& block : blocks_of(model, model.grid->brick(s))) {
+      for (const ConstParticle p : block) {
+        const Vec3<double> x = p.vector(Column::position_x);
+        int cell = 0;
+        for (int a = 2; a >= 0; --a)
+          cell = brick_cells * cell + static_cast<int>(geometry.cell_index(x[a], a) % brick_cells);
+        seen |= std::uint64_t{1} << (cell & 63);
+      }
+    }
     cells += __builtin_popcountll(seen);
   }
-  exchange.sum(std::span(&cells, 1));
+  ranks.sum(std::span(&cells, 1));
   return cells;
 }
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 
 namespace mpm::core {
 
@@ -50,7 +50,7 @@ struct Totals : Quantities {
 };
 
 /// The state of all particles. Collective.
-Totals compute_totals(const Model& model, Exchange& exchange);
+Totals compute_totals(const Model& model, Reductions& ranks);
 
 struct Energies {
   double kinetic = 0;
@@ -58,10 +58,10 @@ struct Energies {
 };
 
 /// The energies of compute_totals alone, cheap enough for every step. Collective.
-Energies compute_energies(const Model& model, Exchange& exchange);
+Energies compute_energies(const Model& model, Reductions& ranks);
 
 /// What energy_balance() asks of compute_totals, to the last bit, and nothing else. Collective.
-Totals compute_energy_totals(const Model& model, Exchange& exchange);
+Totals compute_energy_totals(const Model& model, Reductions& ranks);
 
 struct EnergyBalance {
   double total = 0;  ///< kinetic + internal of the particles present
@@ -72,6 +72,6 @@ struct EnergyBalance {
 EnergyBalance energy_balance(const Totals& totals, double initial_energy);
 
 /// Cells with at least one particle. Collective.
-std::int64_t occupied_cells(const Model& model, Exchange& exchange);
+std::int64_t occupied_cells(const Model& model, Reductions& ranks);
 
 }  // namespace mpm::core

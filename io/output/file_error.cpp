@@ -19,9 +19,9 @@ FileError system_error(const std::string& doing, const std::string& path, int er
   return FileError(text);
 }
 
-void agree(core::Exchange& exchange, const std::string& complaint) {
-  if (!exchange.any(!complaint.empty())) return;
-  for (const std::string& text : exchange.gather(complaint)) {
+void agree(core::Reductions& ranks, const std::string& complaint) {
+  if (!ranks.any(!complaint.empty())) return;
+  for (const std::string& text : ranks.gather(complaint)) {
     if (!text.empty()) throw FileError(text);
   }
 }

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 
 namespace mpm::io {
 
@@ -20,13 +20,13 @@ class FileError : public std::runtime_error {
 FileError system_error(const std::string& doing, const std::string& path, int error);
 
 /// Throws the lowest rank's complaint on every rank, if any rank has one. Collective.
-void agree(core::Exchange& exchange, const std::string& complaint);
+void agree(core::Reductions& ranks, const std::string& complaint);
 
 /// Run f() on this rank; if it throws on any, every rank throws a FileError with that rank's text. There must
 /// be nothing collective in f. std::bad_alloc is thrown on the rank that has it alone, while the others wait:
 /// the answer is to end every rank. Collective.
 template <class F>
-void together(core::Exchange& exchange, F f) {
+void together(core::Reductions& ranks, F f) {
   std::string complaint;
   try {
     f();
@@ -34,7 +34,7 @@ void together(core::Exchange& exchange, F f) {
     complaint = e.what();
     if (complaint.empty()) complaint = "unknown error";
   }
-  agree(exchange, complaint);
+  agree(ranks, complaint);
 }
 
 }  // namespace mpm::io

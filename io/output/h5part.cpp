@@ -75,22 +75,19 @@ std::int64_t fill(const core::Model& model, const RowBatch& batch, const Field& 
                   const std::vector<BodyFacts>& facts, std::byte* memory) {
   T* out = reinterpret_cast<T*>(memory);
   std::int64_t all_cut = 0;
-  for_each_block(model, batch,
-                 [&](std::size_t body, const core::ColumnLayout& layout, const double* block, int used,
-                     std::size_t first) {
-                   const double* identity = block + layout.offset(core::Column::identity);
-                   std::int64_t cut = 0;
-                   for (int i = 0; i < used; ++i) {
-                     const double value = field.kind == Kind::identity
-                                              ? identity[i]
-                                              : evaluate(field.variable, layout, block, i, facts[body]);
-                     out[first + static_cast<std::size_t>(i)] = narrowed<T>(value, cut);
-                   }
-                   if (cut > 0) {
+  for_each_block(model, batch, [&](const core::ConstParticleBlock& block, std::size_t row) {
+    std::int64_t cut = 0;
+    for (const core::ConstParticle p : block) {
+      const double value = field.kind == Kind::identity
+                               ? p[core::Column::identity]
+                               : evaluate(field.variable, p, facts[static_cast<std::size_t>(block.body)]);
+      out[row++] = narrowed<T>(value, cut);
+    }
+    if (cut > 0) {
 #pragma omp atomic
-                     all_cut += cut;
-                   }
-                 });
+      all_cut += cut;
+    }
+  });
   return all_cut;
 }
 
@@ -107,27 +104,27 @@ std::int64_t fill(const core::Model& model, const RowBatch& batch, const Field& 
 
 }  // namespace
 
-H5PartWriter::H5PartWriter(Settings settings, const core::Model& model, core::Exchange& exchange)
+H5PartWriter::H5PartWriter(Settings settings, const core::Model& model, core::Reductions& ranks)
     : settings_(std::move(settings)), fields_(fields_for(settings_.variables)) {
-  if (go_on(exchange)) return;
+  if (go_on(ranks)) return;
   mark_ = {};
-  together(exchange, [&] {
-    if (exchange.rank() == 0) create(*model.scene);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) create(*model.scene);
   });
 }
 
-bool H5PartWriter::go_on(core::Exchange& exchange) {
+bool H5PartWriter::go_on(core::Reductions& ranks) {
   if (!settings_.continue_from) return false;
   const std::string& path = settings_.path;
   const std::optional<H5PartMark> mark = H5PartMark::from(*settings_.continue_from);
-  if (!exchange.any(exchange.rank() == 0 && std::filesystem::exists(path))) {
+  if (!ranks.any(ranks.rank() == 0 && std::filesystem::exists(path))) {
     if (mark && mark->times > 0)
       notice_ = fmt::format("'{}' is missing; it had {} time(s): it begins anew", path, mark->times);
     return false;
   }
   std::string aside = path + ".damaged", complaint;
   if (mark) {
-    complaint = restore(path, *mark, exchange);
+    complaint = restore(path, *mark, ranks);
   } else {
     complaint = fmt::format("the restart file says nothing of '{}'", path);
     aside = path + ".old";
@@ -137,8 +134,8 @@ bool H5PartWriter::go_on(core::Exchange& exchange) {
     return true;
   }
   notice_ = fmt::format("{}; it is now '{}', and a new file begins", complaint, aside);
-  together(exchange, [&] {
-    if (exchange.rank() == 0) rename_file(path, aside);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) rename_file(path, aside);
   });
   return false;
 }
@@ -180,7 +177,7 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
   file.close("write '" + settings_.path + "'");
 }
 
-void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchange,
+void H5PartWriter::write_fields(const core::Model& model, core::Reductions& ranks,
                                 const std::vector<RowBatch>& batches) {
   const std::vector<BodyFacts> facts = facts_of_all(model);
   std::vector<std::uint64_t> checksums(fields_.size());
@@ -198,8 +195,8 @@ void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchan
                         },
                         &checksums[f]});
   }
-  const std::vector<Extent> extents = write_together(settings_.path, datasets, exchange);
-  sum_checksums(checksums, exchange);
+  const std::vector<Extent> extents = write_together(settings_.path, datasets, ranks);
+  sum_checksums(checksums, ranks);
   unnamed_.clear();
   std::vector<std::string> names;
   std::vector<std::int64_t> counts;
@@ -208,7 +205,7 @@ void H5PartWriter::write_fields(const core::Model& model, core::Exchange& exchan
     names.push_back(fields_[f].name);
     counts.push_back(std::accumulate(cut[f].begin(), cut[f].end(), std::int64_t{0}));
   }
-  warning_ = cut_.warning(settings_.path, model.clock.step, names, std::move(counts), exchange);
+  warning_ = cut_.warning(settings_.path, model.clock.step, names, std::move(counts), ranks);
 }
 
 void H5PartWriter::name_step() {
@@ -225,8 +222,8 @@ void H5PartWriter::name_step() {
   file.close("write '" + settings_.path + "'");
 }
 
-void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
-  const ParticleOrder order = order_particles(model, exchange, false);
+void H5PartWriter::write(const core::Model& model, core::Reductions& ranks) {
+  const ParticleOrder order = order_particles(model, ranks, false);
   std::vector<std::int64_t> first_row(model.bodies.size(), left_out);
   std::int64_t particles = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -236,12 +233,12 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
   }
   const std::vector<RowBatch> batches = cut_into_batches(model, order, first_row, particles_at_once);
 
-  together(exchange, [&] {
-    if (exchange.rank() == 0) add_step(model.clock, particles);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) add_step(model.clock, particles);
   });
-  write_fields(model, exchange, batches);
-  together(exchange, [&] {
-    if (exchange.rank() == 0) name_step();
+  write_fields(model, ranks, batches);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) name_step();
   });
   mark_.rows.insert(mark_.rows.end(), unnamed_.begin(), unnamed_.end());
   std::sort(mark_.rows.begin(), mark_.rows.end(),
@@ -250,11 +247,11 @@ void H5PartWriter::write(const core::Model& model, core::Exchange& exchange) {
   ++mark_.times;
 }
 
-std::string H5PartWriter::mark(core::Exchange& exchange) {
+std::string H5PartWriter::mark(core::Reductions& ranks) {
   std::string bytes;
-  together(exchange, [&] {
+  together(ranks, [&] {
     File(settings_.path, File::Mode::read).sync();
-    if (exchange.rank() != 0) return;
+    if (ranks.rank() != 0) return;
     H5PartMark whole = mark_;
     whole.copy_tables(settings_.path);
     bytes = whole.bytes();
@@ -262,15 +259,15 @@ std::string H5PartWriter::mark(core::Exchange& exchange) {
   return bytes;
 }
 
-void H5PartWriter::finish(core::Exchange& exchange) {
-  together(exchange, [&] {
-    if (exchange.rank() == 0) {
+void H5PartWriter::finish(core::Reductions& ranks) {
+  together(ranks, [&] {
+    if (ranks.rank() == 0) {
       hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
       hdf5::check(H5Ldelete(file, workshop, H5P_DEFAULT), "remove what is only needed while times are added");
       file.close("write '" + settings_.path + "'");
     }
   });
-  together(exchange, [&] { File(settings_.path, File::Mode::read).sync(); });
+  together(ranks, [&] { File(settings_.path, File::Mode::read).sync(); });
 }
 
 }  // namespace mpm::io

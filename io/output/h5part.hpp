@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 #include "io/output/h5part_mark.hpp"
 #include "io/output/narrowing.hpp"
 #include "io/output/variables.hpp"
@@ -36,16 +36,16 @@ class H5PartWriter {
     std::optional<std::string> continue_from;
   };
   /// Bodies without output are left out. Throws FileError. Collective.
-  H5PartWriter(Settings settings, const core::Model& model, core::Exchange& exchange);
+  H5PartWriter(Settings settings, const core::Model& model, core::Reductions& ranks);
 
   /// One more time. Throws FileError; the earlier times stay readable. Collective.
-  void write(const core::Model& model, core::Exchange& exchange);
+  void write(const core::Model& model, core::Reductions& ranks);
 
   /// What a restart file needs to know of the file, on rank 0; what is in the file is then on the disk.
   /// Throws FileError. Collective.
-  std::string mark(core::Exchange& exchange);
+  std::string mark(core::Reductions& ranks);
   /// No more times will follow: to the disk. Throws FileError. Collective.
-  void finish(core::Exchange& exchange);
+  void finish(core::Reductions& ranks);
 
   int times() const { return static_cast<int>(mark_.times); }
   /// Of the last time in the file; -1 if there is none.
@@ -65,10 +65,10 @@ class H5PartWriter {
   };
 
  private:
-  bool go_on(core::Exchange& exchange);
+  bool go_on(core::Reductions& ranks);
   void create(const core::Scene& scene);
   void add_step(const core::Clock& clock, std::int64_t particles);
-  void write_fields(const core::Model& model, core::Exchange& exchange,
+  void write_fields(const core::Model& model, core::Reductions& ranks,
                     const std::vector<struct RowBatch>& batches);
   void name_step();
 

@@ -61,18 +61,18 @@ bool differs_beyond_head(const File& file, const H5PartMark& mark) {
 }
 
 /// Every rank reads its share of each dataset. Collective.
-bool rows_are_right(const std::string& path, const H5PartMark& mark, core::Exchange& exchange) {
+bool rows_are_right(const std::string& path, const H5PartMark& mark, core::Reductions& ranks) {
   std::vector<std::uint64_t> sums(mark.rows.size());
-  together(exchange, [&] {
+  together(ranks, [&] {
     const File file(path, File::Mode::read);
     std::vector<std::byte> buffer;
-    const auto ranks = static_cast<std::uint64_t>(exchange.size());
-    const auto rank = static_cast<std::uint64_t>(exchange.rank());
+    const auto shares = static_cast<std::uint64_t>(ranks.size());
+    const auto rank = static_cast<std::uint64_t>(ranks.rank());
     for (std::size_t d = 0; d < sums.size(); ++d) {
       const H5PartMark::Rows& r = mark.rows[d];
       const std::uint64_t all = r.extent.size / r.row_bytes;
-      const std::uint64_t end = all / ranks * (rank + 1) + std::min(all % ranks, rank + 1);
-      for (std::uint64_t row = all / ranks * rank + std::min(all % ranks, rank); row < end;) {
+      const std::uint64_t end = all / shares * (rank + 1) + std::min(all % shares, rank + 1);
+      for (std::uint64_t row = all / shares * rank + std::min(all % shares, rank); row < end;) {
         const std::uint64_t n = std::min(end - row, std::max<std::uint64_t>(1, bytes_at_once / r.row_bytes));
         buffer.resize(n * r.row_bytes);
         file.read_at(buffer, r.extent.offset + row * r.row_bytes);
@@ -81,7 +81,7 @@ bool rows_are_right(const std::string& path, const H5PartMark& mark, core::Excha
       }
     }
   });
-  sum_checksums(sums, exchange);
+  sum_checksums(sums, ranks);
   for (std::size_t d = 0; d < sums.size(); ++d) {
     if (sums[d] != mark.rows[d].checksum) return false;
   }
@@ -133,11 +133,11 @@ void H5PartMark::copy_tables(const std::string& path) {
   });
 }
 
-std::string restore(const std::string& path, const H5PartMark& mark, core::Exchange& exchange) {
+std::string restore(const std::string& path, const H5PartMark& mark, core::Reductions& ranks) {
   enum State : std::int64_t { as_it_was, changed, too_short };
   std::int64_t state = as_it_was, size = 0;
-  together(exchange, [&] {
-    if (exchange.rank() != 0) return;
+  together(ranks, [&] {
+    if (ranks.rank() != 0) return;
     const File file(path, File::Mode::read);
     size = static_cast<std::int64_t>(file.size());
     if (file.size() < mark.size) {
@@ -147,19 +147,19 @@ std::string restore(const std::string& path, const H5PartMark& mark, core::Excha
     }
   });
   std::int64_t both[] = {state, size};
-  exchange.sum(std::span<std::int64_t>(both));
+  ranks.sum(std::span<std::int64_t>(both));
   if (both[0] == too_short) {
     return fmt::format("'{}' has {} bytes instead of the {} that it had when the restart file was written",
                        path, both[1], mark.size);
   }
-  const bool cheap = bytes_of_rows(mark) / static_cast<std::uint64_t>(exchange.size()) <= cheap_bytes;
-  if ((cheap || both[0] == changed) && !rows_are_right(path, mark, exchange))
+  const bool cheap = bytes_of_rows(mark) / static_cast<std::uint64_t>(ranks.size()) <= cheap_bytes;
+  if ((cheap || both[0] == changed) && !rows_are_right(path, mark, ranks))
     return fmt::format(
         "'{}' is damaged, or not the file that goes with the restart file: values fail their "
         "checksum",
         path);
-  together(exchange, [&] {
-    if (exchange.rank() == 0) write_tables(path, mark);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) write_tables(path, mark);
   });
   return {};
 }
@@ -176,14 +176,14 @@ std::uint64_t checksum_of_rows(std::uint64_t first, std::span<const std::byte> r
   return sum;
 }
 
-void sum_checksums(std::span<std::uint64_t> checksums, core::Exchange& exchange) {
+void sum_checksums(std::span<std::uint64_t> checksums, core::Reductions& ranks) {
   constexpr std::uint64_t low = 0xffffffffu;
   std::vector<std::int64_t> halves;
   for (const std::uint64_t c : checksums) {
     halves.push_back(static_cast<std::int64_t>(c & low));
     halves.push_back(static_cast<std::int64_t>(c >> 32));
   }
-  exchange.sum(std::span(halves));
+  ranks.sum(std::span(halves));
   for (std::size_t i = 0; i < checksums.size(); ++i) {
     checksums[i] =
         static_cast<std::uint64_t>(halves[2 * i]) + (static_cast<std::uint64_t>(halves[2 * i + 1]) << 32);

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 #include "io/output/file.hpp"
 
 namespace mpm::io {
@@ -42,12 +42,12 @@ struct H5PartMark {
 
 /// Make the file what the mark says; what is wrong with the file if that cannot be, and then it is as it was.
 /// The same on all ranks. Throws FileError if the file cannot be written. Collective.
-std::string restore(const std::string& path, const H5PartMark& mark, core::Exchange& exchange);
+std::string restore(const std::string& path, const H5PartMark& mark, core::Reductions& ranks);
 
 /// Of rows that follow each other, the first of them number `first` of its dataset. The sum over the
 /// stretches of a dataset is that of the dataset.
 std::uint64_t checksum_of_rows(std::uint64_t first, std::span<const std::byte> rows, std::size_t row_bytes);
 /// Sums over the ranks, in place. Collective.
-void sum_checksums(std::span<std::uint64_t> checksums, core::Exchange& exchange);
+void sum_checksums(std::span<std::uint64_t> checksums, core::Reductions& ranks);
 
 }  // namespace mpm::io

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/particle_range.hpp"
 #include "core/step/finite.hpp"
 #include "io/output/narrowing.hpp"
 #include "io/output/provenance.hpp"
@@ -31,43 +32,20 @@ enum Reach { same_brick, neighbour_bricks, everywhere };
 
 core::Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
-struct Lane {
-  const core::BlockPool* pool = nullptr;
-  const double* block = nullptr;
-  int lane = 0;
+/// A particle and the body that it is of.
+struct Found {
+  core::ConstParticle particle;
   int body = 0;
 };
 
-double value_of(const Lane& at, Column c) { return at.block[at.pool->layout().offset(c) + at.lane]; }
-
-core::Vec3<double> position_of(const Lane& at) {
-  return {value_of(at, Column::position_x), value_of(at, Column::position_y),
-          value_of(at, Column::position_z)};
-}
-
-/// f(lane) for every particle of a brick, until it returns false.
-template <class F>
-bool over_particles(const core::Model& model, const core::Brick& brick, F f) {
-  for (const core::Cohort& cohort : brick.cohorts) {
-    const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
-    for (std::uint32_t i = 0; i < cohort.count; ++i) {
-      const Lane lane{&pool, pool.block(cohort.blocks[i / core::block_lanes]),
-                      static_cast<int>(i % core::block_lanes), cohort.body};
-      if (!f(lane)) return false;
+std::optional<Found> find_in(const core::Model& model, const core::Brick& brick, std::uint64_t identity) {
+  const auto wanted = static_cast<double>(identity);
+  for (const core::ConstParticleBlock& block : core::blocks_of(model, brick)) {
+    for (const core::ConstParticle p : block) {
+      if (p[Column::identity] == wanted) return Found{p, block.body};
     }
   }
-  return true;
-}
-
-std::optional<Lane> find_in(const core::Model& model, const core::Brick& brick, std::uint64_t identity) {
-  const auto wanted = static_cast<double>(identity);
-  std::optional<Lane> found;
-  over_particles(model, brick, [&](const Lane& at) {
-    if (value_of(at, Column::identity) != wanted) return true;
-    found = at;
-    return false;
-  });
-  return found;
+  return std::nullopt;
 }
 
 /// Slots of ours where a particle last seen in brick `b` may be.
@@ -100,17 +78,17 @@ double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b
 }  // namespace
 
 HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
-                         std::optional<Continuation> continuation, core::Exchange& exchange)
+                         std::optional<Continuation> continuation, core::Reductions& ranks)
     : targets_(targets_of(*model.scene)) {
   for (Target& t : targets_) {
     t.first = record_;
     record_ += first_value + t.variables.size();
     t.values.resize(t.variables.size());
   }
-  if (!continuation || !recall(continuation->tracked)) choose_particles(model, exchange);
+  if (!continuation || !recall(continuation->tracked)) choose_particles(model, ranks);
   std::optional<TableContinuation> rows;
   if (continuation) rows = continuation->rows;
-  file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(), rows, exchange);
+  file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(), rows, ranks);
 }
 
 /// False where it is not of these targets.
@@ -140,26 +118,25 @@ std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scen
   return targets;
 }
 
-void HistoryFile::choose_particles(const core::Model& model, core::Exchange& exchange) {
+void HistoryFile::choose_particles(const core::Model& model, core::Reductions& ranks) {
   std::vector<double> nearest(targets_.size(), infinity), identity(targets_.size(), infinity);
-  for (const core::Brick& brick : model.grid->bricks()) {
-    over_particles(model, brick, [&](const Lane& at) {
+  for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+    for (const core::ConstParticle p : block) {
       for (std::size_t i = 0; i < targets_.size(); ++i) {
-        const double d = squared_distance(position_of(at), targets_[i].point);
+        const double d = squared_distance(p.vector(Column::position_x), targets_[i].point);
         if (d > nearest[i]) continue;
-        const double id = value_of(at, Column::identity);
+        const double id = p[Column::identity];
         identity[i] = d < nearest[i] ? id : std::fmin(id, identity[i]);
         nearest[i] = d;
       }
-      return true;
-    });
+    }
   }
   const std::vector<double> mine = nearest;
-  exchange.minimum(nearest);
+  ranks.minimum(nearest);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (mine[i] != nearest[i]) identity[i] = infinity;
   }
-  exchange.minimum(identity);
+  ranks.minimum(identity);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (!targets_[i].particle || identity[i] == infinity) continue;
     targets_[i].identity = static_cast<std::uint64_t>(identity[i]);
@@ -216,8 +193,7 @@ void HistoryFile::look_up(const core::Model& model, int reach, std::vector<doubl
       record[place_entry + 2] = b.z;
       const BodyFacts facts = facts_of(model, static_cast<std::size_t>(found->body));
       for (std::size_t v = 0; v < t.variables.size(); ++v) {
-        record[first_value + v] =
-            finite(evaluate(t.variables[v], found->pool->layout(), found->block, found->lane, facts));
+        record[first_value + v] = finite(evaluate(t.variables[v], found->particle, facts));
       }
       break;
     }
@@ -234,32 +210,33 @@ void HistoryFile::average(const core::Model& model, const Target& t, std::vector
 
   double weights = 0;
   std::vector<double> sums(t.variables.size());
-  over_particles(model, model.grid->brick(s), [&](const Lane& at) {
-    const core::Vec3<double> x = position_of(at);
-    double w = value_of(at, Column::mass);
-    for (int a = 0; a < 3; ++a) {
-      if (geometry.cell_index(x[a], a) != cell[static_cast<std::size_t>(a)]) return true;
-      w *= std::fmax(0.0, 1 - std::abs(x[a] - t.point[a]) * geometry.inverse_cell[a]);
+  for (const core::ConstParticleBlock& block : core::blocks_of(model, model.grid->brick(s))) {
+    const BodyFacts facts = facts_of(model, static_cast<std::size_t>(block.body));
+    for (const core::ConstParticle p : block) {
+      const core::Vec3<double> x = p.vector(Column::position_x);
+      double w = p[Column::mass];
+      for (int a = 0; a < 3; ++a) {
+        w *= geometry.cell_index(x[a], a) == cell[static_cast<std::size_t>(a)]
+                 ? std::fmax(0.0, 1 - std::abs(x[a] - t.point[a]) * geometry.inverse_cell[a])
+                 : 0.0;
+      }
+      if (w == 0) continue;
+      weights += w;
+      for (std::size_t v = 0; v < sums.size(); ++v) sums[v] += w * finite(evaluate(t.variables[v], p, facts));
     }
-    weights += w;
-    const BodyFacts facts = facts_of(model, static_cast<std::size_t>(at.body));
-    for (std::size_t v = 0; v < sums.size(); ++v) {
-      sums[v] += w * finite(evaluate(t.variables[v], at.pool->layout(), at.block, at.lane, facts));
-    }
-    return true;
-  });
+  }
   if (!(weights > 0)) return;
   values[t.first] = 0;
   for (std::size_t v = 0; v < sums.size(); ++v) values[t.first + first_value + v] = finite(sums[v] / weights);
 }
 
-void HistoryFile::add(const core::Model& model, core::Exchange& exchange) {
-  const core::Energies energies = core::compute_energies(model, exchange);
-  core::require_finite(model, std::array{energies.kinetic, energies.internal}, exchange);
-  add(model, energies, exchange);
+void HistoryFile::add(const core::Model& model, core::Reductions& ranks) {
+  const core::Energies energies = core::compute_energies(model, ranks);
+  core::require_finite(model, std::array{energies.kinetic, energies.internal}, ranks);
+  add(model, energies, ranks);
 }
 
-void HistoryFile::add(const core::Model& model, const core::Energies& energies, core::Exchange& exchange) {
+void HistoryFile::add(const core::Model& model, const core::Energies& energies, core::Reductions& ranks) {
   std::vector<double> values(record_, infinity);
   for (const Target& t : targets_) {
     if (!t.particle) average(model, t, values);
@@ -270,7 +247,7 @@ void HistoryFile::add(const core::Model& model, const core::Energies& energies, 
   };
   for (int reach = same_brick; reach <= everywhere && (reach == same_brick || missing()); ++reach) {
     look_up(model, reach, values);
-    exchange.minimum(values);
+    ranks.minimum(values);
   }
 
   std::string row = fmt::format("{:>{}}", model.clock.step, width);

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 #include "core/step/totals.hpp"
 #include "io/output/table_file.hpp"
 #include "io/output/variables.hpp"
@@ -31,21 +31,21 @@ class HistoryFile {
   };
   /// Throws FileError. Collective.
   HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
-              core::Exchange& exchange);
+              core::Reductions& ranks);
 
   /// With histories a row belongs to every step; without, the total energies do, as often as someone wants.
   bool each_step() const { return !targets_.empty(); }
   /// The row of the present state; it waits in memory. Throws core::NumericalFailure where that has no finite
   /// energy. Collective.
-  void add(const core::Model& model, core::Exchange& exchange);
+  void add(const core::Model& model, core::Reductions& ranks);
   /// The same, where the energies are known.
-  void add(const core::Model& model, const core::Energies& energies, core::Exchange& exchange);
+  void add(const core::Model& model, const core::Energies& energies, core::Reductions& ranks);
   /// Particles that the last row does not find any more, a line each, for the log. The same on all ranks.
   const std::vector<std::string>& gone() const { return gone_; }
   /// Throws FileError. Collective.
-  void flush(core::Exchange& exchange) { file_->flush(exchange); }
+  void flush(core::Reductions& ranks) { file_->flush(ranks); }
   /// As flush(), and to the disk itself. Collective.
-  void sync(core::Exchange& exchange) { file_->sync(exchange); }
+  void sync(core::Reductions& ranks) { file_->sync(ranks); }
   const TableMark& mark() const { return file_->mark(); }
   const std::string& notice() const { return file_->notice(); }
 
@@ -67,7 +67,7 @@ class HistoryFile {
   };
   static std::vector<Target> targets_of(const core::Scene& scene);
   bool recall(const std::vector<std::uint64_t>& tracked);
-  void choose_particles(const core::Model& model, core::Exchange& exchange);
+  void choose_particles(const core::Model& model, core::Reductions& ranks);
   std::string head() const;
   std::string legend() const;
   void look_up(const core::Model& model, int reach, std::vector<double>& values) const;

@@ -24,8 +24,8 @@ using namespace std::chrono_literals;
 
 constexpr auto patience = 5s;
 constexpr auto pause = 50ms;
-constexpr off_t gate = 0;   // held by rank 0 alone
-constexpr off_t ranks = 1;  // shared by all
+constexpr off_t gate = 0;     // held by rank 0 alone
+constexpr off_t holders = 1;  // shared by all
 
 enum class Answer { taken, held, no_locks };
 
@@ -49,7 +49,7 @@ int open_lock(const std::string& path, int flags) { return ::open(path.c_str(), 
 Answer set_both(int handle) {
   const Answer at_gate = set(handle, F_WRLCK, gate);
   if (at_gate != Answer::taken) return at_gate;
-  const Answer at_ranks = set(handle, F_WRLCK, ranks);
+  const Answer at_ranks = set(handle, F_WRLCK, holders);
   if (at_ranks != Answer::taken) set(handle, F_UNLCK, gate);
   return at_ranks;
 }
@@ -107,20 +107,19 @@ class Patience {
 
 }  // namespace
 
-JobLock::JobLock(const std::string& path, core::Exchange& exchange)
-    : path_(path), first_(exchange.rank() == 0) {
-  together(exchange, [&] {
-    if (first_) take(path, exchange.size());
+JobLock::JobLock(const std::string& path, core::Reductions& ranks) : path_(path), first_(ranks.rank() == 0) {
+  together(ranks, [&] {
+    if (first_) take(path, ranks.size());
   });
-  if (exchange.any(!notice_.empty())) return;  // no locks here
+  if (ranks.any(!notice_.empty())) return;  // no locks here
   bool held = false;
-  together(exchange, [&] {
+  together(ranks, [&] {
     if (!first_) handle_ = open_lock(path, O_RDWR);
     if (handle_ < 0) throw system_error("write", path, errno);
-    held = set(handle_, F_RDLCK, ranks) != Answer::taken;
+    held = set(handle_, F_RDLCK, holders) != Answer::taken;
   });
   // Rank 0 has the gate, so nobody else can have come between.
-  if (exchange.any(held) && first_)
+  if (ranks.any(held) && first_)
     notice_ = fmt::format("'{}' is not locked on every machine: let only one run write here", path);
 }
 
@@ -151,12 +150,12 @@ void JobLock::take(const std::string& path, int number_of_ranks) {
     }
   }
   write_holder(handle_, number_of_ranks);
-  set(handle_, F_UNLCK, ranks);
+  set(handle_, F_UNLCK, holders);
 }
 
-void JobLock::release(core::Exchange& exchange) {
+void JobLock::release(core::Reductions& ranks) {
   if (!first_ && handle_ >= 0) ::close(std::exchange(handle_, -1));
-  exchange.any(false);  // every other rank is through
+  ranks.any(false);  // every other rank is through
   if (!first_ || handle_ < 0) return;
   // Whoever has opened the file by now finds, once rank 0 lets go, that the path does not lead to it any
   // more.

@@ -12,7 +12,7 @@
 #include <memory>
 #include <string>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 
 namespace mpm::io {
 
@@ -20,13 +20,13 @@ class JobLock {
  public:
   /// Waits some seconds for another run, or what is left of a killed one, to end; a FileError says who holds
   /// the lock. The folder must exist. Collective.
-  JobLock(const std::string& path, core::Exchange& exchange);
+  JobLock(const std::string& path, core::Reductions& ranks);
   ~JobLock();
   JobLock(const JobLock&) = delete;
   JobLock& operator=(const JobLock&) = delete;
 
   /// The run has ended and writes no more: the file goes. Collective.
-  void release(core::Exchange& exchange);
+  void release(core::Reductions& ranks);
   /// What the user should know; mostly empty.
   const std::string& notice() const { return notice_; }
 

@@ -4,8 +4,8 @@
 
 namespace mpm::io {
 
-Log::Log(const std::string& path, bool append, bool console, core::Exchange& exchange)
-    : file_(path, append, exchange), speaks_(exchange.rank() == 0), console_(console) {}
+Log::Log(const std::string& path, bool append, bool console, core::Reductions& ranks)
+    : file_(path, append, ranks), speaks_(ranks.rank() == 0), console_(console) {}
 
 void Log::put(const std::string& text, To to) {
   file_.add(text + '\n');

@@ -14,7 +14,7 @@ class Log {
  public:
   enum class To { both, file };
   /// Throws FileError. Collective.
-  Log(const std::string& path, bool append, bool console, core::Exchange& exchange);
+  Log(const std::string& path, bool append, bool console, core::Reductions& ranks);
 
   /// One line, or several. Any rank may call it; only rank 0 is heard.
   template <class... Arguments>
@@ -32,9 +32,9 @@ class Log {
   }
 
   /// Throws FileError if something could not be written. Collective.
-  void flush(core::Exchange& exchange) { file_.flush(exchange); }
+  void flush(core::Reductions& ranks) { file_.flush(ranks); }
   /// As flush(), and to the disk itself. Collective.
-  void sync(core::Exchange& exchange) { file_.sync(exchange); }
+  void sync(core::Reductions& ranks) { file_.sync(ranks); }
   /// What the file holds; 0 on other ranks than 0.
   std::uint64_t bytes() const { return file_.bytes(); }
 

@@ -4,13 +4,13 @@
 
 namespace mpm::io {
 
-MemoryUse peak_memory(core::Exchange& exchange) {
+MemoryUse peak_memory(core::Reductions& ranks) {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
   std::int64_t bytes = 1024 * std::int64_t{usage.ru_maxrss};
   double least = -static_cast<double>(bytes);
-  exchange.minimum(std::span(&least, 1));
-  exchange.sum(std::span(&bytes, 1));
+  ranks.minimum(std::span(&least, 1));
+  ranks.sum(std::span(&bytes, 1));
   return {static_cast<std::int64_t>(-least), bytes};
 }
 

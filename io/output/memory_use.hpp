@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 
 namespace mpm::io {
 
@@ -14,6 +14,6 @@ struct MemoryUse {
 };
 
 /// Peak resident memory up to now. Collective.
-MemoryUse peak_memory(core::Exchange& exchange);
+MemoryUse peak_memory(core::Reductions& ranks);
 
 }  // namespace mpm::io

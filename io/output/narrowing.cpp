@@ -16,8 +16,8 @@ void list(std::string& text, const std::string& name, std::int64_t count) {
 
 std::string CutValues::warning(const std::string& file, std::int64_t step,
                                const std::vector<std::string>& names, std::vector<std::int64_t> mine,
-                               core::Exchange& exchange) {
-  exchange.sum(std::span<std::int64_t>(mine));
+                               core::Reductions& ranks) {
+  ranks.sum(std::span<std::int64_t>(mine));
   std::string found;
   bool is_new = false;
   for (std::size_t i = 0; i < names.size(); ++i) {

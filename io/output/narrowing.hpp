@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 
 namespace mpm::io {
 
@@ -33,7 +33,7 @@ class CutValues {
   /// `mine`: counts of the picture just written on this rank, as `names`. One line when a variable is cut for
   /// the first time, else empty; the same on all ranks. Collective.
   std::string warning(const std::string& file, std::int64_t step, const std::vector<std::string>& names,
-                      std::vector<std::int64_t> mine, core::Exchange& exchange);
+                      std::vector<std::int64_t> mine, core::Reductions& ranks);
   /// How many values were cut in all pictures; empty if there were none.
   std::string total(const std::string& file) const;
 

@@ -43,20 +43,22 @@ void add_hashes(const core::Model& model, const std::vector<CohortPlace>& places
                 std::vector<CohortRecord>& records) {
   core::for_each_by_threads(std::size_t{0}, places.size(), 8, [&](std::size_t i) {
     thread_local std::vector<double> rows;
-    const core::Cohort& cohort =
-        model.grid->brick(places[i].slot).cohorts[static_cast<std::size_t>(places[i].cohort)];
-    const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
     rows.clear();
-    append_rows(pool, cohort, rows);
-    records[i].hash = hash_of(records[i], rows.data(), pool.layout().columns());
+    int columns = 0;
+    for (const core::ConstParticleBlock& block : blocks_at(model, places[i])) {
+      columns = block.layout->columns();
+      for (const core::ConstParticle p : block)
+        for (int c = 0; c < columns; ++c) rows.push_back(p.nth(c));
+    }
+    records[i].hash = hash_of(records[i], rows.data(), columns);
   });
 }
 
-std::vector<CohortRecord> all_records(const std::vector<CohortRecord>& mine, core::Exchange& exchange) {
+std::vector<CohortRecord> all_records(const std::vector<CohortRecord>& mine, core::Reductions& ranks) {
   std::string bytes(mine.size() * sizeof(CohortRecord), '\0');
   if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
   std::vector<CohortRecord> all;
-  for (const std::string& part : exchange.gather(bytes)) {
+  for (const std::string& part : ranks.gather(bytes)) {
     const std::size_t old = all.size();
     all.resize(old + part.size() / sizeof(CohortRecord));
     if (!part.empty()) std::memcpy(all.data() + old, part.data(), part.size());
@@ -67,12 +69,12 @@ std::vector<CohortRecord> all_records(const std::vector<CohortRecord>& mine, cor
 
 }  // namespace
 
-ParticleOrder order_particles(const core::Model& model, core::Exchange& exchange, bool hashes) {
+ParticleOrder order_particles(const core::Model& model, core::Reductions& ranks, bool hashes) {
   ParticleOrder order;
   std::vector<CohortRecord> records;
   collect(model, records, order.mine);
   if (hashes) add_hashes(model, order.mine, records);
-  order.cohorts = all_records(records, exchange);
+  order.cohorts = all_records(records, ranks);
   order.particles.resize(model.bodies.size());
   std::size_t next = 0;  // of mine
   for (const CohortRecord& r : order.cohorts) {
@@ -106,23 +108,10 @@ std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::ve
   return hash.value();
 }
 
-std::uint64_t state_hash(const core::Model& model, core::Exchange& exchange) {
+std::uint64_t state_hash(const core::Model& model, core::Reductions& ranks) {
   std::vector<std::string> bodies;
   for (const core::Body& b : model.bodies) bodies.push_back(described(b.name, b.pool->layout().set()));
-  return state_hash(order_particles(model, exchange, true).cohorts, bodies);
-}
-
-void append_rows(const core::BlockPool& pool, const core::Cohort& cohort, std::vector<double>& rows) {
-  const auto columns = static_cast<std::size_t>(pool.layout().columns());
-  std::size_t at = rows.size();
-  rows.resize(at + columns * cohort.count);
-  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-    const double* block = pool.block(cohort.blocks[b]);
-    const std::size_t used = static_cast<std::size_t>(cohort.used_lanes(b));
-    for (std::size_t i = 0; i < used; ++i) {
-      for (std::size_t c = 0; c < columns; ++c) rows[at++] = block[core::block_lanes * c + i];
-    }
-  }
+  return state_hash(order_particles(model, ranks, true).cohorts, bodies);
 }
 
 std::uint64_t hash_of(const CohortRecord& record, const double* rows, int columns) {

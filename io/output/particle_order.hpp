@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
+#include "core/particle_range.hpp"
 
 namespace mpm::io {
 
@@ -34,17 +35,24 @@ struct ParticleOrder {
 };
 
 /// With `hashes` every record carries its hash. Collective.
-ParticleOrder order_particles(const core::Model& model, core::Exchange& exchange, bool hashes);
+ParticleOrder order_particles(const core::Model& model, core::Reductions& ranks, bool hashes);
 
 /// Hash of the state of all particles: names of bodies and columns, and every record of the order. The same
 /// for the same bits, on any number of ranks. Collective.
-std::uint64_t state_hash(const core::Model& model, core::Exchange& exchange);
+std::uint64_t state_hash(const core::Model& model, core::Reductions& ranks);
 std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::vector<std::string>& bodies);
 /// What state_hash() knows of a body: its name and the names of its columns.
 std::string described(const std::string& name, const core::ColumnSet& columns);
 
-/// The particles of a cohort as rows of doubles, one row per particle, onto the end of `rows`.
-void append_rows(const core::BlockPool& pool, const core::Cohort& cohort, std::vector<double>& rows);
+/// The particles of a cohort.
+inline const core::Cohort& cohort_at(const core::Model& model, const CohortPlace& place) {
+  return model.grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
+}
+inline core::BlockRange<const core::Model> blocks_at(const core::Model& model, const CohortPlace& place) {
+  const int body = cohort_at(model, place).body;
+  return blocks_of(model, std::as_const(*model.grid).brick(place.slot), body, body + 1);
+}
+
 /// The hash that a record should have, from all its rows of `columns` doubles.
 std::uint64_t hash_of(const CohortRecord& record, const double* rows, int columns);
 

@@ -6,8 +6,7 @@ std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleO
                                        std::span<const std::int64_t> first_row_of_body, std::size_t most) {
   std::vector<RowBatch> batches;
   for (const CohortPlace& place : order.mine) {
-    const core::Cohort& cohort =
-        model.grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
+    const core::Cohort& cohort = cohort_at(model, place);
     const std::int64_t base = first_row_of_body[static_cast<std::size_t>(cohort.body)];
     if (base == left_out) continue;
     if (batches.empty() || batches.back().particles + cohort.count > most) batches.emplace_back();

@@ -32,20 +32,16 @@ inline constexpr std::int64_t left_out = -1;
 std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleOrder& order,
                                        std::span<const std::int64_t> first_row_of_body, std::size_t most);
 
-/// f(body, layout, block, lanes in use, first particle of the block in the batch's memory), by all threads.
+/// f(block, first of its particles in the batch's memory), by all threads.
 template <class F>
 void for_each_block(const core::Model& model, const RowBatch& batch, F f) {
 #pragma omp parallel for schedule(dynamic, 4) if (batch.parts.size() > 32)
   for (std::size_t i = 0; i < batch.parts.size(); ++i) {
     const RowBatch::Part& part = batch.parts[i];
-    const core::Cohort& cohort =
-        model.grid->brick(part.place.slot).cohorts[static_cast<std::size_t>(part.place.cohort)];
-    const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
-    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-      const std::size_t done = core::block_lanes * b;
-      const int used = cohort.used_lanes(b);
-      f(static_cast<std::size_t>(cohort.body), pool.layout(), pool.block(cohort.blocks[b]), used,
-        part.first + done);
+    std::size_t first = part.first;
+    for (const core::ConstParticleBlock& block : blocks_at(model, part.place)) {
+      f(block, first);
+      first += static_cast<std::size_t>(block.used);
     }
   }
 }

@@ -74,13 +74,13 @@ void compare(const std::string& path, std::span<const SharedRows> datasets,
 }  // namespace
 
 std::vector<Extent> write_together(const std::string& path, std::span<const SharedRows> datasets,
-                                   core::Exchange& exchange) {
+                                   core::Reductions& ranks) {
   std::vector<Extent> extents;
-  together(exchange, [&] {
+  together(ranks, [&] {
     extents = extents_of(path, datasets);
     write(path, datasets, extents);
   });
-  if (exchange.size() > 1) together(exchange, [&] { compare(path, datasets, extents); });
+  if (ranks.size() > 1) together(ranks, [&] { compare(path, datasets, extents); });
   return extents;
 }
 

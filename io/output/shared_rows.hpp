@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 #include "io/output/file.hpp"
 #include "io/output/row_batches.hpp"
 
@@ -35,6 +35,6 @@ struct SharedRows {
 
 /// Where the datasets are in the file. Throws FileError on every rank if it fails on any. Collective.
 std::vector<Extent> write_together(const std::string& path, std::span<const SharedRows> datasets,
-                                   core::Exchange& exchange);
+                                   core::Reductions& ranks);
 
 }  // namespace mpm::io

@@ -57,12 +57,12 @@ double total_cells(const core::Model& model) {
 }  // namespace
 
 StatusFile::StatusFile(const std::string& path, const core::Model& model,
-                       const std::optional<TableContinuation>& from, core::Exchange& exchange)
-    : file_(path, to_text(provenance_of(*model.scene), "# "), head_of(model), from, exchange),
+                       const std::optional<TableContinuation>& from, core::Reductions& ranks)
+    : file_(path, to_text(provenance_of(*model.scene), "# "), head_of(model), from, ranks),
       memory_(model.scene->output.statistics.memory),
       occupancy_(model.scene->output.statistics.cell_occupancy) {}
 
-void StatusFile::add(const core::Model& model, const core::Totals& totals, core::Exchange& exchange) {
+void StatusFile::add(const core::Model& model, const core::Totals& totals, core::Reductions& ranks) {
   const core::Clock& clock = model.clock;
   const core::EnergyBalance balance = core::energy_balance(totals, model.initial_energy);
   std::string row = fmt::format("{:>{}}", clock.step, width);
@@ -81,13 +81,13 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
   for (const core::BodyTotals& b : totals.bodies) add_group(b);
   for (const core::Quantities& sum : material_sums(model, totals)) add_group(sum);
   if (memory_) {
-    const MemoryUse use = peak_memory(exchange);
+    const MemoryUse use = peak_memory(ranks);
     add(static_cast<double>(use.largest));
     add(static_cast<double>(use.sum));
   }
-  if (occupancy_) add(static_cast<double>(core::occupied_cells(model, exchange)) / total_cells(model));
+  if (occupancy_) add(static_cast<double>(core::occupied_cells(model, ranks)) / total_cells(model));
   file_.add(clock.step, row);
-  file_.flush(exchange);
+  file_.flush(ranks);
   ++rows_;
 }
 

@@ -107,11 +107,10 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
 }
 
 void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,
-                   const RunReport& report, core::Exchange& exchange) {
-  const MemoryUse memory = peak_memory(exchange);
-  together(exchange, [&] {
-    if (exchange.rank() == 0)
-      replace_file(path, summary_json(model, totals, report, exchange.size(), memory));
+                   const RunReport& report, core::Reductions& ranks) {
+  const MemoryUse memory = peak_memory(ranks);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) replace_file(path, summary_json(model, totals, report, ranks.size(), memory));
   });
 }
 
@@ -120,7 +119,7 @@ std::string timing_table(const RunReport& report) {
   for (const auto& [name, spread] : report.phases) widest = std::max(widest, name.size());
   std::string text = fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>8} {:>10}\n", "phase", widest, "min s",
                                  "mean s", "max s", "share", "imbalance");
-  const auto add = [&](const std::string& name, const core::Exchange::Spread& s) {
+  const auto add = [&](const std::string& name, const core::Spread& s) {
     const double share = report.seconds_loop > 0 ? 100 * s.mean / report.seconds_loop : 0;
     const double imbalance = s.mean > 0 ? 100 * (s.max / s.mean - 1) : 0;
     text += fmt::format("{:<{}} {:>10.3f} {:>10.3f} {:>10.3f} {:>7.1f}% {:>9.1f}%\n", name, widest, s.min,

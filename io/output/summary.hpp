@@ -21,9 +21,9 @@ struct RunReport {
   double seconds_total = 0;
   double seconds_setup = 0;
   double seconds_loop = 0;
-  core::Exchange::Spread output;  ///< seconds of tables, pictures and restart files, over the ranks
+  core::Spread output;  ///< seconds of tables, pictures and restart files, over the ranks
   /// Per phase of the step, in its order: likewise.
-  std::vector<std::pair<std::string, core::Exchange::Spread>> phases;
+  std::vector<std::pair<std::string, core::Spread>> phases;
   /// Sum over the steps of this run of the particles in each.
   double particle_steps = 0;
   double dissipated_by_contact = 0;  ///< energy
@@ -35,7 +35,7 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
 
 /// Writes it as a whole, or leaves what was there. Throws FileError. Collective.
 void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,
-                   const RunReport& report, core::Exchange& exchange);
+                   const RunReport& report, core::Reductions& ranks);
 
 /// Seconds per phase over the ranks, shares of the loop and imbalance (max over mean, less one), one line
 /// each.

@@ -119,16 +119,16 @@ TableCut cut_table(const std::string& path, const std::string& head, const Table
 }
 
 TableFile::TableFile(const std::string& path, const std::string& comments, const std::string& head,
-                     const std::optional<TableContinuation>& from, core::Exchange& exchange) {
+                     const std::optional<TableContinuation>& from, core::Reductions& ranks) {
   TableCut cut;
-  together(exchange, [&] {
-    if (exchange.rank() == 0 && from) cut = cut_table(path, head, *from);
+  together(ranks, [&] {
+    if (ranks.rank() == 0 && from) cut = cut_table(path, head, *from);
   });
   mark_ = cut.kept;
   notice_ = cut.notice;
-  file_.emplace(path, cut.append, exchange);
+  file_.emplace(path, cut.append, ranks);
   if (!cut.append) file_->add(comments + head + '\n');
-  file_->flush(exchange);
+  file_->flush(ranks);
 }
 
 void TableFile::add(std::int64_t step, const std::string& row) noexcept {

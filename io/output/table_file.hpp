@@ -48,13 +48,13 @@ class TableFile {
  public:
   /// Continues the table if it can, else begins it with `comments` and `head`. Throws FileError. Collective.
   TableFile(const std::string& path, const std::string& comments, const std::string& head,
-            const std::optional<TableContinuation>& from, core::Exchange& exchange);
+            const std::optional<TableContinuation>& from, core::Reductions& ranks);
 
   /// As TextFile::add().
   void add(std::int64_t step, const std::string& row) noexcept;
   /// As those of TextFile. Collective.
-  void flush(core::Exchange& exchange) { file_->flush(exchange); }
-  void sync(core::Exchange& exchange) { file_->sync(exchange); }
+  void flush(core::Reductions& ranks) { file_->flush(ranks); }
+  void sync(core::Reductions& ranks) { file_->sync(ranks); }
 
   const TableMark& mark() const { return mark_; }
   const std::string& notice() const { return notice_; }

@@ -6,9 +6,9 @@ namespace {
 constexpr std::size_t buffer_bytes = std::size_t{1} << 16;
 }
 
-TextFile::TextFile(const std::string& path, bool append, core::Exchange& exchange) {
-  together(exchange, [&] {
-    if (exchange.rank() != 0) return;
+TextFile::TextFile(const std::string& path, bool append, core::Reductions& ranks) {
+  together(ranks, [&] {
+    if (ranks.rank() != 0) return;
     file_ = std::make_unique<File>(path, append ? File::Mode::append : File::Mode::write_anew);
   });
 }
@@ -29,14 +29,14 @@ void TextFile::write_out() noexcept {
   waiting_.clear();
 }
 
-void TextFile::flush(core::Exchange& exchange) {
+void TextFile::flush(core::Reductions& ranks) {
   write_out();
-  agree(exchange, complaint_);
+  agree(ranks, complaint_);
 }
 
-void TextFile::sync(core::Exchange& exchange) {
-  flush(exchange);
-  together(exchange, [&] {
+void TextFile::sync(core::Reductions& ranks) {
+  flush(ranks);
+  together(ranks, [&] {
     if (file_) file_->sync();
   });
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 #include "io/output/file.hpp"
 
 namespace mpm::io {
@@ -14,7 +14,7 @@ namespace mpm::io {
 class TextFile {
  public:
   /// Opens the file on rank 0, anew or after what it holds. Throws FileError. Collective.
-  TextFile(const std::string& path, bool append, core::Exchange& exchange);
+  TextFile(const std::string& path, bool append, core::Reductions& ranks);
   ~TextFile();
   TextFile(TextFile&&) = default;
 
@@ -24,9 +24,9 @@ class TextFile {
   /// Hand what waits to the system.
   void write_out() noexcept;
   /// Throws FileError if anything could not be written since the file was opened. Collective.
-  void flush(core::Exchange& exchange);
+  void flush(core::Reductions& ranks);
   /// As flush(), and to the disk itself. Collective.
-  void sync(core::Exchange& exchange);
+  void sync(core::Reductions& ranks);
   /// What the file holds; 0 on other ranks than 0.
   std::uint64_t bytes() const { return file_ ? file_->size() : 0; }
 

@@ -90,10 +90,9 @@ BodyFacts facts_of(const core::Model& model, std::size_t body) {
   return {static_cast<int>(body), b.component + 1, b.material, b.model->reference_density()};
 }
 
-double evaluate(Variable v, const ColumnLayout& layout, const double* block, int lane,
-                const BodyFacts& facts) {
-  const auto at = [&](Column c) { return block[layout.offset(c) + lane]; };
-  const auto optional = [&](Column c) { return layout.has(c) ? at(c) : 0.0; };
+double evaluate(Variable v, const core::ConstParticle& p, const BodyFacts& facts) {
+  const auto at = [&](Column c) { return p[c]; };
+  const auto optional = [&](Column c) { return p.layout().has(c) ? at(c) : 0.0; };
   const auto pressure = [&] { return at(Column::pressure) + at(Column::viscous_pressure); };
   const auto equivalent = [&] {
     return core::mises(core::Sym3<double>{at(Column::s_xx), at(Column::s_yy), at(Column::s_zz),

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/model.hpp"
+#include "core/particles/particle_view.hpp"
 
 namespace mpm::io {
 
@@ -126,7 +127,6 @@ BodyFacts facts_of(const core::Model& model, std::size_t body);
 
 /// The variable for the particle in `lane` of a block. Angles and rates do not occur; units are the scene's
 /// own.
-double evaluate(Variable v, const core::ColumnLayout& layout, const double* block, int lane,
-                const BodyFacts& facts);
+double evaluate(Variable v, const core::ConstParticle& p, const BodyFacts& facts);
 
 }  // namespace mpm::io

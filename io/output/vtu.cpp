@@ -96,21 +96,17 @@ class Appended {
 template <class T>
 void put_values(const Piece& piece, const Array& array, Appended& out, std::int64_t& cut) {
   for (const CohortPlace& place : piece.places) {
-    const core::Cohort& cohort =
-        piece.model->grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
-    const core::BlockPool& pool = *piece.model->bodies[static_cast<std::size_t>(cohort.body)].pool;
-    const core::ColumnLayout& layout = pool.layout();
-    const BodyFacts facts = facts_of(*piece.model, static_cast<std::size_t>(cohort.body));
-    for (std::uint32_t i = 0; i < cohort.count; ++i) {
-      const double* block = pool.block(cohort.blocks[i / core::block_lanes]);
-      const int lane = static_cast<int>(i % core::block_lanes);
-      if (array.first == Variable::count) {
-        out.put(static_cast<T>(block[layout.offset(core::Column::identity) + lane]));
-        continue;
-      }
-      for (int c = 0; c < array.components; ++c) {
-        const auto v = static_cast<Variable>(static_cast<int>(array.first) + c);
-        out.put(narrowed<T>(evaluate(v, layout, block, lane, facts), cut));
+    for (const core::ConstParticleBlock& block : blocks_at(*piece.model, place)) {
+      const BodyFacts facts = facts_of(*piece.model, static_cast<std::size_t>(block.body));
+      for (const core::ConstParticle p : block) {
+        if (array.first == Variable::count) {
+          out.put(static_cast<T>(p[core::Column::identity]));
+          continue;
+        }
+        for (int c = 0; c < array.components; ++c) {
+          const auto v = static_cast<Variable>(static_cast<int>(array.first) + c);
+          out.put(narrowed<T>(evaluate(v, p, facts), cut));
+        }
       }
     }
   }
@@ -222,11 +218,11 @@ std::string attribute_of(const std::string& line, const std::string& name) {
 
 }  // namespace
 
-VtuWriter::VtuWriter(Settings settings, const core::Model& model, core::Exchange& exchange)
+VtuWriter::VtuWriter(Settings settings, const core::Model& model, core::Reductions& ranks)
     : settings_(std::move(settings)) {
   if (settings_.continue_from && !settings_.continue_from->empty()) read_mark(*settings_.continue_from);
-  together(exchange, [&] {
-    if (exchange.rank() != 0) return;
+  together(ranks, [&] {
+    if (ranks.rank() != 0) return;
     make_folder(settings_.folder + "/" + settings_.job + "_vtu");
     const std::size_t listed = entries_.size();
     std::erase_if(entries_, [&](const Entry& e) {
@@ -271,8 +267,8 @@ void VtuWriter::write_collection(const core::Scene& scene) const {
                text + list() + "</Collection>\n</VTKFile>\n");
 }
 
-void VtuWriter::sync(core::Exchange& exchange) {
-  together(exchange, [&] {
+void VtuWriter::sync(core::Reductions& ranks) {
+  together(ranks, [&] {
     for (const std::string& path : unsynced_) File(path, File::Mode::read).sync();
     unsynced_.clear();
   });
@@ -280,25 +276,25 @@ void VtuWriter::sync(core::Exchange& exchange) {
 
 void VtuWriter::write_set(const std::string& stem, const std::string& name,
                           const std::vector<std::size_t>& bodies, const core::Model& model,
-                          core::Exchange& exchange, int part) {
+                          core::Reductions& ranks, int part) {
   const std::string folder = settings_.job + "_vtu";
   const std::string path = settings_.folder + "/" + folder + "/";
   const Array position = position_array(settings_.double_precision);
   const std::vector<Array> arrays = point_arrays(settings_.variables, settings_.double_precision);
   const Piece piece = piece_of(model, bodies);
 
-  std::vector<std::int64_t> on_rank(static_cast<std::size_t>(exchange.size()));
-  on_rank[static_cast<std::size_t>(exchange.rank())] = static_cast<std::int64_t>(piece.particles);
-  exchange.sum(std::span(on_rank));
-  std::vector<int> ranks;
-  for (int r = 0; r < exchange.size(); ++r) {
-    if (on_rank[static_cast<std::size_t>(r)] > 0) ranks.push_back(r);
+  std::vector<std::int64_t> on_rank(static_cast<std::size_t>(ranks.size()));
+  on_rank[static_cast<std::size_t>(ranks.rank())] = static_cast<std::int64_t>(piece.particles);
+  ranks.sum(std::span(on_rank));
+  std::vector<int> with_piece;
+  for (int r = 0; r < ranks.size(); ++r) {
+    if (on_rank[static_cast<std::size_t>(r)] > 0) with_piece.push_back(r);
   }
-  if (ranks.empty()) ranks.push_back(0);  // viewers want at least one piece
+  if (with_piece.empty()) with_piece.push_back(0);  // viewers want at least one piece
 
-  together(exchange, [&] {
-    if (std::find(ranks.begin(), ranks.end(), exchange.rank()) == ranks.end()) return;
-    const std::string name_of_mine = path + piece_name(stem, exchange.rank());
+  together(ranks, [&] {
+    if (std::ranges::find(with_piece, ranks.rank()) == with_piece.end()) return;
+    const std::string name_of_mine = path + piece_name(stem, ranks.rank());
     try {
       write_piece(name_of_mine, piece, position, arrays, cut_now_);
       unsynced_.push_back(name_of_mine);
@@ -307,15 +303,15 @@ void VtuWriter::write_set(const std::string& stem, const std::string& name,
       throw;
     }
   });
-  together(exchange, [&] {
-    if (exchange.rank() != 0) return;
-    replace_file(path + stem + ".pvtu", index_of_pieces(stem, ranks, position, arrays, model));
+  together(ranks, [&] {
+    if (ranks.rank() != 0) return;
+    replace_file(path + stem + ".pvtu", index_of_pieces(stem, with_piece, position, arrays, model));
     entries_.push_back(
         {model.clock.time, part, xml_escaped(name), xml_escaped(folder + "/" + stem + ".pvtu")});
   });
 }
 
-void VtuWriter::write(const core::Model& model, core::Exchange& exchange) {
+void VtuWriter::write(const core::Model& model, core::Reductions& ranks) {
   std::vector<std::string> names{"position"};
   for (const Array& a : point_arrays(settings_.variables, settings_.double_precision))
     names.push_back(a.name);
@@ -325,21 +321,20 @@ void VtuWriter::write(const core::Model& model, core::Exchange& exchange) {
     if (!model.bodies[b].no_output) written.push_back(b);
   }
   if (!settings_.per_body) {
-    write_set(fmt::format("{}_{}", settings_.job, model.clock.step), "all bodies", written, model, exchange,
-              0);
+    write_set(fmt::format("{}_{}", settings_.job, model.clock.step), "all bodies", written, model, ranks, 0);
   } else {
     for (const std::size_t b : written) {
       const std::string stem =
           fmt::format("{}_{}_{}", settings_.job, file_name_of(model, b), model.clock.step);
-      write_set(stem, model.bodies[b].name, {b}, model, exchange, static_cast<int>(b));
+      write_set(stem, model.bodies[b].name, {b}, model, ranks, static_cast<int>(b));
     }
   }
   last_step_ = model.clock.step;
-  together(exchange, [&] {
-    if (exchange.rank() == 0) write_collection(*model.scene);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) write_collection(*model.scene);
   });
   warning_ = cut_.warning(settings_.folder + "/" + settings_.job + ".pvd", model.clock.step, names,
-                          std::move(cut_now_), exchange);
+                          std::move(cut_now_), ranks);
 }
 
 }  // namespace mpm::io

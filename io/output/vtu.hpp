@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 #include "io/output/narrowing.hpp"
 #include "io/output/variables.hpp"
 
@@ -29,13 +29,13 @@ class VtuWriter {
     std::optional<std::string> continue_from;
   };
   /// Throws FileError. Collective.
-  VtuWriter(Settings settings, const core::Model& model, core::Exchange& exchange);
+  VtuWriter(Settings settings, const core::Model& model, core::Reductions& ranks);
 
   /// One more time. Throws FileError; what Job.pvd lists stays readable. Collective.
-  void write(const core::Model& model, core::Exchange& exchange);
+  void write(const core::Model& model, core::Reductions& ranks);
 
   /// All files to the disk itself. Throws FileError. Collective.
-  void sync(core::Exchange& exchange);
+  void sync(core::Reductions& ranks);
   /// The list, for restart files; empty on other ranks than 0.
   std::string mark() const;
   /// Of the last time in the list; -1 if there is none.
@@ -57,7 +57,7 @@ class VtuWriter {
   std::string list() const;
   void write_collection(const core::Scene& scene) const;
   void write_set(const std::string& stem, const std::string& name, const std::vector<std::size_t>& bodies,
-                 const core::Model& model, core::Exchange& exchange, int part);
+                 const core::Model& model, core::Reductions& ranks, int part);
 
   Settings settings_;
   std::vector<Entry> entries_;  ///< on rank 0

@@ -86,7 +86,7 @@ std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) {
   return i < values.size() ? values[i] : 0;
 }
 
-Books summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::Exchange& exchange) {
+Books summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::Reductions& ranks) {
   Books books = model.books;
   std::vector<core::ExactSum> sums;
   for (const auto& [name, sum] : sum_names) sums.push_back(books.*sum);
@@ -97,8 +97,8 @@ Books summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::Ex
     counts.push_back(entry(books.body_eroded, b));
     counts.push_back(entry(books.body_left, b));
   }
-  exchange.sum(std::span(sums));
-  exchange.sum(std::span(counts));
+  ranks.sum(std::span(sums));
+  ranks.sum(std::span(counts));
   std::size_t s = 0, n = 0;
   for (const auto& [name, sum] : sum_names) {
     sums[s].normalise();
@@ -271,7 +271,7 @@ void check_counts(const RestartContents& c) {
 }  // namespace
 
 RestartContents contents_of(const core::Model& model, const RestartExtra& extra, const ParticleOrder& order,
-                            core::Exchange& exchange) {
+                            core::Reductions& ranks) {
   const core::Scene& scene = *model.scene;
   RestartContents c;
   c.provenance = scene.provenance;
@@ -289,7 +289,7 @@ RestartContents contents_of(const core::Model& model, const RestartExtra& extra,
                         b.model->reference_density(), b.no_output, columns_of(b.pool->layout().set()),
                         order.particles[i], 0, 0});
   }
-  c.books = summed(model, c.bodies, exchange);
+  c.books = summed(model, c.bodies, ranks);
   return c;
 }
 

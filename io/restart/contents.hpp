@@ -50,7 +50,7 @@ struct RestartContents {
 
 /// What `model` and the sums of its books over the ranks make up. Collective.
 RestartContents contents_of(const core::Model& model, const RestartExtra& extra, const ParticleOrder& order,
-                            core::Exchange& exchange);
+                            core::Reductions& ranks);
 
 /// Make the file, with room for the particles' rows. Returns where they go. On this rank alone.
 std::vector<Extent> write_contents(const std::string& path, const RestartContents& contents,

@@ -65,19 +65,19 @@ core::Model model_for(const RestartContents& contents) {
 
 void restart_to_h5part(const std::string& path, const std::string& h5part,
                        const std::vector<Variable>& variables, bool double_precision,
-                       core::Exchange& exchange) {
+                       core::Communication& communication) {
+  core::Reductions& ranks = communication.reductions;
   RestartContents contents;
-  together(exchange, [&] {
+  together(ranks, [&] {
     check_guard(path);
     contents = read_contents(path);
   });
   core::Model model = model_for(contents);
-  read_restart(path, model, exchange);
-  H5PartWriter writer({h5part, variables, double_precision, std::nullopt}, model, exchange);
-  writer.write(model, exchange);
-  writer.finish(exchange);
-  if (exchange.rank() == 0 && !writer.warning().empty())
-    fmt::print(stderr, "warning: {}\n", writer.warning());
+  read_restart(path, model, communication);
+  H5PartWriter writer({h5part, variables, double_precision, std::nullopt}, model, ranks);
+  writer.write(model, ranks);
+  writer.finish(ranks);
+  if (ranks.rank() == 0 && !writer.warning().empty()) fmt::print(stderr, "warning: {}\n", writer.warning());
 }
 
 }  // namespace mpm::io

@@ -8,21 +8,21 @@
 namespace mpm::io {
 
 std::optional<std::string> find_newest_restart(const std::string& folder, const std::string& job,
-                                               core::Exchange& exchange, std::vector<std::string>& notices) {
+                                               core::Reductions& ranks, std::vector<std::string>& notices) {
   std::string mine, others;
-  if (exchange.rank() == 0) {
+  if (ranks.rank() == 0) {
     const RestartFiles files = restart_files(folder, job);
     for (const std::string& path : files.paths) mine += path + '\n';
     for (const std::string& path : files.of_others) others += path + '\n';
   }
-  std::istringstream paths(exchange.gather(mine).front());
+  std::istringstream paths(ranks.gather(mine).front());
   for (std::string path; std::getline(paths, path);) {
     try {
-      verify_restart(path, exchange);
+      verify_restart(path, ranks);
       return path;
     } catch (const FileError& e) { notices.push_back(fmt::format("passed over: {}", e.what())); }
   }
-  std::istringstream foreign(exchange.gather(others).front());
+  std::istringstream foreign(ranks.gather(others).front());
   for (std::string path; std::getline(foreign, path);)
     notices.push_back(fmt::format("passed over: the restart file '{}' is of another job", path));
   return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/particles/tile_order.hpp"
 #include "core/step/migration.hpp"
 #include "io/output/file.hpp"
 #include "io/restart/contents.hpp"
@@ -19,18 +20,18 @@ bool same_grid(const core::GridGeometry& a, const core::GridGeometry& b) {
 }
 
 /// The share of all records that a rank handles when nobody owns anything yet: about as many particles each.
-std::vector<std::size_t> share_of(const RestartContents& contents, const core::Exchange& exchange) {
+std::vector<std::size_t> share_of(const RestartContents& contents, const core::Reductions& ranks) {
   std::uint64_t all = 0;
   for (const CohortRecord& r : contents.cohorts) all += r.particles;
-  const auto ranks = static_cast<std::uint64_t>(exchange.size());
+  const auto shares = static_cast<std::uint64_t>(ranks.size());
   std::vector<std::size_t> mine;
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < contents.cohorts.size(); ++i) {
     const std::uint64_t rank =
         all == 0 ? 0
                  : static_cast<std::uint64_t>(static_cast<double>(before) / static_cast<double>(all) *
-                                              static_cast<double>(ranks));
-    if (std::min(rank, ranks - 1) == static_cast<std::uint64_t>(exchange.rank())) mine.push_back(i);
+                                              static_cast<double>(shares));
+    if (std::min(rank, shares - 1) == static_cast<std::uint64_t>(ranks.rank())) mine.push_back(i);
     before += contents.cohorts[i].particles;
   }
   return mine;
@@ -44,12 +45,12 @@ void convert(const double* row, const std::vector<int>& source, std::vector<doub
 
 /// Book what the bodies held that no longer take part.
 void book_removed(const RestartContents& contents, const Fit& fit, const std::string& path,
-                  core::Model& model, core::Exchange& exchange) {
+                  core::Model& model, core::Reductions& ranks) {
   std::vector<std::size_t> removed;
-  for (const std::size_t i : share_of(contents, exchange)) {
+  for (const std::size_t i : share_of(contents, ranks)) {
     if (fit.of(contents.cohorts[i]) == nullptr) removed.push_back(i);
   }
-  together(exchange, [&] {
+  together(ranks, [&] {
     for_each_record(path, contents, removed, [&](const CohortRecord& record, const double* rows) {
       const BodyRecord& body = contents.bodies[static_cast<std::size_t>(record.body)];
       const auto at = [&](core::Column c) {
@@ -70,14 +71,15 @@ void book_removed(const RestartContents& contents, const Fit& fit, const std::st
 
 /// The bricks of the file as they were.
 void read_bricks(const std::string& path, const RestartContents& contents, const Fit& fit, core::Model& model,
-                 core::Exchange& exchange) {
+                 core::Communication& communication) {
+  core::Reductions& ranks = communication.reductions;
   std::vector<core::BrickCount> counts;
-  for (const std::size_t i : share_of(contents, exchange)) {
+  for (const std::size_t i : share_of(contents, ranks)) {
     const CohortRecord& r = contents.cohorts[i];
     if (fit.of(r) != nullptr)
       counts.push_back({core::brick_of_key(r.brick), static_cast<std::int64_t>(r.particles)});
   }
-  exchange.partition(*model.grid, counts, model.scene->decomposition);
+  communication.bricks.partition(*model.grid, counts, model.scene->decomposition);
 
   std::vector<std::size_t> mine;
   for (std::size_t i = 0; i < contents.cohorts.size(); ++i) {
@@ -85,7 +87,7 @@ void read_bricks(const std::string& path, const RestartContents& contents, const
     const core::Slot s = model.grid->find(core::brick_of_key(r.brick));
     if (fit.of(r) != nullptr && s != core::no_slot && s < model.grid->owned()) mine.push_back(i);
   }
-  together(exchange, [&] {
+  together(ranks, [&] {
     std::vector<double> row;
     for_each_record(path, contents, mine, [&](const CohortRecord& record, const double* rows) {
       const Fit::Body& body = *fit.of(record);
@@ -108,11 +110,11 @@ void read_bricks(const std::string& path, const RestartContents& contents, const
 }
 
 void refuse_outside(std::int64_t outside, const std::string& first, const core::Model& model,
-                    core::Exchange& exchange) {
-  exchange.sum(std::span(&outside, 1));
+                    core::Reductions& ranks) {
+  ranks.sum(std::span(&outside, 1));
   if (outside == 0) return;
   std::string example;
-  for (const std::string& line : exchange.gather(first)) {
+  for (const std::string& line : ranks.gather(first)) {
     if (example.empty()) example = line;
   }
   throw core::InputErrors(
@@ -125,15 +127,16 @@ void refuse_outside(std::int64_t outside, const std::string& first, const core::
 /// Particles to wherever the new grid has them; each brick in the order of cells and identities, as at a
 /// start.
 void read_particles(const std::string& path, const RestartContents& contents, const Fit& fit,
-                    core::Model& model, core::Exchange& exchange) {
+                    core::Model& model, core::Communication& communication) {
+  core::Reductions& ranks = communication.reductions;
   const core::GridGeometry& geometry = model.grid->geometry();
-  core::Travellers travellers;
+  core::MigrationBuffer moving;
   std::map<core::BrickKey, std::int64_t> particles;
   std::int64_t outside = 0;
   std::string first_outside;
-  std::vector<std::size_t> mine = share_of(contents, exchange);
+  std::vector<std::size_t> mine = share_of(contents, ranks);
   std::erase_if(mine, [&](std::size_t i) { return fit.of(contents.cohorts[i]) == nullptr; });
-  together(exchange, [&] {
+  together(ranks, [&] {
     std::vector<double> row;
     for_each_record(path, contents, mine, [&](const CohortRecord& record, const double* rows) {
       const Fit::Body& body = *fit.of(record);
@@ -146,19 +149,19 @@ void read_particles(const std::string& path, const RestartContents& contents, co
         }
         const core::BrickCoord to = geometry.brick_at(x);
         ++particles[core::key_of(to)];
-        travellers.add(to, static_cast<int>(body.number), row.data(), static_cast<int>(row.size()));
+        moving.add(to, static_cast<int>(body.number), row.data(), static_cast<int>(row.size()));
       }
     });
   });
-  refuse_outside(outside, first_outside, model, exchange);
+  refuse_outside(outside, first_outside, model, ranks);
 
   std::vector<core::BrickCount> counts;
   for (const auto& [key, n] : particles) counts.push_back({core::brick_of_key(key), n});
-  exchange.partition(*model.grid, counts, model.scene->decomposition);
+  communication.bricks.partition(*model.grid, counts, model.scene->decomposition);
   std::vector<int> columns_of;
   for (const core::Body& b : model.bodies) columns_of.push_back(b.pool->layout().columns());
-  exchange.scatter(*model.grid, travellers, columns_of);
-  core::insert_travellers(model, travellers);
+  communication.particles.scatter(moving, columns_of);
+  core::insert_particles(model, moving);
   for (core::Brick& brick : model.grid->bricks()) {
     for (core::Cohort& cohort : brick.cohorts) {
       core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
@@ -171,8 +174,8 @@ void read_particles(const std::string& path, const RestartContents& contents, co
 
 /// The books of all ranks go on at rank 0.
 void restore_books(const RestartContents& contents, const Fit& fit, core::Model& model,
-                   const core::Exchange& exchange) {
-  const bool keeper = exchange.rank() == 0;
+                   const core::Reductions& ranks) {
+  const bool keeper = ranks.rank() == 0;
   model.books = keeper ? contents.books : core::Books{};
   model.books.body_eroded.assign(model.bodies.size(), 0);
   model.books.body_left.assign(model.bodies.size(), 0);
@@ -192,12 +195,13 @@ RestartScene read_restart_scene(const std::string& path) {
   return {contents.extra.scene_text, contents.provenance.path, contents.provenance.job_name};
 }
 
-RestartResult read_restart(const std::string& path, core::Model& model, core::Exchange& exchange) {
+RestartResult read_restart(const std::string& path, core::Model& model, core::Communication& communication) {
+  core::Reductions& ranks = communication.reductions;
   RestartContents contents;
-  together(exchange, [&] {
-    if (exchange.rank() == 0) check_guard(path);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) check_guard(path);
   });
-  together(exchange, [&] { contents = read_contents(path); });
+  together(ranks, [&] { contents = read_contents(path); });
 
   RestartResult result;
   const Fit fit = fit_to_model(contents, model, result.notices);
@@ -205,28 +209,28 @@ RestartResult read_restart(const std::string& path, core::Model& model, core::Ex
   model.clock = contents.clock;
   model.initial_energy = contents.initial_energy;
   model.next_identity = contents.next_identity;
-  restore_books(contents, fit, model, exchange);
-  book_removed(contents, fit, path, model, exchange);
+  restore_books(contents, fit, model, ranks);
+  book_removed(contents, fit, path, model, ranks);
   if (same_grid(contents.grid, model.grid->geometry())) {
-    read_bricks(path, contents, fit, model, exchange);
+    read_bricks(path, contents, fit, model, communication);
   } else {
     result.notices.push_back(
         "the grid is another than that of the restart file: particles are dealt out anew");
-    read_particles(path, contents, fit, model, exchange);
+    read_particles(path, contents, fit, model, communication);
   }
   result.extra = std::move(contents.extra);
   result.extra.scene_text.clear();
   return result;
 }
 
-void verify_restart(const std::string& path, core::Exchange& exchange) {
+void verify_restart(const std::string& path, core::Reductions& ranks) {
   RestartContents contents;
-  together(exchange, [&] {
-    if (exchange.rank() == 0) check_guard(path);
+  together(ranks, [&] {
+    if (ranks.rank() == 0) check_guard(path);
   });
-  together(exchange, [&] {
+  together(ranks, [&] {
     contents = read_contents(path);
-    for_each_record(path, contents, share_of(contents, exchange), [](const CohortRecord&, const double*) {});
+    for_each_record(path, contents, share_of(contents, ranks), [](const CohortRecord&, const double*) {});
   });
 }
 

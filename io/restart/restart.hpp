@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "core/communication/communication.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 #include "io/output/file_error.hpp"
 #include "io/output/variables.hpp"
 
@@ -36,7 +36,7 @@ std::string job_of_restart(const std::string& path);
 /// failure the older files are as they were. With the file's name the run's point of return moves: what goes
 /// on from it does not write again must be on the disk before. Throws FileError. Collective.
 std::string write_restart(const std::string& folder, const std::string& job, const core::Model& model,
-                          const RestartExtra& extra, core::Exchange& exchange);
+                          const RestartExtra& extra, core::Reductions& ranks);
 
 /// The input that a restart file was made from.
 struct RestartScene {
@@ -59,15 +59,15 @@ struct RestartResult {
 /// anew. A body that is not in the model must be deactivated in its scene: what it held is booked as removed.
 /// Throws FileError for a file that is damaged or cannot be read, InputErrors for a scene that does not fit
 /// it. Collective.
-RestartResult read_restart(const std::string& path, core::Model& model, core::Exchange& exchange);
+RestartResult read_restart(const std::string& path, core::Model& model, core::Communication& communication);
 
 /// Check every byte. Throws FileError. Collective.
-void verify_restart(const std::string& path, core::Exchange& exchange);
+void verify_restart(const std::string& path, core::Reductions& ranks);
 
 /// The file of the job that was written last and is undamaged, whatever its own name: the job's name in it
 /// counts. `notices` says which ones were passed over. Collective.
 std::optional<std::string> find_newest_restart(const std::string& folder, const std::string& job,
-                                               core::Exchange& exchange, std::vector<std::string>& notices);
+                                               core::Reductions& ranks, std::vector<std::string>& notices);
 
 /// state_hash() of the model that the file was written from. On this rank alone.
 std::uint64_t restart_state_hash(const std::string& path);
@@ -75,6 +75,6 @@ std::uint64_t restart_state_hash(const std::string& path);
 /// What -h5pt does: the particles of a restart file as an .h5part file of one time. Collective.
 void restart_to_h5part(const std::string& path, const std::string& h5part,
                        const std::vector<Variable>& variables, bool double_precision,
-                       core::Exchange& exchange);
+                       core::Communication& communication);
 
 }  // namespace mpm::io

@@ -24,18 +24,15 @@ std::vector<Extent> make_room(const std::string& part, const RestartContents& co
 }
 
 void fill(const core::Model& model, const RowBatch& batch, int columns, double* rows) {
-  for_each_block(
-      model, batch,
-      [&](std::size_t, const core::ColumnLayout&, const double* block, int used, std::size_t first) {
-        double* row = rows + first * static_cast<std::size_t>(columns);
-        for (int i = 0; i < used; ++i) {
-          for (int c = 0; c < columns; ++c) *row++ = block[core::block_lanes * c + i];
-        }
-      });
+  for_each_block(model, batch, [&](const core::ConstParticleBlock& block, std::size_t first) {
+    double* value = rows + first * static_cast<std::size_t>(columns);
+    for (const core::ConstParticle p : block)
+      for (int c = 0; c < columns; ++c) *value++ = p.nth(c);
+  });
 }
 
 void write_all_rows(const std::string& part, const ParticleOrder& order, const core::Model& model,
-                    core::Exchange& exchange) {
+                    core::Reductions& ranks) {
   const std::size_t bodies = model.bodies.size();
   std::vector<ParticleOrder> of_body(bodies);  // so that each body looks at no other's cohorts
   for (const CohortPlace& place : order.mine) {
@@ -57,32 +54,32 @@ void write_all_rows(const std::string& part, const ParticleOrder& order, const c
                           fill(model, batch, columns, reinterpret_cast<double*>(memory));
                         }});
   }
-  write_together(part, datasets, exchange);
-  together(exchange, [&] { File(part, File::Mode::read).sync(); });
+  write_together(part, datasets, ranks);
+  together(ranks, [&] { File(part, File::Mode::read).sync(); });
 }
 
 }  // namespace
 
 std::string write_restart(const std::string& folder, const std::string& job, const core::Model& model,
-                          const RestartExtra& extra, core::Exchange& exchange) {
+                          const RestartExtra& extra, core::Reductions& ranks) {
   const std::string path = restart_path(folder, job, model.clock.step);
   const std::string part = part_name(path);
-  const ParticleOrder order = order_particles(model, exchange, true);
-  const RestartContents contents = contents_of(model, extra, order, exchange);
+  const ParticleOrder order = order_particles(model, ranks, true);
+  const RestartContents contents = contents_of(model, extra, order, ranks);
   try {
     std::vector<Extent> rows;
-    together(exchange, [&] {
-      if (exchange.rank() == 0) rows = make_room(part, contents, *model.scene);
+    together(ranks, [&] {
+      if (ranks.rank() == 0) rows = make_room(part, contents, *model.scene);
     });
-    write_all_rows(part, order, model, exchange);
-    together(exchange, [&] {
-      if (exchange.rank() != 0) return;
+    write_all_rows(part, order, model, ranks);
+    together(ranks, [&] {
+      if (ranks.rank() != 0) return;
       seal(part, job, model.clock.step, youngest(folder, job), rows, contents.bodies.size());
       rename_file(part, path);
       remove_older(folder, job);
     });
   } catch (const FileError&) {
-    if (exchange.rank() == 0) remove_file(part);
+    if (ranks.rank() == 0) remove_file(part);
     throw;
   }
   return path;

@@ -5,8 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/communication/solo.hpp"
 #include "core/scene/errors.hpp"
-#include "core/step/exchange.hpp"
 
 using namespace mpm::core;
 

@@ -36,14 +36,14 @@ double imbalance(const std::vector<BrickCount>& bricks, const std::vector<std::i
 
 /// Nodes shared by pairs of bricks of different ranks.
 std::int64_t cut(const std::vector<BrickCount>& bricks, const std::vector<std::int32_t>& owner) {
-  Directory directory;
+  BrickTable directory;
   for (std::size_t i = 0; i < bricks.size(); ++i) directory.assign(bricks[i].brick, owner[i]);
   std::int64_t nodes = 0;
   for (std::size_t i = 0; i < bricks.size(); ++i) {
     for (int n = 0; n < mpm::core::neighbourhood; ++n) {
       const BrickCoord offset = mpm::core::neighbour_offset(n);
       const std::int32_t other = directory.owner(bricks[i].brick + offset);
-      if (other != Directory::nobody && other != owner[i]) nodes += shared_nodes({}, offset);
+      if (other != BrickTable::nobody && other != owner[i]) nodes += shared_nodes({}, offset);
     }
   }
   return nodes;
@@ -130,7 +130,7 @@ TEST_CASE("Few bricks, many ranks, islands") {
 
 TEST_CASE("The directory remembers through growth and removal") {
   std::mt19937_64 random(4);
-  Directory directory;
+  BrickTable directory;
   std::set<BrickCoord> known;
   const auto owner = [](BrickCoord b) { return (b.x + 3 * b.y + 7 * b.z) % 11; };
   const auto any_brick = [&] {
@@ -147,7 +147,7 @@ TEST_CASE("The directory remembers through growth and removal") {
       known.erase(b);
     }
     const BrickCoord other = any_brick();
-    if (directory.owner(other) != (known.contains(other) ? owner(other) : Directory::nobody))
+    if (directory.owner(other) != (known.contains(other) ? owner(other) : BrickTable::nobody))
       FAIL("round " << round);
   }
   CHECK(directory.size() == known.size());

@@ -18,7 +18,7 @@
 #include "io/output/status_file.hpp"
 #include "io/output/vtu.hpp"
 #include "io/restart/restart.hpp"
-#include "parallel/mpi_exchange.hpp"
+#include "parallel/communication.hpp"
 #include "tests/io/output/small_disk.hpp"
 #include "tests/io/output/small_model.hpp"
 #include "tests/parallel/world.hpp"
@@ -32,18 +32,18 @@ namespace {
 /// One folder for all ranks.
 class SharedFolder {
  public:
-  SharedFolder(const std::string& name, core::Exchange& exchange) : exchange_(exchange) {
-    if (exchange.rank() == 0) mine_ = std::make_unique<Folder>(name);
-    path_ = exchange.gather(mine_ ? mine_->path() : "").front();
+  SharedFolder(const std::string& name, core::Communication& exchange) : exchange_(exchange) {
+    if (exchange.reductions.rank() == 0) mine_ = std::make_unique<Folder>(name);
+    path_ = exchange.reductions.gather(mine_ ? mine_->path() : "").front();
   }
   ~SharedFolder() {
-    exchange_.any(false);  // everybody is through
+    exchange_.reductions.any(false);  // everybody is through
   }
   const std::string& path() const { return path_; }
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
  private:
-  core::Exchange& exchange_;
+  core::Communication& exchange_;
   std::unique_ptr<Folder> mine_;
   std::string path_;
 };
@@ -80,8 +80,8 @@ std::shared_ptr<core::Scene> scene_with_histories() {
 }  // namespace
 
 TEST_CASE("A restart file is the same on any number of ranks, and is read on any") {
-  parallel::MpiExchange exchange(world());
-  core::SoloExchange solo;
+  parallel::MpiCommunication exchange(world());
+  core::SoloCommunication solo;
   const SharedFolder folder("parallel_restart", exchange);
   const core::Model together = small_model(exchange), alone = small_model(solo);
   const std::uint64_t hash = io::state_hash(alone, solo);
@@ -108,8 +108,8 @@ TEST_CASE("A restart file is the same on any number of ranks, and is read on any
 }
 
 TEST_CASE("On another grid the state is the same on any number of ranks") {
-  parallel::MpiExchange exchange(world());
-  core::SoloExchange solo;
+  parallel::MpiCommunication exchange(world());
+  core::SoloCommunication solo;
   const SharedFolder folder("parallel_regrid", exchange);
   const std::string path = io::write_restart(folder.path(), "small", small_model(exchange), {}, exchange);
   SmallSetup larger;
@@ -126,8 +126,8 @@ TEST_CASE("On another grid the state is the same on any number of ranks") {
 }
 
 TEST_CASE("Totals have the same bits on any number of ranks") {
-  parallel::MpiExchange exchange(world());
-  core::SoloExchange solo;
+  parallel::MpiCommunication exchange(world());
+  core::SoloCommunication solo;
   const core::Model together = small_model(exchange), alone = small_model(solo);
   const core::Totals a = core::compute_totals(together, exchange), b = core::compute_totals(alone, solo);
   const auto same = [](double x, double y) {
@@ -148,15 +148,15 @@ TEST_CASE("Totals have the same bits on any number of ranks") {
 }
 
 TEST_CASE("An .h5part file holds the same on any number of ranks") {
-  parallel::MpiExchange exchange(world());
-  core::SoloExchange solo;
+  parallel::MpiCommunication exchange(world());
+  core::SoloCommunication solo;
   const SharedFolder folder("parallel_h5part", exchange);
   core::Model together = small_model(exchange), alone = small_model(solo);
   together.bodies[0].no_output = alone.bodies[0].no_output = true;
   const auto variables = io::variables_of({"tria", "com", "SigmaXY"});
   io::H5PartWriter writer({folder / "all.h5part", variables, false, {}}, together, exchange);
   for (int i = 0; i < 3; ++i) writer.write(together, exchange);
-  std::string mark = exchange.gather(writer.mark(exchange)).front();
+  std::string mark = exchange.reductions.gather(writer.mark(exchange)).front();
   writer.write(together, exchange);
   const io::H5PartWriter again({folder / "all.h5part", variables, false, mark}, together, exchange);
   CHECK(again.times() == 3);
@@ -179,7 +179,7 @@ TEST_CASE("An .h5part file holds the same on any number of ranks") {
 }
 
 TEST_CASE("Ranks without particles write no .vtu piece") {
-  parallel::MpiExchange exchange(world());
+  parallel::MpiCommunication exchange(world());
   const SharedFolder folder("parallel_vtu", exchange);
   const core::Model model = small_model(exchange);
   io::VtuWriter({folder.path(), "small", true, {}, false, {}}, model, exchange).write(model, exchange);
@@ -188,13 +188,13 @@ TEST_CASE("Ranks without particles write no .vtu piece") {
   CHECK(index.find("<Piece") == index.rfind("<Piece"));
   std::int64_t mine = std::filesystem::exists(
       folder / ("small_vtu/small_dust_120_" + std::to_string(world().rank()) + ".vtu"));
-  exchange.sum(std::span(&mine, 1));
+  exchange.reductions.sum(std::span(&mine, 1));
   CHECK(mine == 1);
 }
 
 TEST_CASE("Tables have the same rows on any number of ranks") {
-  parallel::MpiExchange exchange(world());
-  core::SoloExchange solo;
+  parallel::MpiCommunication exchange(world());
+  core::SoloCommunication solo;
   const SharedFolder folder("parallel_tables", exchange);
   const auto scene = scene_with_histories();
   core::Model together = prepared_model(scene), alone = prepared_model(scene);
@@ -218,7 +218,7 @@ TEST_CASE("Tables have the same rows on any number of ranks") {
 }
 
 TEST_CASE("A full disk is the same error on every rank, and the last good file stays") {
-  parallel::MpiExchange exchange(world());
+  parallel::MpiCommunication exchange(world());
   const SharedFolder folder("parallel_full", exchange);
   core::Model model = small_model(exchange);
   const std::string good = io::write_restart(folder.path(), "small", model, {}, exchange);
@@ -242,14 +242,14 @@ TEST_CASE("A full disk is the same error on every rank, and the last good file s
   const bool last_has_particles = model.local_particles() > 0;
   std::unique_ptr<SmallDisk> disk;
   if (world().rank() == world().size() - 1) disk = std::make_unique<SmallDisk>(100);
-  if (exchange.any(disk && last_has_particles)) {
+  if (exchange.reductions.any(disk && last_has_particles)) {
     CHECK_THAT(common_error([&] { vtu.write(model, exchange); }),
                Catch::Contains("_" + std::to_string(world().size() - 1) + ".vtu': File too large"));
   }
 }
 
 TEST_CASE("A write by all ranks together that fails, wherever it does, is an error on every rank") {
-  parallel::MpiExchange exchange(world());
+  parallel::MpiCommunication exchange(world());
   const SharedFolder folder("parallel_rows", exchange);
   const std::string path = folder / "a.h5";
   constexpr hsize_t rows_per_rank = 4000;
@@ -303,7 +303,7 @@ TEST_CASE("A write by all ranks together that fails, wherever it does, is an err
 }
 
 TEST_CASE("A damaged or missing restart file is the same error on every rank") {
-  parallel::MpiExchange exchange(world());
+  parallel::MpiCommunication exchange(world());
   const SharedFolder folder("parallel_damage", exchange);
   const std::string path = io::write_restart(folder.path(), "small", small_model(exchange), {}, exchange);
   const std::string bytes = io::read_file(path);
@@ -311,9 +311,9 @@ TEST_CASE("A damaged or missing restart file is the same error on every rank") {
   const double x = small_particle(copy.bodies[0].pool->layout(), 7)[5];
   std::string bad = bytes;
   ++bad[bad.find(std::string(reinterpret_cast<const char*>(&x), sizeof x))];
-  exchange.any(false);  // all have read it
+  exchange.reductions.any(false);  // all have read it
   if (world().rank() == 0) std::ofstream(path, std::ios::binary) << bad;
-  exchange.any(false);
+  exchange.reductions.any(false);
   CHECK_THAT(common_error([&] { io::verify_restart(path, exchange); }),
              Catch::Contains("fail their checksum"));
   CHECK_THAT(common_error([&] { io::read_restart(path, copy, exchange); }),

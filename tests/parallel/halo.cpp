@@ -1,12 +1,11 @@
-#include "parallel/halo.hpp"
-
 #include <bit>
 #include <cmath>
 #include <map>
 
 #include <catch2/catch.hpp>
 
-#include "parallel/mpi_exchange.hpp"
+#include "parallel/communication.hpp"
+#include "parallel/node_halo.hpp"
 #include "tests/parallel/world.hpp"
 
 using namespace mpm::parallel;
@@ -117,17 +116,28 @@ class Expected {
   std::vector<std::vector<int>> shared_;                    ///< of each ghost, nodes
 };
 
+/// A directory that knows what it is given.
+struct GivenOwners final : mpm::core::BrickDirectory {
+  BrickTable table;
+  void partition(BrickGrid&, std::span<const mpm::core::BrickCount>,
+                 const mpm::core::DecompositionInput&) override {}
+  void activate(BrickGrid&, std::span<const BrickCoord>) override {}
+  void deactivate(BrickGrid&, std::span<const BrickCoord>) override {}
+  std::int32_t owner_nearby(BrickCoord b) const override { return table.owner(b); }
+  std::vector<std::int32_t> owners(std::span<const BrickCoord>) const override { return {}; }
+};
+
 /// Bricks with random owners, some ranks without any.
-void set_up(BrickGrid& grid, Directory& directory, const std::vector<BrickCoord>& bricks, int ranks_in_use,
+void set_up(BrickGrid& grid, BrickTable& table, const std::vector<BrickCoord>& bricks, int ranks_in_use,
             std::mt19937_64& random) {
-  directory.clear();
+  table.clear();
   std::vector<BrickCoord> owned;
   for (const BrickCoord b : bricks) {
     const auto owner = static_cast<std::int32_t>(random() % static_cast<unsigned>(ranks_in_use));
-    directory.assign(b, owner);
+    table.assign(b, owner);
     if (owner == world().rank()) owned.push_back(b);
   }
-  const auto ghosts = ghosts_of({bricks.begin(), bricks.end()}, directory, world().rank());
+  const auto ghosts = ghosts_of({bricks.begin(), bricks.end()}, table, world().rank());
   grid.reset(owned, {ghosts.begin(), ghosts.end()});
   // Memory as it comes: not zero.
   for (const NodeArray of : both_arrays) {
@@ -144,11 +154,11 @@ TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no o
   const double share = GENERATE(0.15, 0.6, 1.0);
   std::mt19937_64 random(static_cast<unsigned>(100 * share) + static_cast<unsigned>(halo_width));
   BrickGrid grid(unit_grid(400), NodeBlockShape{halo_width});
-  Directory directory;
-  Halo halo(world(), directory);
+  GivenOwners owners;
+  MpiHalo halo(world(), owners);
   const auto bricks = random_bricks(random, {4, 3, 4}, share);
   for (int ranks = std::max(1, world().size() - 1); ranks <= world().size(); ++ranks) {
-    set_up(grid, directory, bricks, ranks, random);
+    set_up(grid, owners.table, bricks, ranks, random);
     Expected expected(grid);
     int round = 0;
     for (const NodeArray of : both_arrays) {
@@ -168,10 +178,10 @@ TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no o
 TEST_CASE("A changed set of bricks is exchanged anew") {
   std::mt19937_64 random(8);
   BrickGrid grid(unit_grid(400), NodeBlockShape{0});
-  Directory directory;
-  Halo halo(world(), directory);
+  GivenOwners owners;
+  MpiHalo halo(world(), owners);
   for (int round = 0; round < 30; ++round) {
-    set_up(grid, directory, random_bricks(random, {4, 4, 3}, 0.4), 1 + round % world().size(), random);
+    set_up(grid, owners.table, random_bricks(random, {4, 4, 3}, 0.4), 1 + round % world().size(), random);
     Expected expected(grid);
     for (int i = 0; i < 3; ++i) {
       fill(grid, 3 * round + i);
@@ -188,10 +198,10 @@ TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
   const int halo_width = GENERATE(0, 1);
   std::mt19937_64 random(9);
   BrickGrid grid(unit_grid(400), NodeBlockShape{halo_width});
-  Directory directory;
-  Halo halo(world(), directory);
+  GivenOwners owners;
+  MpiHalo halo(world(), owners);
   const auto bricks = random_bricks(random, {4, 4, 4}, 0.7);
-  set_up(grid, directory, bricks, world().size(), random);
+  set_up(grid, owners.table, bricks, world().size(), random);
   fill(grid, 0);
   halo.begin(grid, {NodeArray::second, 0, 4});
   halo.end(grid);
@@ -240,7 +250,7 @@ TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
 }
 
 TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
-  MpiExchange exchange(world());
+  MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400), NodeBlockShape{1});
   std::vector<mpm::core::BrickCount> counts;
   std::mt19937_64 random(10);
@@ -249,21 +259,21 @@ TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
   }
   mpm::core::DecompositionInput how;
   how.method = GENERATE(mpm::core::PartitionMethod::metis, mpm::core::PartitionMethod::uniform);
-  exchange.partition(grid, counts, how);
+  exchange.bricks.partition(grid, counts, how);
   Expected expected(grid);
   for (int round = 0; round < 3; ++round) {
     fill(grid, round);
     expected.arrive(NodeArray::first, 0, 8, round);
-    exchange.begin_halo(grid, {NodeArray::first, 0, 8});
-    exchange.end_halo(grid);
+    exchange.halo.begin(grid, {NodeArray::first, 0, 8});
+    exchange.halo.end(grid);
     CHECK(expected.is_there());
   }
 }
 
 TEST_CASE("A halo exchange out of order is refused") {
-  Directory directory;
+  GivenOwners owners;
   BrickGrid grid(unit_grid(400), NodeBlockShape{0});
-  Halo halo(world(), directory);
+  MpiHalo halo(world(), owners);
   CHECK_THROWS_AS(halo.end(grid), std::logic_error);
   CHECK_THROWS_AS(halo.begin(grid, {NodeArray::first, 5, 4}), std::logic_error);
   CHECK_THROWS_AS(halo.begin(grid, {NodeArray::second, 1, 4}), std::logic_error);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/grid/brick_grid.hpp"
-#include "parallel/directory.hpp"
+#include "parallel/brick_table.hpp"
 #include "parallel/mpi.hpp"
 
 namespace mpm::parallel::test {
@@ -55,13 +55,13 @@ inline bool adjacent(core::BrickCoord a, core::BrickCoord b) {
 }
 
 /// By definition: the bricks of others that are next to one of `rank`'s.
-inline std::set<core::BrickCoord> ghosts_of(const std::set<core::BrickCoord>& bricks,
-                                            const Directory& directory, int rank) {
+inline std::set<core::BrickCoord> ghosts_of(const std::set<core::BrickCoord>& bricks, const BrickTable& table,
+                                            int rank) {
   std::set<core::BrickCoord> ghosts;
   for (const core::BrickCoord a : bricks) {
-    if (directory.owner(a) != rank) continue;
+    if (table.owner(a) != rank) continue;
     for (const core::BrickCoord b : bricks) {
-      if (directory.owner(b) != rank && adjacent(a, b)) ghosts.insert(b);
+      if (table.owner(b) != rank && adjacent(a, b)) ghosts.insert(b);
     }
   }
   return ghosts;

@@ -11,6 +11,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/communication/solo.hpp"
+#include "core/particle_range.hpp"
+#include "core/particles/tile_order.hpp"
 #include "core/step/speeds.hpp"
 #include "core/step/stepper.hpp"
 #include "tests/support/reference_stepper.hpp"
@@ -132,7 +135,7 @@ inline core::Scheme scheme_of(ReferenceScheme s) {
 struct SmallRun {
   KeepFloatingPoint keep;
   std::shared_ptr<core::Scene> scene = std::make_shared<core::Scene>();
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model;
   std::unique_ptr<core::Stepper> stepper;
 
@@ -168,7 +171,7 @@ struct SmallRun {
     model.books.body_eroded.resize(model.bodies.size());
     model.books.body_left.resize(model.bodies.size());
 
-    core::Travellers travellers;
+    core::MigrationBuffer moving;
     std::vector<core::BrickCount> counts;
     const core::ColumnLayout& layout = model.bodies[0].pool->layout();
     std::vector<double> block(static_cast<std::size_t>(layout.block_doubles())),
@@ -183,12 +186,12 @@ struct SmallRun {
         block[static_cast<std::size_t>(layout.offset(core::Column::sound_speed))] = p.c;
       for (std::size_t k = 0; k < flat.size(); ++k) flat[k] = block[core::block_lanes * k];
       const core::BrickCoord to = g.brick_at({p.x[0], p.x[1], p.x[2]});
-      travellers.add(to, n < split ? 0 : 1, flat.data(), layout.columns());
+      moving.add(to, n < split ? 0 : 1, flat.data(), layout.columns());
       counts.push_back({to, 1});
       fastest = std::max(fastest, p.c + std::sqrt(p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2]));
     }
-    solo.partition(*model.grid, counts, {});
-    core::insert_travellers(model, travellers);
+    solo.bricks.partition(*model.grid, counts, {});
+    core::insert_particles(model, moving);
     for (core::Brick& brick : model.grid->bricks()) {
       for (core::Cohort& cohort : brick.cohorts) {
         core::sort_by_cell(*model.grid, brick.coord,
@@ -206,24 +209,24 @@ struct SmallRun {
   /// Particles by identity.
   std::map<std::int64_t, ReferenceParticle> particles() const {
     std::map<std::int64_t, ReferenceParticle> all;
-    core::for_each_block(model, [&](int, const core::ColumnLayout& layout, const double* block, int used) {
-      for (int i = 0; i < used; ++i) {
-        all[static_cast<std::int64_t>(block[layout.offset(core::Column::identity) + i])] =
-            OracleLaw::read(layout, block + i);
+    for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+      for (int i = 0; i < block.used; ++i) {
+        all[static_cast<std::int64_t>(block.particle(i)[core::Column::identity])] =
+            OracleLaw::read(*block.layout, block.data + i);
       }
-    });
+    }
     return all;
   }
 
   /// All columns of all particles by identity, for comparison to the last bit.
   std::map<std::int64_t, std::vector<double>> columns() const {
     std::map<std::int64_t, std::vector<double>> all;
-    core::for_each_block(model, [&](int, const core::ColumnLayout& layout, const double* block, int used) {
-      for (int i = 0; i < used; ++i) {
-        auto& values = all[static_cast<std::int64_t>(block[layout.offset(core::Column::identity) + i])];
-        for (int c = 0; c < layout.columns(); ++c) values.push_back(block[core::block_lanes * c + i]);
+    for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+      for (const core::ConstParticle p : block) {
+        auto& values = all[static_cast<std::int64_t>(p[core::Column::identity])];
+        for (int c = 0; c < p.layout().columns(); ++c) values.push_back(p.nth(c));
       }
-    });
+    }
     return all;
   }
 

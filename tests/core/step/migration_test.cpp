@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/particles/tile_order.hpp"
 #include "tests/core/step/case.hpp"
 
 using namespace mpm::core;
@@ -67,7 +68,7 @@ TEST_CASE("Arrivals are appended in the order of identities, in whatever order t
   std::vector<std::int64_t> first;
   for (int trial = 0; trial < 4; ++trial) {
     SmallRun run(c, 360);
-    Travellers travellers;
+    MigrationBuffer travellers;
     const int columns_of = run.model.bodies[0].pool->layout().columns();
     std::vector<std::pair<int, std::vector<double>>> arrivals;
     for (const auto& [identity, columns] : run.columns()) {
@@ -80,7 +81,7 @@ TEST_CASE("Arrivals are appended in the order of identities, in whatever order t
       travellers.add(run.model.grid->geometry().brick_at({columns[0], columns[1], columns[2]}), body,
                      columns.data(), columns_of);
     }
-    insert_travellers(run.model, travellers);
+    insert_particles(run.model, travellers);
     if (trial == 0) first = run.order();
     CHECK(run.order() == first);
     CHECK(run.order().size() == 1440);

@@ -40,7 +40,7 @@ std::unique_ptr<SmallRun> continued(const SmallRun& from, ReferenceCase c) {
   }
   for (Body& body : to->model.bodies) body.pool = std::make_shared<BlockPool>(body.pool->layout());
   for (Brick& brick : to->model.grid->bricks()) brick.cohorts.clear();
-  to->solo.partition(*to->model.grid, counts, {});
+  to->solo.bricks.partition(*to->model.grid, counts, {});
   std::vector<double> columns(column_count);
   for (const Brick& brick : from.model.grid->bricks()) {
     for (const Cohort& cohort : brick.cohorts) {
@@ -100,12 +100,10 @@ TEST_CASE("What is in lanes out of use changes nothing") {
   for (const ReferenceScheme scheme : schemes) {
     SmallRun clean(tumbling(scheme), half), poisoned(tumbling(scheme), half);
     for (int step = 0; step < 25; ++step) {
-      for_each_block(poisoned.model, [&](int, const ColumnLayout& layout, const double* block, int used) {
-        for (int c = 0; c < layout.columns(); ++c) {
-          for (int lane = used; lane < block_lanes; ++lane)
-            const_cast<double*>(block)[block_lanes * c + lane] = std::nan("");
-        }
-      });
+      for (const ParticleBlock& block : blocks_of(poisoned.model)) {
+        for (int lane = block.used; lane < block_lanes; ++lane)
+          for (int c = 0; c < block.layout->columns(); ++c) block.particle(lane).nth(c) = std::nan("");
+      }
       clean.step();
       poisoned.step();
     }
@@ -218,11 +216,10 @@ TEST_CASE("The last step ends on time") {
 TEST_CASE("A run that cannot go on says which particle is to blame") {
   const auto failure = [](auto change) {
     SmallRun run(tumbling(ReferenceScheme::musl), half);
-    for_each_block(run.model, [&](int, const ColumnLayout& layout, const double* block, int used) {
-      for (int i = 0; i < used; ++i) {
-        if (block[layout.offset(Column::identity) + i] == 17) change(layout, const_cast<double*>(block) + i);
-      }
-    });
+    for (const ParticleBlock& block : blocks_of(run.model)) {
+      for (int i = 0; i < block.used; ++i)
+        if (block.particle(i)[Column::identity] == 17) change(*block.layout, block.data + i);
+    }
     try {
       run.step();
     } catch (const NumericalFailure& f) { return std::string(f.what()); }

@@ -1,3 +1,4 @@
+#include "core/communication/solo.hpp"
 #include "core/step/totals.hpp"
 
 #include <cmath>
@@ -84,7 +85,7 @@ TEST_CASE("Totals add up what the particles are and do") {
   model.books.body_eroded = {0, 9};
   model.books.eroded = 9;
   model.books.external_work.add(3);
-  SoloExchange solo;
+  SoloCommunication solo;
   const Totals t = compute_totals(model, solo);
   REQUIRE(t.bodies.size() == 2);
   const BodyTotals& a = t.bodies[0];
@@ -128,7 +129,7 @@ TEST_CASE("Totals do not lose small parts beside large ones") {
   add(model, {0, {1, 1, 1}, {1e17, 0, 0}, 1, 0});
   add(model, {0, {5, 1, 1}, {1, 0, 0}, 1, 0});
   add(model, {0, {5, 5, 5}, {-1e17, 0, 0}, 1, 0});
-  SoloExchange solo;
+  SoloCommunication solo;
   CHECK(compute_totals(model, solo).momentum.x == 1);
 }
 
@@ -152,7 +153,7 @@ TEST_CASE("The totals of very many bodies, which are added up some at a time, ar
   model.books.body_left.assign(many, 0);
   model.books.body_left[many - 1] = 3;
   model.books.left_grid = 3;
-  SoloExchange solo;
+  SoloCommunication solo;
   const Totals t = compute_totals(model, solo);
   REQUIRE(t.bodies.size() == many);
   CHECK(t.particles == many);
@@ -170,7 +171,7 @@ TEST_CASE("The totals of very many bodies, which are added up some at a time, ar
 
 TEST_CASE("A body without particles has mass 0 and no place") {
   Model model = two_bodies();
-  SoloExchange solo;
+  SoloCommunication solo;
   const Totals t = compute_totals(model, solo);
   CHECK(t.bodies[0].mass == 0);
   CHECK(t.bodies[0].velocity == Vec3<double>{0, 0, 0});

@@ -30,7 +30,7 @@ TEST_CASE("An error names the file and the reason") {
   CHECK_THROWS_WITH(io::replace_file("/nowhere/a", ""),
                     "cannot write '/nowhere/a.part': No such file or directory");
   CHECK_THROWS_WITH(io::read_file("/nowhere/a"), "cannot read '/nowhere/a': No such file or directory");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   CHECK_THROWS_AS(io::Log("/nowhere/a.out", false, false, solo), io::FileError);
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("Reserving space leaves contents and errors leave nothing reserved") {
 
 TEST_CASE("On a full disk the texts say so when they are flushed") {
   const Folder folder("full_text");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   io::Log log(folder / "a.out", false, false, solo);
   log.say("{} fits", 1);
   log.flush(solo);
@@ -65,7 +65,7 @@ TEST_CASE("On a full disk the texts say so when they are flushed") {
 
 TEST_CASE("On a full disk an .h5part file keeps its earlier times and may go on later") {
   const Folder folder("full_h5part");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   io::H5PartWriter writer({folder / "a.h5part", {}, false, {}}, model, solo);
   writer.write(model, solo);
@@ -84,7 +84,7 @@ TEST_CASE("On a full disk an .h5part file keeps its earlier times and may go on 
 
 TEST_CASE("On a full disk the list of .vtu files names only what is whole") {
   const Folder folder("full_vtu");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   io::VtuWriter writer({folder.path(), "small", false, {}, false, {}}, model, solo);
   writer.write(model, solo);
@@ -104,7 +104,7 @@ TEST_CASE("A file system that is really full") {
     WARN("skipped: " << disk.reason());
     return;
   }
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   io::H5PartWriter writer({disk.path() + "/a.h5part", {}, false, {}}, model, solo);
   int written = 0;

@@ -45,7 +45,7 @@ std::set<std::string> names_in(hid_t group) {
 
 TEST_CASE("An h5part file holds every particle of every time") {
   const Folder folder("h5part");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   io::H5PartWriter writer(
       {folder / "a.h5part", io::variables_of({"seqv", "fail", "velocity_1", "body"}), false, {}}, model,
@@ -87,7 +87,7 @@ TEST_CASE("An h5part file holds every particle of every time") {
 
 TEST_CASE("Reals are in double precision when asked for") {
   const Folder folder("h5part_double");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = small_model(solo);
   io::H5PartWriter({folder / "a.h5part", {}, true, {}}, model, solo).write(model, solo);
   const hdf5::Handle file = hdf5::open_file(folder / "a.h5part", hdf5::Access::read);
@@ -97,7 +97,7 @@ TEST_CASE("Reals are in double precision when asked for") {
 
 TEST_CASE("What a 32-bit real does not hold is cut, counted and said once") {
   const Folder folder("h5part_cut");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   const core::ColumnLayout& layout = model.bodies[0].pool->layout();
   core::Cohort* cohort = nullptr;
@@ -132,7 +132,7 @@ TEST_CASE("What a 32-bit real does not hold is cut, counted and said once") {
 
 TEST_CASE("Bodies without output are left out, and no particles at all are no error") {
   const Folder folder("h5part_left_out");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   model.bodies[0].no_output = true;
   io::H5PartWriter writer({folder / "a.h5part", {}, false, {}}, model, solo);
@@ -168,7 +168,7 @@ struct Series {
   void put(const std::string& text) const { std::ofstream(path, std::ios::binary) << text; }
 
   std::string path;
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model;
   std::string mark, bytes;
 };

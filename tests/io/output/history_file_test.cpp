@@ -29,7 +29,8 @@ std::vector<std::vector<double>> rows_of(const std::string& path) {
 }
 
 /// Two particles in one cell and one in another, with the pressures 1, 2 and 3.
-core::Model three_particles(core::SoloExchange& solo, const std::array<std::array<double, 3>, 3>& positions) {
+core::Model three_particles(core::SoloCommunication& solo,
+                            const std::array<std::array<double, 3>, 3>& positions) {
   auto scene = small_scene();
   core::TimeHistoryInput& history = scene->output.histories.emplace_back();
   history.variables = {"pres", "posx"};
@@ -38,7 +39,7 @@ core::Model three_particles(core::SoloExchange& solo, const std::array<std::arra
   core::Model model = prepared_model(scene);
   std::vector<core::BrickCount> counts;
   for (const auto& x : positions) counts.push_back({model.grid->geometry().brick_at({x[0], x[1], x[2]}), 1});
-  solo.partition(*model.grid, counts, {});
+  solo.bricks.partition(*model.grid, counts, {});
   for (std::size_t i = 0; i < 3; ++i) {
     const core::ColumnLayout& layout = model.bodies[0].pool->layout();
     std::vector<double> columns(static_cast<std::size_t>(layout.columns()));
@@ -69,7 +70,7 @@ void set_position(core::Model& model, std::size_t brick, double x) {
 
 TEST_CASE("Histories follow the nearest particles, and points average their cell") {
   const Folder folder("curv");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = three_particles(solo, at_start);
   io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
   // Both particles of the first cell are as near to the first point: the lower identity wins.
@@ -91,7 +92,7 @@ TEST_CASE("Histories follow the nearest particles, and points average their cell
 
 TEST_CASE("A particle is followed into other bricks, and lost when it is gone") {
   const Folder folder("curv_follow");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = three_particles(solo, at_start);
   io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
   file.add(model, solo);
@@ -121,7 +122,7 @@ TEST_CASE("A particle is followed into other bricks, and lost when it is gone") 
 
 TEST_CASE("A particle that is gone stays so through a restart, and the log learns of it once") {
   const Folder folder("curv_gone");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = three_particles(solo, at_start);
   std::vector<std::uint64_t> tracked;
   {
@@ -152,7 +153,7 @@ TEST_CASE("A particle that is gone stays so through a restart, and the log learn
 
 TEST_CASE("Without histories the file has the energies, and values beyond all numbers are cut") {
   const Folder folder("curv_energies");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model plain = small_model(solo);
   io::HistoryFile energies(folder / "b_curv.dat", plain, {}, solo);
   CHECK_FALSE(energies.each_step());
@@ -179,7 +180,7 @@ TEST_CASE("Without histories the file has the energies, and values beyond all nu
 
 TEST_CASE("Histories of a run that goes on follow the same particles") {
   const Folder folder("curv_continue");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = three_particles(solo, at_start);
   std::vector<std::uint64_t> tracked;
   {

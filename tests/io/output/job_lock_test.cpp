@@ -24,7 +24,7 @@ pid_t another_run(const std::string& path) {
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {
-    core::SoloExchange solo;
+    core::SoloCommunication solo;
     const io::JobLock lock(path, solo);
     if (::write(ends[1], "x", 1) != 1) ::_exit(1);
     for (;;) ::pause();
@@ -45,7 +45,7 @@ void kill(pid_t child) {
 
 TEST_CASE("A job is locked until its run ends, and a killed run leaves nothing that holds") {
   const Folder folder("lock");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const std::string path = folder / "a.lock";
   const pid_t child = another_run(path);
   CHECK_THROWS_WITH(io::JobLock(path, solo),
@@ -63,7 +63,7 @@ TEST_CASE("A job is locked until its run ends, and a killed run leaves nothing t
 
 TEST_CASE("A lock that was removed while somebody waited for it is made anew") {
   const Folder folder("lock_removed");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const std::string path = folder / "a.lock";
   for (int i = 0; i < 20; ++i) {
     io::JobLock first(path, solo);
@@ -83,7 +83,7 @@ TEST_CASE("A lock that was removed while somebody waited for it is made anew") {
 }
 
 TEST_CASE("Where there can be no lock file that is said") {
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   CHECK_THROWS_WITH(io::JobLock("/nowhere/a.lock", solo), Catch::Contains("cannot write '/nowhere/a.lock'"));
   io::JobLock::wait_for("/nowhere/a.lock");
 }

@@ -11,8 +11,8 @@
 
 #include <unistd.h>
 
+#include "core/communication/solo.hpp"
 #include "core/model.hpp"
-#include "core/step/exchange.hpp"
 
 namespace mpm::tests {
 
@@ -126,7 +126,7 @@ inline std::vector<double> small_particle(const core::ColumnLayout& layout, std:
 }
 
 /// Deal the particles out. Collective.
-inline void fill(core::Model& model, core::Exchange& exchange, const SmallSetup& setup = {}) {
+inline void fill(core::Model& model, core::Communication& exchange, const SmallSetup& setup = {}) {
   struct Particle {
     std::size_t body;
     core::BrickCoord brick;
@@ -140,11 +140,11 @@ inline void fill(core::Model& model, core::Exchange& exchange, const SmallSetup&
     for (int i = 0; i < n; ++i) {
       auto columns = small_particle(model.bodies[b].pool->layout(), identity++);
       const core::BrickCoord brick = model.grid->geometry().brick_at({columns[0], columns[1], columns[2]});
-      if (exchange.rank() == 0) counts.push_back({brick, 1});
+      if (exchange.reductions.rank() == 0) counts.push_back({brick, 1});
       particles.push_back({b, brick, std::move(columns)});
     }
   }
-  exchange.partition(*model.grid, counts, model.scene->decomposition);
+  exchange.bricks.partition(*model.grid, counts, model.scene->decomposition);
   for (const Particle& p : particles) {
     const core::Slot s = model.grid->find(p.brick);
     if (s == core::no_slot || s >= model.grid->owned()) continue;
@@ -158,13 +158,13 @@ inline void fill(core::Model& model, core::Exchange& exchange, const SmallSetup&
   model.initial_energy = 1e6;
   model.next_identity = identity;
   // Every rank has something in its books; their sum is the same on any number of ranks.
-  if (exchange.rank() == 0) {
+  if (exchange.reductions.rank() == 0) {
     model.books.external_work.add(0.1);
     model.books.removed_mass.add(1e-30);
     model.books.left_grid = 3;
     model.books.body_left[0] = 3;
   }
-  if (exchange.rank() == exchange.size() - 1) {
+  if (exchange.reductions.rank() == exchange.reductions.size() - 1) {
     model.books.external_work.add(1e20);
     model.books.eroded = 5;
     model.books.body_eroded[1] = 5;
@@ -172,7 +172,7 @@ inline void fill(core::Model& model, core::Exchange& exchange, const SmallSetup&
   }
 }
 
-inline core::Model small_model(core::Exchange& exchange, const SmallSetup& setup = {}) {
+inline core::Model small_model(core::Communication& exchange, const SmallSetup& setup = {}) {
   core::Model model = prepared_model(small_scene(), setup);
   fill(model, exchange, setup);
   return model;

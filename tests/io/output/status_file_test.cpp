@@ -42,7 +42,7 @@ struct Table {
 
 TEST_CASE("The columns of .sta are named, and its numbers are exact") {
   const Folder folder("sta");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   auto scene = small_scene();
   scene->output.statistics = {true, true};
   core::Model model = prepared_model(scene);
@@ -77,7 +77,7 @@ TEST_CASE("The columns of .sta are named, and its numbers are exact") {
 
 TEST_CASE(".sta of a run that goes on keeps the rows up to its start") {
   const Folder folder("sta_continue");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   const core::Totals totals = core::compute_totals(model, solo);
   {
@@ -102,7 +102,7 @@ TEST_CASE(".sta of a run that goes on keeps the rows up to its start") {
 
 TEST_CASE(".sta with other columns is put aside") {
   const Folder folder("sta_other");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   io::StatusFile(folder / "a.sta", model, {}, solo).add(model, core::compute_totals(model, solo), solo);
   model.bodies.pop_back();

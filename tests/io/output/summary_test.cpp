@@ -36,7 +36,7 @@ io::RunReport report() {
 
 TEST_CASE("The summary keeps its contract") {
   const Folder folder("summary");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = small_model(solo);
   const core::Totals totals = core::compute_totals(model, solo);
   io::write_summary(folder / "a.summary.json", model, totals, report(), solo);
@@ -91,7 +91,7 @@ TEST_CASE("The summary keeps its contract") {
 }
 
 TEST_CASE("A body without particles has no place") {
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = prepared_model(small_scene());
   const auto text = io::summary_json(model, core::compute_totals(model, solo), report(), 1, {});
   const auto summary = nlohmann::json::parse(text);

@@ -36,7 +36,7 @@ struct Written {
   }
 
   std::string path;
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   io::TableMark mark;
   std::string good;
 };

@@ -41,7 +41,7 @@ struct OneParticle {
   }
   void set(Column c, double value) { block[static_cast<std::size_t>(layout.offset(c) + 3)] = value; }
   double operator()(Variable v) const {
-    return io::evaluate(v, layout, block.data(), 3,
+    return io::evaluate(v, core::ConstParticle(layout, block.data() + 3),
                         {.body = 1, .component = 2, .material = 5, .reference_density = 4});
   }
 };
@@ -111,7 +111,7 @@ TEST_CASE("What a body does not carry is 0, and is known to be absent") {
 }
 
 TEST_CASE("Components count from 1, bodies and materials from 0") {
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = tests::small_model(solo);
   const io::BodyFacts first = io::facts_of(model, 0), last = io::facts_of(model, 2);
   CHECK((first.component == 1 && first.body == 0 && first.material == 0));
@@ -119,7 +119,7 @@ TEST_CASE("Components count from 1, bodies and materials from 0") {
 }
 
 TEST_CASE("The log says which body lacks what") {
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = tests::small_model(solo);
   const auto notices = io::absence_notices(io::variables_of({"seqv", "kelv", "damg"}), model);
   CHECK(notices == std::vector<std::string>{"body 'bar' does not have damg: written as 0",

@@ -76,7 +76,7 @@ struct Vtu {
 
 TEST_CASE("What a 32-bit real does not hold is cut in grids, too") {
   const Folder folder("vtu_cut");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   for (core::Brick& brick : model.grid->bricks()) {
     for (core::Cohort& cohort : brick.cohorts) {
@@ -96,7 +96,7 @@ TEST_CASE("What a 32-bit real does not hold is cut in grids, too") {
 
 TEST_CASE("One set of grids per time: well-formed, complete, listed") {
   const Folder folder("vtu");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   io::VtuWriter writer(
       {folder.path(), "small", false, io::variables_of({"seqv", "mat", "velocity_0"}), false, {}}, model,
@@ -146,7 +146,7 @@ TEST_CASE("One set of grids per time: well-formed, complete, listed") {
 
 TEST_CASE("One set of grids per body, but for those without output") {
   const Folder folder("vtu_bodies");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   model.bodies[2].no_output = true;
   io::VtuWriter({folder.path(), "small", true, {}, true, {}}, model, solo).write(model, solo);
@@ -164,7 +164,7 @@ TEST_CASE("One set of grids per body, but for those without output") {
 
 TEST_CASE("Bodies whose names look alike in file names have files of their own") {
   const Folder folder("vtu_names");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   model.bodies[0].name = "a/b";
   model.bodies[1].name = "a b";
@@ -175,7 +175,7 @@ TEST_CASE("Bodies whose names look alike in file names have files of their own")
 
 TEST_CASE("Without any particles there is one empty piece") {
   const Folder folder("vtu_empty");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = prepared_model(small_scene());
   io::VtuWriter({folder.path(), "small", false, {}, false, {}}, model, solo).write(model, solo);
   const Vtu piece(folder / "small_vtu/small_0_0.vtu");
@@ -185,7 +185,7 @@ TEST_CASE("Without any particles there is one empty piece") {
 
 TEST_CASE("The list of a run that goes on is that of its restart file") {
   const Folder folder("vtu_continue");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model model = small_model(solo);
   model.scene = std::make_shared<core::Scene>([&] {
     core::Scene scene = *model.scene;

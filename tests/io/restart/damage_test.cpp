@@ -18,7 +18,7 @@ using namespace mpm::tests;
 
 namespace {
 
-core::Model at_step(core::Exchange& exchange, std::int64_t step, int particles = 40) {
+core::Model at_step(core::Communication& exchange, std::int64_t step, int particles = 40) {
   SmallSetup setup;
   setup.particles = particles;
   core::Model model = prepared_model(small_scene(), setup);
@@ -28,7 +28,7 @@ core::Model at_step(core::Exchange& exchange, std::int64_t step, int particles =
 }
 
 std::string complaint(const std::string& path) {
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   core::Model copy = prepared_model(small_scene());
   try {
     io::read_restart(path, copy, solo);
@@ -52,7 +52,7 @@ void wait_for(const std::string& path) {
 
 TEST_CASE("No byte of a restart file can change unnoticed") {
   const Folder folder("restart_bytes");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const std::string path =
       io::write_restart(folder.path(), "small", at_step(solo, 1), {"<PeneBlast/>", {1}, {{"a", "2"}}}, solo);
   const std::string good = io::read_file(path);
@@ -73,7 +73,7 @@ TEST_CASE("No byte of a restart file can change unnoticed") {
 
 TEST_CASE("A restart file that was cut anywhere says so") {
   const Folder folder("restart_cut");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const std::string path = io::write_restart(folder.path(), "small", at_step(solo, 1), {}, solo);
   const std::uint64_t size = std::filesystem::file_size(path);
   std::filesystem::resize_file(path, size - 1);
@@ -89,7 +89,7 @@ TEST_CASE("A restart file that was cut anywhere says so") {
 
 TEST_CASE("Each part of a restart file has a complaint of its own") {
   const Folder folder("restart_parts");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const std::string path =
       io::write_restart(folder.path(), "small", at_step(solo, 1), {"here is the scene", {}, {}}, solo);
   const std::string good = io::read_file(path);
@@ -114,7 +114,7 @@ TEST_CASE("Each part of a restart file has a complaint of its own") {
 
 TEST_CASE("The newest two restart files are kept") {
   const Folder folder("restart_two");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   std::ofstream(folder / "small_3.pe.part") << "left by a run that was killed";
   std::ofstream(folder / "small_x.pe") << "somebody else's";
   std::ofstream(folder / "small_2_3.pe") << "another job's";
@@ -133,7 +133,7 @@ TEST_CASE("The newest two restart files are kept") {
 
 TEST_CASE("The newest restart file that is whole is found") {
   const Folder folder("restart_find");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   std::vector<std::string> notices;
   CHECK_FALSE(io::find_newest_restart(folder.path(), "small", solo, notices));
   io::write_restart(folder.path(), "small", at_step(solo, 10), {}, solo);
@@ -151,7 +151,7 @@ TEST_CASE("The newest restart file that is whole is found") {
 
 TEST_CASE("On a full disk the last good restart file stays, and nothing half-written") {
   const Folder folder("restart_full");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const std::string good = io::write_restart(folder.path(), "small", at_step(solo, 10), {}, solo);
   const std::uint64_t hash = io::restart_state_hash(good);
   const std::uint64_t size = std::filesystem::file_size(good);
@@ -172,7 +172,7 @@ TEST_CASE("A full file system is survived, too") {
     WARN("skipped: " << disk.reason());
     return;
   }
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   std::string newest;
   // Two are kept, a third does not fit beside them.
   CHECK_THROWS_WITH(
@@ -189,7 +189,7 @@ TEST_CASE("A full file system is survived, too") {
 
 TEST_CASE("A run that is killed while it writes leaves the earlier file") {
   const Folder folder("restart_killed");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   io::write_restart(folder.path(), "small", at_step(solo, 1), {}, solo);
   const core::Model model = at_step(solo, 2, 5000);
   std::optional<std::string> found;

@@ -21,19 +21,23 @@ namespace {
 const io::RestartExtra an_extra{
     "<PeneBlast/>", {17, 3}, {{".sta", "12 3 4"}, {"_curv.dat", std::string("a\0b", 3)}, {".out", ""}}};
 
+/// Body, number and columns of every particle of a brick.
+std::vector<double> everything_in(const core::Model& model, const core::Brick& brick) {
+  std::vector<double> all;
+  for (const core::ConstParticleBlock& block : core::blocks_of(model, brick)) {
+    all.push_back(block.body);
+    all.push_back(block.used);
+    for (const core::ConstParticle p : block)
+      for (int c = 0; c < p.layout().columns(); ++c) all.push_back(p.nth(c));
+  }
+  return all;
+}
+
 bool same_particles(const core::Model& a, const core::Model& b) {
   if (a.bodies.size() != b.bodies.size() || a.grid->owned() != b.grid->owned()) return false;
   for (core::Slot s = 0; s < a.grid->owned(); ++s) {
     const core::Brick &x = a.grid->brick(s), &y = b.grid->brick(s);
-    if (x.coord != y.coord || x.cohorts.size() != y.cohorts.size()) return false;
-    for (std::size_t c = 0; c < x.cohorts.size(); ++c) {
-      std::vector<double> rows_x, rows_y;
-      const auto body = static_cast<std::size_t>(x.cohorts[c].body);
-      if (x.cohorts[c].body != y.cohorts[c].body) return false;
-      io::append_rows(*a.bodies[body].pool, x.cohorts[c], rows_x);
-      io::append_rows(*b.bodies[body].pool, y.cohorts[c], rows_y);
-      if (rows_x != rows_y) return false;
-    }
+    if (x.coord != y.coord || everything_in(a, x) != everything_in(b, y)) return false;
   }
   return true;
 }
@@ -42,7 +46,7 @@ bool same_particles(const core::Model& a, const core::Model& b) {
 
 TEST_CASE("A restart file gives back the state to the last bit") {
   const Folder folder("restart");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = small_model(solo);
   const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
   CHECK(path == folder / "small_120.pe");
@@ -82,7 +86,7 @@ TEST_CASE("A restart file gives back the state to the last bit") {
 
 TEST_CASE("A state without particles can be stored too") {
   const Folder folder("restart_empty");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = prepared_model(small_scene());
   const std::string path = io::write_restart(folder.path(), "small", model, {}, solo);
   core::Model copy = prepared_model(small_scene());
@@ -92,7 +96,7 @@ TEST_CASE("A state without particles can be stored too") {
 
 TEST_CASE("What a restart file shows to other programs") {
   const Folder folder("restart_hdf5");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const std::string path = io::write_restart(folder.path(), "small", small_model(solo), an_extra, solo);
   const io::hdf5::Handle file = io::hdf5::open_file(path, io::hdf5::Access::read);
   CHECK(io::hdf5::read_string(file, "input_hash") == "0123456789abcdef");
@@ -107,7 +111,7 @@ TEST_CASE("What a restart file shows to other programs") {
 
 TEST_CASE("On another grid the particles are dealt out anew") {
   const Folder folder("restart_grid");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = small_model(solo);
   const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
   SmallSetup larger;
@@ -133,7 +137,7 @@ TEST_CASE("On another grid the particles are dealt out anew") {
 
 TEST_CASE("A body may be deactivated; what it held is booked") {
   const Folder folder("restart_deactivated");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = small_model(solo);
   const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
   auto scene = small_scene();
@@ -153,7 +157,7 @@ TEST_CASE("A body may be deactivated; what it held is booked") {
 
 TEST_CASE("A body may be added; it is left to the caller") {
   const Folder folder("restart_added");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   auto scene = small_scene();
   scene->components[0].bodies[0].deactivated = true;
   core::Model model = prepared_model(scene);
@@ -167,7 +171,7 @@ TEST_CASE("A body may be added; it is left to the caller") {
 
 TEST_CASE("A scene that does not fit is refused with every difference") {
   const Folder folder("restart_misfit");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   SmallSetup poor;
   poor.only_one_material = true;
   core::Model model = prepared_model(small_scene(), poor);
@@ -192,7 +196,7 @@ TEST_CASE("A scene that does not fit is refused with every difference") {
 
 TEST_CASE("What is only shown may start at zero or go") {
   const Folder folder("restart_shown");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   SmallSetup with_speed;
   with_speed.shown = {Column::sound_speed};
   core::Model model = prepared_model(small_scene(), with_speed);
@@ -206,25 +210,25 @@ TEST_CASE("What is only shown may start at zero or go") {
   CHECK(result.notices[0] ==
         "body 'bar': yield_stress start at zero, for the restart file does not have them");
   CHECK(result.notices[1] == "body 'bar': sound_speed of the restart file are not needed any more");
-  core::for_each_block(copy, [](int, const core::ColumnLayout& layout, const double* block, int used) {
-    const auto identity = static_cast<std::uint64_t>(block[layout.offset(Column::identity)]);
+  for (const core::ParticleBlock& block : core::blocks_of(copy)) {
+    const core::ColumnLayout& layout = *block.layout;
+    const core::Particle first = block.particle(0);
+    const auto identity = static_cast<std::uint64_t>(first[Column::identity]);
     std::vector<double> expected = small_particle(layout, identity);
     for (int c = 0; c < core::column_count; ++c) {
       const auto column = static_cast<Column>(c);
       if (!layout.has(column)) continue;
-      const double value = block[layout.offset(column)];
-      if (value != (column == Column::yield_stress
-                        ? 0
-                        : expected[static_cast<std::size_t>(layout.offset(column) / 8)])) {
-        FAIL(core::name_of(column) << " of particle " << identity << " among " << used);
+      const double value = first[column];
+      if (value != (column == Column::yield_stress ? 0 : expected[layout.index(column)])) {
+        FAIL(core::name_of(column) << " of particle " << identity << " among " << block.used);
       }
     }
-  });
+  }
 }
 
 TEST_CASE("A restart file becomes an .h5part file without its scene") {
   const Folder folder("restart_h5part");
-  core::SoloExchange solo;
+  core::SoloCommunication solo;
   const core::Model model = small_model(solo);
   const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
   io::restart_to_h5part(path, folder / "small_120.h5part", io::variables_of({"kelv", "engi"}), true, solo);

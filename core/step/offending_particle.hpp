@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "core/step/exchange.hpp"
+#include "core/communication/reductions.hpp"
 
 namespace mpm::core {
 
@@ -52,11 +52,11 @@ class Witnesses {
 };
 
 /// The first few over all ranks. Collective.
-inline Witnesses first_of_all(Exchange& exchange, const Witnesses& mine) {
+inline Witnesses first_of_all(Reductions& ranks, const Witnesses& mine) {
   std::string lines;
   for (const auto& [identity, words] : mine.words()) lines += fmt::format("{:.17g} {}\n", identity, words);
   Witnesses all;
-  for (const std::string& of_rank : exchange.gather(lines)) {
+  for (const std::string& of_rank : ranks.gather(lines)) {
     for (std::size_t at = 0; at < of_rank.size();) {
       const std::size_t space = of_rank.find(' ', at), end = of_rank.find('\n', at);
       all.offer(std::strtod(of_rank.c_str() + at, nullptr),
@@ -68,12 +68,11 @@ inline Witnesses first_of_all(Exchange& exchange, const Witnesses& mine) {
 }
 
 /// The first over all ranks. Collective.
-inline Witness first_of_all(Exchange& exchange, const Witness& mine) {
+inline Witness first_of_all(Reductions& ranks, const Witness& mine) {
   double identity[1] = {mine.identity};
-  exchange.minimum(identity);
+  ranks.minimum(identity);
   Witness first;
-  for (const std::string& words :
-       exchange.gather(mine.identity == identity[0] ? mine.words : std::string())) {
+  for (const std::string& words : ranks.gather(mine.identity == identity[0] ? mine.words : std::string())) {
     if (!words.empty()) first.offer(identity[0], [&] { return words; });
   }
   return first;

@@ -1,7 +1,8 @@
+#include "core/communication/solo.hpp"
+
 #include <algorithm>
 
 #include "core/counts.hpp"
-#include "core/step/exchange.hpp"
 
 namespace mpm::core {
 
@@ -25,8 +26,8 @@ void check_decomposition(const DecompositionInput& how, int ranks) {
           "; start that many ranks, change the dimensions, or remove the element");
 }
 
-void SoloExchange::partition(BrickGrid& grid, std::span<const BrickCount> counts,
-                             const DecompositionInput& how) {
+void SoloDirectory::partition(BrickGrid& grid, std::span<const BrickCount> counts,
+                              const DecompositionInput& how) {
   check_decomposition(how, 1);
   std::vector<BrickCoord> owned;
   for (const BrickCount& c : counts) owned.push_back(c.brick);
@@ -35,7 +36,7 @@ void SoloExchange::partition(BrickGrid& grid, std::span<const BrickCount> counts
   grid.reset(std::move(owned), {});
 }
 
-void SoloExchange::claim(BrickGrid& grid, std::span<const BrickCoord> wanted) {
+void SoloDirectory::activate(BrickGrid& grid, std::span<const BrickCoord> wanted) {
   std::vector<BrickCoord> owned = owned_bricks(grid);
   const std::size_t before = owned.size();
   for (BrickCoord b : wanted) {
@@ -46,7 +47,7 @@ void SoloExchange::claim(BrickGrid& grid, std::span<const BrickCoord> wanted) {
   if (owned.size() != before) grid.reset(std::move(owned), {});
 }
 
-void SoloExchange::retire(BrickGrid& grid, std::span<const BrickCoord> empty) {
+void SoloDirectory::deactivate(BrickGrid& grid, std::span<const BrickCoord> empty) {
   if (empty.empty()) return;
   std::vector<BrickCoord> owned = owned_bricks(grid);
   std::vector<BrickCoord> sorted(empty.begin(), empty.end());

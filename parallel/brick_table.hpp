@@ -11,7 +11,7 @@
 
 namespace mpm::parallel {
 
-class Directory {
+class BrickTable {
  public:
   static constexpr std::int32_t nobody = -1;
 
@@ -41,7 +41,7 @@ class Directory {
     entries_[hole].owner = nobody;
   }
 
-  void clear() { *this = Directory(); }
+  void clear() { *this = BrickTable(); }
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "parallel/mpi_exchange.hpp"
+#include "parallel/communication.hpp"
 #include "tests/parallel/world.hpp"
 
 using namespace mpm::parallel;
@@ -12,7 +12,7 @@ using namespace mpm::parallel::test;
 using mpm::core::BrickCoord;
 using mpm::core::BrickCount;
 using mpm::core::BrickGrid;
-using mpm::core::Travellers;
+using mpm::core::MigrationBuffer;
 
 namespace {
 
@@ -40,19 +40,19 @@ struct Census {
 };
 
 /// Over all ranks; every particle must be as it was made. With `arrived`, every brick must be ours.
-Census census(MpiExchange& exchange, const Travellers& travellers, bool arrived) {
+Census census(MpiCommunication& exchange, const MigrationBuffer& particles, bool arrived) {
   std::vector<std::int64_t> sums(3);
-  for (std::size_t i = 0; i < travellers.size(); ++i) {
-    const auto& [to, body, unused] = travellers.heads[i];
-    const double* columns = travellers.columns.data() + travellers.offsets[i];
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const auto& [to, body, unused] = particles.heads[i];
+    const double* columns = particles.columns.data() + particles.offsets[i];
     const auto identity = std::bit_cast<std::uint64_t>(columns[1]);
     const std::vector<double> made = make_columns(to, body, identity);
     if (std::memcmp(made.data(), columns, made.size() * sizeof(double)) != 0) ++sums[2];
-    if (arrived && exchange.directory().owner(to) != world().rank()) ++sums[2];
+    if (arrived && exchange.directory().table().owner(to) != world().rank()) ++sums[2];
     ++sums[0];
     sums[1] += static_cast<std::int64_t>(mix(identity, 5) >> 24);
   }
-  exchange.sum(std::span(sums));
+  exchange.reductions.sum(std::span(sums));
   REQUIRE(sums[2] == 0);
   return {sums[0], sums[1]};
 }
@@ -64,146 +64,146 @@ std::vector<BrickCount> all_of(const std::vector<BrickCoord>& bricks) {
 }
 
 /// `n` particles from our bricks into bricks next to them, or into the same.
-Travellers leave_home(const MpiExchange& exchange, const BrickGrid& grid, std::size_t n,
-                      std::uint64_t round) {
-  Travellers travellers;
-  if (grid.owned() == 0) return travellers;
+MigrationBuffer leave_home(const MpiCommunication& exchange, const BrickGrid& grid, std::size_t n,
+                           std::uint64_t round) {
+  MigrationBuffer particles;
+  if (grid.owned() == 0) return particles;
   std::mt19937_64 random(1000 * round + static_cast<unsigned>(world().rank()));
-  while (travellers.size() < n) {
+  while (particles.size() < n) {
     const auto home =
         grid.brick(static_cast<mpm::core::Slot>(random() % static_cast<unsigned>(grid.owned()))).coord;
     const BrickCoord to = home + mpm::core::neighbour_offset(static_cast<int>(random() % 27));
-    if (!exchange.exists(grid, to)) continue;
+    if (!exchange.directory().table().contains(to)) continue;
     const auto body = static_cast<int>(random() % 3);
     const std::uint64_t identity =
-        (round << 40) + (static_cast<std::uint64_t>(world().rank()) << 24) + travellers.size();
+        (round << 40) + (static_cast<std::uint64_t>(world().rank()) << 24) + particles.size();
     const std::vector<double> columns = make_columns(to, body, identity);
-    travellers.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
+    particles.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
   }
-  return travellers;
+  return particles;
 }
 
 }  // namespace
 
-TEST_CASE("Travellers to neighbouring bricks arrive whole, many times") {
+TEST_CASE("Particles to neighbouring bricks arrive whole, many times") {
   const double share = GENERATE(0.1, 0.5, 1.0);
   std::mt19937_64 random(11);
-  MpiExchange exchange(world());
+  MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400));
-  exchange.partition(grid, all_of(random_bricks(random, {4, 4, 5}, share)), {});
+  exchange.bricks.partition(grid, all_of(random_bricks(random, {4, 4, 5}, share)), {});
   for (std::uint64_t round = 0; round < 100; ++round) {
-    Travellers travellers = leave_home(exchange, grid, round % 7 == 0 ? 0 : 20 * round, round);
-    const Census before = census(exchange, travellers, false);
-    exchange.migrate(grid, travellers, columns_of);
-    REQUIRE(census(exchange, travellers, true) == before);
+    MigrationBuffer particles = leave_home(exchange, grid, round % 7 == 0 ? 0 : 20 * round, round);
+    const Census before = census(exchange, particles, false);
+    exchange.particles.migrate(grid, particles, columns_of);
+    REQUIRE(census(exchange, particles, true) == before);
   }
 }
 
-TEST_CASE("Travellers in messages of more than ten megabytes") {
+TEST_CASE("MigrationBuffer in messages of more than ten megabytes") {
   std::mt19937_64 random(12);
-  MpiExchange exchange(world());
+  MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400));
   // A column of bricks, one or two for each rank: most that leave go to another rank.
   std::vector<BrickCoord> bricks;
   for (std::int32_t z = 0; z < world().size(); ++z) bricks.push_back({0, 0, z});
-  exchange.partition(grid, all_of(bricks), {});
+  exchange.bricks.partition(grid, all_of(bricks), {});
   for (std::uint64_t round = 0; round < 3; ++round) {
-    Travellers travellers;
+    MigrationBuffer particles;
     // Of 8 bytes x 23 doubles, 60000 make 11 MB; all bricks send to the one above.
     for (const auto& b : grid.bricks()) {
       const BrickCoord up = b.coord + BrickCoord{0, 0, 1};
-      const BrickCoord to = exchange.exists(grid, up) ? up : b.coord;
+      const BrickCoord to = exchange.directory().table().contains(up) ? up : b.coord;
       for (std::uint64_t i = 0; i < 60000; ++i) {
         const int body = static_cast<int>(i % 3);
         const auto columns =
             make_columns(to, body, (round << 40) + (mpm::core::key_of(b.coord) >> 42 << 24) + i);
-        travellers.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
+        particles.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
       }
     }
-    const Census before = census(exchange, travellers, false);
+    const Census before = census(exchange, particles, false);
     CHECK(before.particles == 60000 * world().size());
-    exchange.migrate(grid, travellers, columns_of);
-    CHECK(census(exchange, travellers, true) == before);
+    exchange.particles.migrate(grid, particles, columns_of);
+    CHECK(census(exchange, particles, true) == before);
   }
 }
 
-TEST_CASE("Travellers from anywhere to anywhere") {
+TEST_CASE("MigrationBuffer from anywhere to anywhere") {
   std::mt19937_64 random(13);
-  MpiExchange exchange(world());
+  MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400));
   const std::vector<BrickCoord> bricks = random_bricks(random, {5, 5, 5}, 0.3);
-  exchange.partition(grid, all_of(bricks), {});
+  exchange.bricks.partition(grid, all_of(bricks), {});
   for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{1000}, std::size_t{30000}}) {
-    Travellers travellers;
+    MigrationBuffer particles;
     std::mt19937_64 mine(n + static_cast<unsigned>(world().rank()));
     const std::size_t here = n * static_cast<std::size_t>(world().rank() % 3);  // some ranks have none
     for (std::size_t i = 0; i < here; ++i) {
       const BrickCoord to = bricks[mine() % bricks.size()];
       const int body = static_cast<int>(mine() % 3);
       const auto columns = make_columns(to, body, (static_cast<std::uint64_t>(world().rank()) << 24) + i);
-      travellers.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
+      particles.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
     }
-    const Census before = census(exchange, travellers, false);
-    exchange.scatter(grid, travellers, columns_of);
-    CHECK(census(exchange, travellers, true) == before);
+    const Census before = census(exchange, particles, false);
+    exchange.particles.scatter(particles, columns_of);
+    CHECK(census(exchange, particles, true) == before);
   }
 }
 
-TEST_CASE("Travellers pass through bricks claimed a moment ago") {
+TEST_CASE("MigrationBuffer pass through bricks claimed a moment ago") {
   const auto method = GENERATE(mpm::core::PartitionMethod::metis, mpm::core::PartitionMethod::uniform);
-  MpiExchange exchange(world());
+  MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400));
   mpm::core::DecompositionInput how;
   how.method = method;
   if (method == mpm::core::PartitionMethod::uniform) how.dimensions = {1, 1, world().size()};
-  exchange.partition(grid, all_of({{50, 50, 0}}), how);
-  Travellers travellers;
+  exchange.bricks.partition(grid, all_of({{50, 50, 0}}), how);
+  MigrationBuffer particles;
   if (grid.owned() == 1) {
     for (std::uint64_t i = 0; i < 100; ++i) {
       const auto columns = make_columns({50, 50, 0}, 0, i);
-      travellers.add({50, 50, 0}, 0, columns.data(), 18);
+      particles.add({50, 50, 0}, 0, columns.data(), 18);
     }
   }
   // Upwards through the whole grid, one brick a round: claim the next, go there, retire the last.
   for (std::int32_t z = 1; z < 100; ++z) {
     const BrickCoord next{50, 50, z}, last{50, 50, z - 1};
     std::vector<BrickCoord> wanted, empty;
-    if (travellers.size() > 0) wanted = {next};
-    exchange.claim(grid, wanted);
-    Travellers leaving;
-    for (std::size_t i = 0; i < travellers.size(); ++i) {
-      const auto identity = std::bit_cast<std::uint64_t>(travellers.columns[travellers.offsets[i] + 1]);
+    if (particles.size() > 0) wanted = {next};
+    exchange.bricks.activate(grid, wanted);
+    MigrationBuffer leaving;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      const auto identity = std::bit_cast<std::uint64_t>(particles.columns[particles.offsets[i] + 1]);
       const auto columns = make_columns(next, 0, identity);
       leaving.add(next, 0, columns.data(), 18);
     }
     if (leaving.size() > 0) empty = {last};
-    exchange.migrate(grid, leaving, columns_of);
-    exchange.retire(grid, empty);
-    travellers = std::move(leaving);
-    REQUIRE(census(exchange, travellers, true).particles == 100);
-    REQUIRE(exchange.directory().size() == 1);
+    exchange.particles.migrate(grid, leaving, columns_of);
+    exchange.bricks.deactivate(grid, empty);
+    particles = std::move(leaving);
+    REQUIRE(census(exchange, particles, true).particles == 100);
+    REQUIRE(exchange.directory().table().size() == 1);
   }
 }
 
 TEST_CASE("A traveller to nowhere is a bug that says where") {
-  MpiExchange exchange(world());
+  MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400));
   std::vector<BrickCoord> bricks;
   for (std::int32_t r = 0; r < world().size(); ++r) bricks.push_back({3 * r, 0, 0});
-  exchange.partition(grid, all_of(bricks), {});
+  exchange.bricks.partition(grid, all_of(bricks), {});
   const std::vector<double> columns(18);
-  Travellers travellers;
-  travellers.add({5, 6, 7}, 2, columns.data(), 18);
-  CHECK_THROWS_WITH(exchange.migrate(grid, travellers, columns_of),
+  MigrationBuffer particles;
+  particles.add({5, 6, 7}, 2, columns.data(), 18);
+  CHECK_THROWS_WITH(exchange.particles.migrate(grid, particles, columns_of),
                     "a particle of body 2 travels to brick (5, 6, 7), which does not exist");
-  CHECK_THROWS_AS(exchange.scatter(grid, travellers, columns_of), std::logic_error);
+  CHECK_THROWS_AS(exchange.particles.scatter(particles, columns_of), std::logic_error);
 
   const int other = (world().rank() + 1) % world().size();
   for (const BrickCoord b : bricks) {
-    if (exchange.directory().owner(b) != other || world().size() == 1) continue;
-    travellers.clear();
-    travellers.add(b, 1, columns.data(), 18);
-    CHECK_THROWS_WITH(exchange.migrate(grid, travellers, columns_of),
+    if (exchange.directory().table().owner(b) != other || world().size() == 1) continue;
+    particles.clear();
+    particles.add(b, 1, columns.data(), 18);
+    CHECK_THROWS_WITH(exchange.particles.migrate(grid, particles, columns_of),
                       Catch::Contains("belongs to rank " + std::to_string(other)));
   }
 }

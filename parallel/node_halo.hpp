@@ -10,8 +10,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/communication/brick_directory.hpp"
+#include "core/communication/node_halo.hpp"
 #include "core/grid/brick_grid.hpp"
-#include "parallel/directory.hpp"
 #include "parallel/mpi.hpp"
 
 namespace mpm::parallel {
@@ -36,21 +37,20 @@ struct HaloPartner {
 };
 
 /// Partners by rank. Two ranks that are each other's partners have the same lists.
-std::vector<HaloPartner> halo_partners(const core::BrickGrid& grid, const Directory& directory);
+std::vector<HaloPartner> halo_partners(const core::BrickGrid& grid, const core::BrickDirectory& directory);
 
-class Halo {
+class MpiHalo final : public core::NodeHalo {
  public:
-  Halo(const Communicator& comm, const Directory& directory) : comm_(comm), directory_(directory) {}
+  MpiHalo(const Communicator& comm, const core::BrickDirectory& directory)
+      : comm_(comm), directory_(directory) {}
 
   /// The ranks with bricks next to ours, ascending. No communication.
   const std::vector<HaloPartner>& partners(const core::BrickGrid& grid) {
     update(grid);
     return partners_;
   }
-  /// As Exchange::begin_halo. Collective.
-  void begin(core::BrickGrid& grid, core::NodeFields fields);
-  /// As Exchange::end_halo. Collective.
-  void end(core::BrickGrid& grid);
+  void begin(core::BrickGrid& grid, core::NodeFields fields) override;
+  void end(core::BrickGrid& grid) override;
 
  private:
   void update(const core::BrickGrid& grid);
@@ -59,7 +59,7 @@ class Halo {
   void set_up_requests(int count);
 
   const Communicator& comm_;
-  const Directory& directory_;
+  const core::BrickDirectory& directory_;
   const core::BrickGrid* planned_grid_ = nullptr;  ///< for which, and for which state of it, the partners are
   std::uint64_t planned_revision_ = 0;
   bool ghosts_are_clear_ = false;

@@ -1,4 +1,4 @@
-#include "parallel/halo.hpp"
+#include "parallel/node_halo.hpp"
 
 #include <algorithm>
 #include <bitset>
@@ -116,7 +116,7 @@ void with_count(int count, F f) {
 
 }  // namespace
 
-std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const Directory& directory) {
+std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const core::BrickDirectory& directory) {
   const auto shared = shared_sets(grid.shape());
   const auto ghost_of = [&](Slot s) { return grid.ghost(s - grid.owned()); };
   std::map<int, HaloPartner> partners;
@@ -128,13 +128,13 @@ std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const Directory& d
     for (std::size_t n = 0; n < core::neighbourhood; ++n) {
       const Slot other = grid.brick(s).neighbour[n];
       if (other < grid.owned()) continue;
-      to_rank[directory.owner(ghost_of(other))] |= shared[n];
+      to_rank[directory.owner_nearby(ghost_of(other))] |= shared[n];
       from_ghost[static_cast<std::size_t>(other - grid.owned())] |= shared[core::neighbourhood - 1 - n];
     }
     for (const auto& [rank, nodes] : to_rank) append(partners[rank].send, s, nodes);
   }
   for (const Slot s : by_key(grid.owned(), grid.owned() + grid.ghosts(), ghost_of)) {
-    append(partners[directory.owner(ghost_of(s))].receive, s,
+    append(partners[directory.owner_nearby(ghost_of(s))].receive, s,
            from_ghost[static_cast<std::size_t>(s - grid.owned())]);
   }
 
@@ -146,7 +146,7 @@ std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const Directory& d
   return list;
 }
 
-void Halo::update(const BrickGrid& grid) {
+void MpiHalo::update(const BrickGrid& grid) {
   if (planned_grid_ == &grid && planned_revision_ == grid.revision()) return;
   if (under_way_) throw std::logic_error("the set of bricks changed while a halo exchange was under way");
   planned_grid_ = &grid;
@@ -164,7 +164,7 @@ void Halo::update(const BrickGrid& grid) {
   ghosts_are_clear_ = false;
 }
 
-void Halo::set_up_requests(int count) {
+void MpiHalo::set_up_requests(int count) {
   if (sends(count).size() == partners_.size()) return;
   const auto doubles = static_cast<std::size_t>(count);
   for (std::size_t p = 0; p < partners_.size(); ++p) {
@@ -175,7 +175,7 @@ void Halo::set_up_requests(int count) {
   }
 }
 
-void Halo::begin(BrickGrid& grid, NodeFields fields) {
+void MpiHalo::begin(BrickGrid& grid, NodeFields fields) {
   if (under_way_) throw std::logic_error("a halo exchange was begun before the last one ended");
   const int count = fields.count;
   if (!grid.arrays().has(fields.array) || fields.first < 0 || count < 1 ||
@@ -196,7 +196,7 @@ void Halo::begin(BrickGrid& grid, NodeFields fields) {
   });
 }
 
-void Halo::end(BrickGrid& grid) {
+void MpiHalo::end(BrickGrid& grid) {
   if (!under_way_) throw std::logic_error("a halo exchange was ended that had not begun");
   const NodeFields fields = *under_way_;
   with_count(fields.count, [&](auto constant) {

@@ -1,0 +1,184 @@
+#include "core/setup/particle_creation.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/particles/tile_order.hpp"
+#include "core/threads.hpp"
+
+namespace mpm::core {
+
+namespace {
+
+constexpr std::uint64_t units_in_run = 16;       // of a body, next to each other, that one rank makes
+constexpr std::size_t seeds_in_piece = 1 << 14;  // seeds that a rank makes between two sends
+
+/// This rank's share of a body's units, in pieces: f(seeds). Every ranks-th run of units is ours.
+template <class F>
+void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
+  const std::uint64_t units = source.units();
+  const auto stride = units_in_run * static_cast<std::uint64_t>(ranks);
+  std::vector<Seed> seeds;
+  for (std::uint64_t first = units_in_run * static_cast<std::uint64_t>(rank); first < units;
+       first += stride) {
+    for (std::uint64_t u = first; u < std::min(first + units_in_run, units); ++u) {
+      source.generate(u, u + 1, seeds);
+      if (seeds.size() < seeds_in_piece) continue;
+      f(seeds);
+      seeds.clear();
+    }
+  }
+  if (!seeds.empty()) f(seeds);
+}
+
+}  // namespace
+
+std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies) {
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
+  std::vector<BodySeeds> seeds;
+  for (const std::size_t b : bodies) {
+    const auto block =
+        static_cast<std::int64_t>(sizeof(double)) * model.bodies[b].pool->layout().block_doubles();
+    seeds.push_back({b, inputs[b], make_seed_source(*model.scene, *inputs[b]), block});
+  }
+  return seeds;
+}
+
+void refuse_uncounted(std::span<const BodySeeds> bodies, std::uint64_t first_identity) {
+  double identities = static_cast<double>(first_identity), particles = 0;
+  const BodySeeds* largest = nullptr;
+  for (const BodySeeds& b : bodies) {
+    identities += static_cast<double>(b.source->identities());
+    particles += b.source->expected_particles();
+    if (largest == nullptr || b.source->identities() > largest->source->identities()) largest = &b;
+  }
+  if (identities < static_cast<double>(identity_limit)) return;
+  throw InputErrors(
+      largest->input->source, "Body",
+      fmt::format(
+          "the lattices of the bodies, body `{}`'s above all, have {} places to number, more than can "
+          "be told apart (2^53), for about {:.3g} particles; use a larger dp",
+          largest->input->name,
+          largest->source->identities() >= identity_limit ? "at least 9.01e+15"
+                                                          : fmt::format("{:.3g}", identities),
+          particles));
+}
+
+std::vector<BrickCount> SeedCount::in_bricks() const {
+  std::vector<BrickCount> counts;
+  for (const auto& [key, n] : bricks) counts.push_back({brick_of_key(key), n});
+  return counts;
+}
+
+SeedCount count_seeds(const GridGeometry& geometry, std::span<const BodySeeds> bodies,
+                      const Reductions& ranks) {
+  SeedCount count;
+  std::map<BrickKey, std::int64_t> bricks;  // of one body
+  for (const BodySeeds& body : bodies) {
+    bricks.clear();
+    for_each_piece(*body.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
+      for (const Seed& s : seeds) {
+        const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
+        if (geometry.contains(x)) {
+          if (body.block_bytes > 0) ++bricks[key_of(geometry.brick_at(x))];
+          continue;
+        }
+        ++count.outside;
+        if (count.first_outside.empty()) {
+          count.first_outside =
+              fmt::format("{}:{}: <Body name=\"{}\">: a particle at ({:.6g}, {:.6g}, {:.6g})",
+                          body.input->source.file, body.input->source.line, body.input->name, x.x, x.y, x.z);
+        }
+      }
+    });
+    for (const auto& [key, n] : bricks) {
+      count.bricks[key] += n;
+      count.block_bytes += (n + block_lanes - 1) / block_lanes * body.block_bytes;
+    }
+  }
+  return count;
+}
+
+void refuse_outside(const Scene& scene, const GridGeometry& g, const SeedCount& count, Reductions& ranks) {
+  std::int64_t outside[1] = {count.outside};
+  ranks.sum(std::span<std::int64_t>(outside));
+  if (outside[0] == 0) return;
+  std::string first;
+  for (const std::string& line : ranks.gather(count.first_outside)) {
+    if (first.empty()) first = line;
+  }
+  throw InputErrors(
+      scene.grid.source, "Grid",
+      fmt::format("{} particles lie outside the grid [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]; "
+                  "enlarge the grid or move the body. The first: {}",
+                  outside[0], g.origin.x, g.origin.x + double(g.cells[0]) * g.cell.x, g.origin.y,
+                  g.origin.y + double(g.cells[1]) * g.cell.y, g.origin.z,
+                  g.origin.z + double(g.cells[2]) * g.cell.z, first));
+}
+
+void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
+                  double identity, std::vector<double>& columns) {
+  columns.assign(static_cast<std::size_t>(layout.columns()), 0.0);
+  const auto set = [&](Column c, double v) { columns[layout.index(c)] = v; };
+  for (int a = 0; a < 3; ++a) {
+    set(next(Column::position_x, a), seed.position[static_cast<std::size_t>(a)]);
+    const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a]
+                                              : input.initial_velocity[static_cast<std::size_t>(a)];
+    set(next(Column::velocity_x, a), v);
+  }
+  set(Column::mass, seed.mass);
+  set(Column::volume, seed.volume);
+  set(Column::identity, identity);
+  if (input.initial_temperature && layout.has(Column::temperature))
+    set(Column::temperature, *input.initial_temperature);
+}
+
+void create_particles(Model& model, std::span<const BodySeeds> bodies, Communication& communication) {
+  Reductions& ranks = communication.reductions;
+  std::vector<int> columns_of;
+  for (const Body& b : model.bodies) columns_of.push_back(b.pool->layout().columns());
+  std::vector<bool> created(model.bodies.size());
+  for (const BodySeeds& of : bodies) {
+    const Body& body = model.bodies[of.body];
+    const ColumnLayout& layout = body.pool->layout();
+    MigrationBuffer particles;
+    std::vector<double> columns;
+    const auto send = [&] {
+      communication.particles.scatter(particles, columns_of);
+      insert_particles(model, particles);
+      particles.clear();
+    };
+    const auto base = static_cast<double>(model.next_identity);
+    for_each_piece(*of.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
+      for (const Seed& s : seeds) {
+        fill_columns(layout, body, *of.input, s, base + static_cast<double>(s.identity), columns);
+        const BrickCoord to = model.grid->geometry().brick_at({s.position[0], s.position[1], s.position[2]});
+        particles.add(to, static_cast<int>(of.body), columns.data(), layout.columns());
+      }
+      ranks.any(true);
+      send();
+    });
+    // The others may have more pieces than we: keep receiving until all are through.
+    while (ranks.any(false)) send();
+    model.next_identity += of.source->identities();
+    created[of.body] = true;
+  }
+  sort_tiles(model, created);
+  arrange_blocks(model);
+}
+
+void sort_tiles(Model& model, const std::vector<bool>& wanted) {
+  BrickGrid& grid = *model.grid;
+  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
+    Brick& brick = grid.brick(static_cast<Slot>(s));
+    for (Cohort& cohort : brick.cohorts) {
+      if (!wanted.empty() && !wanted[static_cast<std::size_t>(cohort.body)]) continue;
+      BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+      sort_by_identity(pool, cohort);
+      sort_by_cell(grid, brick.coord, pool, cohort);
+    }
+  });
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,65 @@
+// Particles come into being: at the start of a run, and in a run that goes on.
+//
+// Every rank makes its own share of every body's particles, twice: once to count them per brick, so that each
+// brick has an owner, and once to send each particle to the rank that owns its brick. No rank ever holds more
+// than its share and a buffer of fixed size. Identities come from the bodies' lattices, so they depend on no
+// rank.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/communication/communication.hpp"
+#include "core/discretise/seeds.hpp"
+#include "core/model.hpp"
+
+namespace mpm::core {
+
+/// A body whose particles are to be made.
+struct BodySeeds {
+  std::size_t body = 0;  ///< its number in the model
+  const BodyInput* input = nullptr;
+  std::unique_ptr<SeedSource> source;
+  std::int64_t block_bytes = 0;  ///< of eight of its particles; 0: only those outside the grid are counted
+};
+
+/// Of these bodies of the model.
+std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies);
+
+/// Throws InputErrors where the bodies' identities, from `first_identity` on, cannot be numbered; names the
+/// largest body.
+void refuse_uncounted(std::span<const BodySeeds> bodies, std::uint64_t first_identity);
+
+/// This rank's share, counted.
+struct SeedCount {
+  std::map<BrickKey, std::int64_t> bricks;
+  std::int64_t block_bytes = 0;  ///< of the blocks that hold them: in every brick of every body, full but one
+  std::int64_t outside = 0;      ///< of the grid
+  std::string first_outside;     ///< in words
+
+  std::vector<BrickCount> in_bricks() const;
+};
+SeedCount count_seeds(const GridGeometry& geometry, std::span<const BodySeeds> bodies,
+                      const Reductions& ranks);
+
+/// Throws InputErrors on every rank if any has a particle outside the grid. Collective.
+void refuse_outside(const Scene& scene, const GridGeometry& geometry, const SeedCount& count,
+                    Reductions& ranks);
+
+/// The columns of a particle as a body's input states them, in the order of `layout`; the material's own
+/// start from zero (ConstitutiveModel::initialise).
+void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
+                  double identity, std::vector<double>& columns);
+
+/// Make the particles and bring each to its brick, which some rank owns; identities go on from the model's
+/// next one. Tiles end up in the order of cells and, within a cell, of identities. Collective.
+void create_particles(Model& model, std::span<const BodySeeds> bodies, Communication& communication);
+
+/// Tiles of all bodies, or of those for which `wanted` is true, in the order of cells and, within a cell, of
+/// identities, however they arrived.
+void sort_tiles(Model& model, const std::vector<bool>& wanted = {});
+
+}  // namespace mpm::core

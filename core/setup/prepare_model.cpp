@@ -1,0 +1,135 @@
+#include "core/setup/prepare_model.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/discretise/seeds.hpp"
+#include "core/scene/limits.hpp"
+#include "core/step/passes.hpp"
+
+namespace mpm::core {
+
+GridGeometry geometry_of(const Scene& scene) {
+  GridGeometry g;
+  double density = 0;
+  for (const MaterialInput& m : scene.materials)
+    density += m.reference_density / static_cast<double>(scene.materials.size());
+  for (int a = 0; a < 3; ++a) {
+    const GridAxis& axis = scene.grid.axes[static_cast<std::size_t>(a)];
+    g.origin[a] = axis.min;
+    g.cell[a] = axis.cell_size;
+    g.inverse_cell[a] = 1 / axis.cell_size;
+    g.cells[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(axis.cells);
+    g.boundary[static_cast<std::size_t>(2 * a)] = axis.lower;
+    g.boundary[static_cast<std::size_t>(2 * a + 1)] = axis.upper;
+    if (static_cast<std::int64_t>(axis.cells) > most_cells_per_axis) {
+      throw InputErrors(
+          scene.grid.source, "Grid",
+          fmt::format("{} cells along {} are more than the {} that a grid may have; use larger cells",
+                      axis.cells, "xyz"[a], most_cells_per_axis));
+    }
+  }
+  g.mass_cutoff = scene.grid.mass_cutoff * density * g.cell_volume();
+  return g;
+}
+
+namespace {
+
+bool made_of_bars(const Geometry& geometry) {
+  return std::holds_alternative<BarMeshGeometry>(geometry) ||
+         std::holds_alternative<BarLinesGeometry>(geometry) ||
+         std::holds_alternative<BarNetGeometry>(geometry);
+}
+
+void refuse_bar_material(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
+  if (!material.uniaxial() || made_of_bars(input.geometry)) return;
+  throw InputErrors(input.source, "Body",
+                    fmt::format("material `{}` is for bars, and body `{}` of type \"{}\" has none: give it a "
+                                "material without _1D",
+                                scene.materials[input.material].name, input.name, input.type));
+}
+
+void refuse_temperature(const BodyInput& input, const ConstitutiveModel& material) {
+  if (!input.initial_temperature || material.columns({}).has(Column::temperature)) return;
+  throw InputErrors(
+      input.source, "InitialTemperature",
+      fmt::format("material `{}` of body `{}` carries no temperature: give it SpecHeat and a law "
+                  "that heats, CoefficientOfThermalConductivity or TemperatureCoefficient, or "
+                  "leave InitialTemperature out",
+                  material.name(), input.name));
+}
+
+}  // namespace
+
+void check_material_of(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
+  Complaints wrong;
+  wrong.collect([&] { refuse_bar_material(scene, input, material); });
+  wrong.collect([&] { refuse_temperature(input, material); });
+  wrong.raise_if_any();
+}
+
+Model prepare_model(std::shared_ptr<const Scene> scene,
+                    std::vector<std::unique_ptr<ConstitutiveModel>> materials,
+                    const ColumnSet& output_columns) {
+  Model model;
+  model.scene = scene;
+  model.materials = std::move(materials);
+  const SolutionInput& solution = scene->solution;
+  model.options.volume_update = static_cast<int>(solution.volume.update);
+  model.options.volume_min = solution.volume.min.value_or(0);
+  model.options.volume_max = solution.volume.max.value_or(0);
+  model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
+  model.options.keep_strain =
+      solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
+  const bool conducts =
+      std::ranges::any_of(model.materials, [](const auto& material) { return material->conductivity() > 0; });
+  model.grid = std::make_unique<BrickGrid>(geometry_of(*scene), node_block_of(*scene),
+                                           node_arrays_of(*scene, conducts));
+  BlockPools pools;
+  for_each_active_body(*scene, [&](int component, const BodyInput& input) {
+    Body body;
+    body.name = input.name;
+    body.component = component;
+    body.material = static_cast<int>(input.material);
+    body.model = model.materials[input.material].get();
+    body.rigid = body.model->rigid();
+    check_material_of(*scene, input, *body.model);
+    body.no_output = input.no_output;
+    if (input.prescribed_velocity) { body.prescribed_velocity = to_vec(*input.prescribed_velocity); }
+    ColumnSet columns = ColumnSet::mechanics();
+    columns.add(body.model->columns(model.options));
+    columns.add(output_columns);
+    columns.add(transfer_columns(*scene));
+    if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
+        model.grid->geometry().boundary.end())
+      columns.add(Column::sound_speed);  // of the dashpots there
+    body.pool = pools.of(columns);
+    model.bodies.push_back(std::move(body));
+  });
+  model.books.body_eroded.resize(model.bodies.size());
+  model.books.body_left.resize(model.bodies.size());
+  return model;
+}
+
+ModelPlan plan_of(const Model& model) {
+  ModelPlan plan;
+  std::size_t b = 0;
+  const int common = ColumnSet::mechanics().size();
+  for_each_active_body(*model.scene, [&](int, const BodyInput& input) {
+    const ColumnLayout& layout = model.bodies[b++].pool->layout();
+    BodyPlan body;
+    body.name = input.name;
+    body.expected_particles = make_seed_source(*model.scene, input)->expected_particles();
+    body.bytes_per_particle = layout.bytes_per_particle();
+    for (int c = common; c < column_count; ++c) {
+      if (layout.has(static_cast<Column>(c))) body.columns.push_back(name_of(static_cast<Column>(c)));
+    }
+    plan.particles += body.expected_particles;
+    plan.state_bytes += body.expected_particles * body.bytes_per_particle;
+    plan.bodies.push_back(std::move(body));
+  });
+  return plan;
+}
+
+}  // namespace mpm::core
