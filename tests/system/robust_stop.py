@@ -272,17 +272,41 @@ class Restart(Case):
             self.assertEqual([body["name"] for body in found["bodies"]], ["left"])
             self.assertLess(abs(found["energy"]["relative_drift"]), 0.05, outcome)
 
-    def test_a_body_that_would_come_in(self):
-        """-rt that activates a body: refused, as long as it would enter without particles."""
+    def test_a_body_that_comes_in(self):
+        """-rt without the Deactive of before: the body comes in as its input states it, the same on any ranks and
+        through another restart, and the balance of energy stays one of errors alone."""
         left, right = _mpm.BOUNCING
         apart = [left, right.replace('type="Block"', 'type="Block" Deactive="1"')]
-        self.write(bounce(end=END / 8, bodies=apart, output=f'<Restart time_interval="{END / 32}"/>'), "apart.xmp")
+        often = f'<Restart time_interval="{END / 32}"/>'
+        self.write(bounce(end=END / 8, bodies=apart, output=often), "apart.xmp")
         self.run_in("apart", [self.folder / "apart.xmp"])
-        whole = self.write(bounce(end=END / 8), "whole.xmp")
+        early = _mpm.restarts(self.folder / "apart", "apart")[0]
+        whole = self.write(bounce(end=END / 8, output=often), "whole.xmp")
+        outcomes = []
+        for ranks, threads in ((1, 1), (2, 1), (3, 2)):
+            folder = f"in{ranks}"
+            outcome = self.run_in(folder, [early, "-rt", whole], ranks=ranks, threads=threads)
+            outcomes.append(outcome.state)
+            self.assertIn("body 'right' was not in the restart file: its 768 particles come in now", outcome.out)
+            found = _mpm.summary(self.folder / folder, "whole")
+            self.assertEqual([body["particles"] for body in found["bodies"]], [768, 768])
+            self.assertLess(abs(found["energy"]["relative_drift"]), 0.05, outcome)
+        self.assertEqual(len(set(outcomes)), 1)
+        self.assertEqual([body["mass"] for body in found["bodies"]], [96, 96])
+        again = self.run_in("again", [_mpm.restarts(self.folder / "in3", "whole")[0]], ranks=2)
+        self.assertEqual(again.state, outcomes[0])
+
+    def test_a_body_that_comes_in_where_the_grid_is_not(self):
+        left, right = _mpm.BOUNCING
+        outside = right.replace('type="Block"', 'type="Block" Deactive="1"').replace('x0="9"', 'x0="900"')
+        self.write(bounce(end=END / 8, bodies=[left, outside], output=f'<Restart time_interval="{END / 32}"/>'),
+                   "apart.xmp")
+        self.run_in("apart", [self.folder / "apart.xmp"])
+        whole = self.write(bounce(end=END / 8, bodies=[left, outside.replace(' Deactive="1"', "")]), "whole.xmp")
         for ranks in (1, 2):
-            outcome = self.run_in("in", [_mpm.restarts(self.folder / "apart", "apart")[0], "-rt", whole], code=INPUT_ERROR,
-                                  ranks=ranks)
-            self.assertEqual(outcome.complaint.count('<Body name="right">: takes no part in the restart file'), 1)
+            outcome = self.run_in("in", [_mpm.restarts(self.folder / "apart", "apart")[0], "-rt", whole],
+                                  code=INPUT_ERROR, ranks=ranks)
+            self.assertEqual(outcome.complaint.count("the body lies outside the grid"), 1, outcome)
         self.assertFalse((self.folder / "in").exists())
 
 
