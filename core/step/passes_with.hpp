@@ -58,6 +58,8 @@ class PassesWith final : public Passes {
   void for_bricks(int first, int last, F f);
   template <class F>
   void for_each_block(Slot s, int columns, F f);
+  template <class F, class G>
+  void for_each_batch(Slot s, const BrickFrame& frame, Scratch& at, F block_work, G batch_work);
   template <NodeFields what, class F>
   void map_bricks(F work);
 
@@ -78,6 +80,7 @@ class PassesWith final : public Passes {
   void update_velocities(Slot s, int body, const Place& place, double* block, int used, Scratch& at);
   void move(int body, const Place& place, double* block, int used, Scratch& at);
   void strain_batch_block(const BrickFrame& frame, const Place& place, int b, Scratch& at);
+  void update_material(const Body& body, Scratch& at);
 
   BoundaryFaces faces(Slot s) const {
     const BrickGrid& grid = *model_.grid;
@@ -180,6 +183,44 @@ template <class F>
       prefetch.request(b, columns);
       f(static_cast<int>(c), b, cohort.body, pool.layout(), pool.block(cohort.blocks[b]),
         cohort.used_lanes(b));
+    }
+  }
+}
+
+/// The blocks of a brick in batches: for each block_work(body, block of the batch, lanes in use), then, with
+/// the memory of the following blocks requested in the background, batch_work(cohort's number, first block's
+/// number, cohort). The batch and the places of its particles are in `at`.
+template <ShapePolicy S, TransferPolicy T>
+template <class F, class G>
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_batch(Slot s, const BrickFrame& frame,
+                                                                    Scratch& at, F block_work, G batch_work) {
+  const Brick& brick = model_.grid->brick(s);
+  Batch& batch = at.batch;
+  batch.time = model_.clock.time + dt;
+  batch.dt = dt;
+  batch.cell_size = model_.grid->geometry().smallest_cell();
+  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
+    const Cohort& cohort = brick.cohorts[c];
+    const BlockPrefetch prefetch(model_, s, c);
+    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    batch.layout = &pool.layout();
+    const int lines_before_update = std::max(pool.layout().columns() - parts_of_update, 0);
+    for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
+      batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
+      batch.particles =
+          static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+      // All places first: a block's is a long chain of operations, and those of several blocks overlap.
+      for (int b = 0; b < batch.blocks; ++b) {
+        batch.block[b] = pool.block(cohort.blocks[first + static_cast<std::size_t>(b)]);
+        at.places[b].find(frame, pool.layout(), batch.block[b]);
+      }
+      for (int b = 0; b < batch.blocks; ++b) {
+        const std::size_t at_block = first + static_cast<std::size_t>(b);
+        batch.background[b] = prefetch.lines(at_block);
+        batch.background[b].request(lines_before_update);
+        block_work(cohort.body, b, cohort.used_lanes(at_block));
+      }
+      batch_work(c, first, cohort);
     }
   }
 }
@@ -345,63 +386,48 @@ inline void store_sound_speed(Batch& batch) {
   }
 }
 
+/// The material's update of a batch whose kinematics are known, and what it found.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::update_material(const Body& body, Scratch& at) {
+  Batch& batch = at.batch;
+  batch.events = {};
+  batch.vanishing = batch.negative = 0;
+  body.model->update(batch, model_.options);
+  at.statistics.events += batch.events;
+  if ((batch.vanishing | batch.negative) != 0)
+    name_unphysical(model_.scene->solution.warn, body, batch, at.statistics);
+  store_sound_speed(batch);
+}
+
 /// Velocity gradient, with `moves` the motion, and the material's update, batch by batch.
 /// prefetch_nodes() is called once per block.
 template <ShapePolicy S, TransferPolicy T>
 template <bool moves, class F>
 [[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, Velocities velocities, Scratch& at,
                                                          F prefetch_nodes) {
-  const Brick& brick = model_.grid->brick(s);
   const BrickFrame frame = this->frame(s);
   Batch& batch = at.batch;
-  batch.time = model_.clock.time + dt;
-  batch.dt = dt;
-  batch.cell_size = model_.grid->geometry().smallest_cell();
   double fastest = 0;
-  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
-    const Cohort& cohort = brick.cohorts[c];
-    const BlockPrefetch prefetch(model_, s, c);
-    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
-    const ColumnLayout& layout = body.pool->layout();
-    batch.layout = &layout;
-    const int lines_before_update = std::max(layout.columns() - parts_of_update, 0);
-    for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
-      batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
-      batch.particles =
-          static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
-      // All places first: a block's is a long chain of operations, and those of several blocks overlap.
-      for (int b = 0; b < batch.blocks; ++b) {
-        batch.block[b] = body.pool->block(cohort.blocks[first + static_cast<std::size_t>(b)]);
-        at.places[b].find(frame, layout, batch.block[b]);
-      }
+  const auto kinematics = [&](int body, int b, int used) {
+    prefetch_nodes();
+    strain_batch_block(frame, at.places[b], b, at);
+    if constexpr (moves) move(body, at.places[b], batch.block[b], used, at);
+  };
+  const auto stress = [&](std::size_t c, std::size_t first, const Cohort& cohort) {
+    update_material(model_.bodies[static_cast<std::size_t>(cohort.body)], at);
+    if (velocities == Velocities::of_next_step)
+      at.statistics.fastest = fastest_particle(batch, at.statistics.fastest);
+    else
+      fastest = std::max(fastest, fastest_wave(batch));
+    if constexpr (moves) {
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
-        batch.background[b] = prefetch.lines(at_block);
-        batch.background[b].request(lines_before_update);
-        prefetch_nodes();
-        strain_batch_block(frame, at.places[b], b, at);
-        if constexpr (moves) move(cohort.body, at.places[b], batch.block[b], cohort.used_lanes(at_block), at);
-      }
-      batch.events = {};
-      batch.vanishing = batch.negative = 0;
-      body.model->update(batch, model_.options);
-      at.statistics.events += batch.events;
-      if ((batch.vanishing | batch.negative) != 0)
-        name_unphysical(model_.scene->solution.warn, body, batch, at.statistics);
-      store_sound_speed(batch);
-      if (velocities == Velocities::of_next_step)
-        at.statistics.fastest = fastest_particle(batch, at.statistics.fastest);
-      else
-        fastest = std::max(fastest, fastest_wave(batch));
-      if constexpr (moves) {
-        for (int b = 0; b < batch.blocks; ++b) {
-          const std::size_t at_block = first + static_cast<std::size_t>(b);
-          find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, layout, batch.block[b],
-                         cohort.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
-        }
+        find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, *batch.layout, batch.block[b],
+                       cohort.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
       }
     }
-  }
+  };
+  for_each_batch(s, frame, at, kinematics, stress);
   at.add_work_of_brick();
   if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = fastest;
 }
