@@ -54,10 +54,6 @@ class SeedSource {
 
   /// Volume of the shape that the input states; NaN where it is not known without generating (Bool).
   virtual double solid_volume() const = 0;
-
-  /// (volume of all seeds - solid_volume)/solid_volume, counted row by row, some ten nanoseconds for each;
-  /// NaN where solid_volume is NaN or there are more than 2^30 rows.
-  virtual double relative_volume_error() const = 0;
 };
 
 /// The source for one body of the scene (for Bool bodies it looks up the operands there). Throws InputErrors

@@ -54,6 +54,9 @@ inline double volume(const Seeds& seeds) {
   return sum;
 }
 
+/// (volume of all seeds - that of the shape) / that of the shape
+inline double volume_error(const SeedSource& from) { return volume(all(from)) / from.solid_volume() - 1; }
+
 inline double mass(const Seeds& seeds) {
   double sum = 0;
   for (const Seed& seed : seeds) sum += seed.mass;
