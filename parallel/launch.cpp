@@ -13,14 +13,6 @@ std::string broadcast(const Communicator& comm, std::string bytes) {
   return bytes;
 }
 
-std::string first_complaint(const Communicator& comm, const std::string& mine) {
-  const Gathered<char> all = comm.all_gather(std::span<const char>(mine));
-  for (int r = 0; r < comm.size(); ++r) {
-    if (const auto text = all.of(r); !text.empty()) return {text.begin(), text.end()};
-  }
-  return {};
-}
-
 namespace detail {
 
 namespace {

@@ -19,10 +19,6 @@ namespace mpm::parallel {
 /// Rank 0's bytes, of any length, on every rank. Collective.
 std::string broadcast(const Communicator& comm, std::string bytes);
 
-/// The text of the lowest rank whose text is not empty, or an empty one. For steps in which some ranks may
-/// fail and all must leave with one message. Collective.
-std::string first_complaint(const Communicator& comm, const std::string& mine);
-
 namespace detail {
 
 std::string to_bytes(const core::InputErrors& errors);

@@ -71,8 +71,6 @@ Communicator::~Communicator() {
   if (handle_ != MPI_COMM_NULL && std::uncaught_exceptions() <= exceptions_) MPI_Comm_free(&handle_);
 }
 
-void Communicator::barrier() const { check(MPI_Barrier(handle_), "MPI_Barrier"); }
-
 namespace {
 
 /// f(part) for the parts of a list that have `longest` bytes at most.

@@ -71,8 +71,6 @@ class Communicator {
   int size() const { return size_; }
   MPI_Comm handle() const { return handle_; }
 
-  /// Collective.
-  void barrier() const;
   /// Entry by entry over the ranks, in place. Collective.
   void reduce(std::span<double> values, MPI_Op op, std::size_t longest = longest_piece) const;
   /// Collective.

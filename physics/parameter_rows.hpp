@@ -29,6 +29,12 @@ inline constexpr core::ParameterInfo yield0_row{.name = "Yield0",
                                                 .min_open = true,
                                                 .dimension = "stress",
                                                 .meaning = "initial yield stress"};
+inline constexpr core::ParameterInfo tangent_modulus_row{
+    .name = "TangMod",
+    .required = true,
+    .min = 0,
+    .dimension = "stress",
+    .meaning = "tangent modulus d(stress)/d(strain), < Young"};
 inline constexpr core::ParameterInfo plastic_work_row{
     .name = "PlasticWorkCoefficient",
     .default_value = 0.9,

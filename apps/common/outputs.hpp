@@ -63,7 +63,6 @@ class Outputs {
   /// what a run that goes on does not write again is safe before the restart file counts. Collective.
   std::map<std::string, std::string> marks(core::Reductions& ranks);
 
-  const core::Totals& last_totals() const { return totals_; }
   std::int64_t status_rows() const { return status_.rows_added(); }
   std::vector<std::uint64_t> tracked() const;
   double seconds() const { return seconds_; }

@@ -7,25 +7,13 @@
 #include <fmt/format.h>
 
 #include "apps/common/point_table.hpp"
+#include "io/output/provenance.hpp"
 
 namespace mpm::apps {
 
 namespace {
 
 using Points = std::vector<std::pair<double, double>>;
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
 
 /// An axis from round number to round number with ticks of 1, 2 or 5 times a power of ten.
 struct Axis {
@@ -109,9 +97,9 @@ class Panel {
     svg += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", left_, top,
                        width, height);
     svg += fmt::format("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n", left_ + width / 2,
-                       top + height + 38, escaped(x_title_));
+                       top + height + 38, io::xml_escaped(x_title_));
     svg += fmt::format("<text class=\"title\" transform=\"translate({},{}) rotate(-90)\">{}</text>\n",
-                       left_ - 62, top + height / 2, escaped(y_title_));
+                       left_ - 62, top + height / 2, io::xml_escaped(y_title_));
     return svg;
   }
 
@@ -138,7 +126,7 @@ std::string plot(std::string_view title, const std::vector<PointSample>& samples
       ".grid{stroke:#ddd}.frame{fill:none;stroke:#444}.curve{fill:none;stroke:#0b5fa5;stroke-width:1.8}"
       ".mark{fill:none;stroke:#c0392b;stroke-width:1.4}</style>\n"
       "<rect width=\"1200\" height=\"370\" fill=\"white\"/>\n";
-  svg += fmt::format("<text class=\"title\" x=\"600\" y=\"24\">{}</text>\n", escaped(title));
+  svg += fmt::format("<text class=\"title\" x=\"600\" y=\"24\">{}</text>\n", io::xml_escaped(title));
   const std::string unit = fmt::format(" ({})", stress_unit);
   svg += Panel(90, curve.shear ? "shear strain gamma_xy" : "strain_xx",
                (curve.shear ? "stress_xy" : "stress_xx") + unit)

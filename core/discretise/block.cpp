@@ -33,9 +33,4 @@ Box BlockSource::bounds() const {
   return frame_.to_global(box);
 }
 
-double BlockSource::relative_volume_error() const {
-  const double h = block_.spacing;
-  return expected_particles() * h * h * h / solid_volume() - 1;
-}
-
 }  // namespace mpm::core

@@ -2,7 +2,6 @@
 // Block: particles at the centres of cubes of edge dp, counted from the corner (x0, y0, z0).
 // Along each axis stand round(l/dp) particles, at least one; where l is no multiple of dp the spacing stays
 // dp and the block that they fill is longer or shorter than l by up to half a spacing.
-// relative_volume_error() says by how much.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +19,6 @@ class BlockSource final : public RowSource {
   double expected_particles() const override { return counts_[0] * counts_[1] * counts_[2]; }
   Box bounds() const override;
   double solid_volume() const override { return block_.size[0] * block_.size[1] * block_.size[2]; }
-  double relative_volume_error() const override;
 
  private:
   void append_row(std::uint64_t row, std::uint64_t first, std::uint64_t last,

@@ -24,7 +24,6 @@ class DifferenceSource final : public SeedSource {
   void generate(std::uint64_t first_unit, std::uint64_t last_unit, std::vector<Seed>& out) const override;
   Box bounds() const override { return frame_.to_global(minuend_->bounds()); }
   double solid_volume() const override { return std::numeric_limits<double>::quiet_NaN(); }
-  double relative_volume_error() const override { return std::numeric_limits<double>::quiet_NaN(); }
 
  private:
   std::unique_ptr<SeedSource> minuend_;

@@ -8,7 +8,7 @@
 
 namespace mpm::core {
 
-using Position = std::array<double, 3>;
+using Position = Vec3<double>;
 using Box = std::array<Position, 2>;  ///< smallest and largest coordinates
 
 class Frame {

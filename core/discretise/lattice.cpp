@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/discretise/line.hpp"
@@ -71,21 +70,6 @@ void LayeredLattice::append_row(std::uint64_t row, std::uint64_t first, std::uin
       out.push_back({frame_.to_global(Position{x.at(odd(i)), y, plane.z}), density_ * volume, volume,
                      row * width() + static_cast<std::uint64_t>(i - first_column_)});
   }
-}
-
-double LayeredLattice::relative_volume_error() const {
-  constexpr std::uint64_t most_rows = std::uint64_t{1} << 30;
-  if (!numbered() || rows() > most_rows) return std::numeric_limits<double>::quiet_NaN();
-  double volume = 0;
-  for (std::uint64_t k = 0; k < rows() / layer_rows_; ++k) {
-    const Layer plane = layer(k);
-    std::int64_t points = 0;
-    for (std::uint64_t r = 0; r < layer_rows_; ++r)
-      for (const Span& span : columns(plane, first_row_ + static_cast<std::int64_t>(r)))
-        points += std::max<std::int64_t>(0, span.end - span.begin);
-    volume += static_cast<double>(points) * plane.spacing * plane.spacing * plane.spacing;
-  }
-  return volume / solid_volume() - 1;
 }
 
 BallLattice::BallLattice(const SphereGeometry& ball, const Frame& frame, double density)

@@ -23,9 +23,6 @@ struct Layer {
 };
 
 class LayeredLattice : public RowSource {
- public:
-  double relative_volume_error() const final;
-
  protected:
   /// centre: of all layers, local frame. Spans of layers follow with set_layers.
   LayeredLattice(const Position& centre, double angle, const Frame& frame, double density);

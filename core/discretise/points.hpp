@@ -23,7 +23,6 @@ class PointList : public SeedSource {
   double expected_particles() const final { return static_cast<double>(count_); }
   Box bounds() const final { return box_; }
   double solid_volume() const final { return mass_ / density_; }
-  double relative_volume_error() const final { return 0; }
 
  protected:
   PointList(const Frame& frame, double density);

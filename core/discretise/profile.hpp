@@ -20,7 +20,7 @@ class Profile {
 
 /// A revolved solid as the input states it, whichever its outline.
 struct Revolved {
-  std::array<double, 3> base{};  ///< centre of the base, local frame
+  Vec3<double> base{};  ///< centre of the base, local frame
   double bottom_spacing = 0;
   double top_spacing = 0;
   double angle = 360;

@@ -37,7 +37,6 @@ class RingSource final : public RowSource {
   double expected_particles() const override;
   Box bounds() const override;
   double solid_volume() const override;
-  double relative_volume_error() const override { return 0; }
 
  private:
   void append_row(std::uint64_t row, std::uint64_t first, std::uint64_t last,

@@ -35,14 +35,19 @@ class Checks {
   void positive(std::string_view attribute, double value) {
     require(std::isfinite(value) && value > 0, "Geometry", attribute, value, "a number above 0");
   }
-  /// Of a particle at this distance from its neighbours: volume and mass are numbers, and not 0.
-  void cell(std::string_view attribute, double spacing) {
+  /// Of particles: above 0, and so are the volume and the mass of one, which are numbers.
+  void spacing(std::string_view attribute, double spacing) {
+    positive(attribute, spacing);
     const double volume = spacing * spacing * spacing;
     if (!(spacing > 0)) return;  // said already
     require(
         std::isnormal(volume) && std::isnormal(volume * body_.density), "Geometry", attribute, spacing,
         "a distance of particles whose volume and mass are neither 0 nor beyond all numbers: choose other "
         "units");
+  }
+  void spacings(double bottom, double top) {
+    spacing("dp_bottom", bottom);
+    spacing("dp_top", top);
   }
   void angle(double value) {
     require(value > 0 && value <= 360, "Geometry", "angle", value, "0 < angle <= 360");
@@ -66,16 +71,14 @@ void check(Checks& checks, const PointGeometry& points) {
 }
 
 void check(Checks& checks, const BlockGeometry& block) {
-  checks.positive("dp", block.spacing);
-  checks.cell("dp", block.spacing);
+  checks.spacing("dp", block.spacing);
   checks.positive("lx", block.size[0]);
   checks.positive("ly", block.size[1]);
   checks.positive("lz", block.size[2]);
 }
 
 void check(Checks& checks, const SphereGeometry& ball) {
-  checks.positive("dp", ball.spacing);
-  checks.cell("dp", ball.spacing);
+  checks.spacing("dp", ball.spacing);
   checks.positive("Outer_Radius", ball.outer_radius);
   checks.require(ball.inner_radius >= 0 && ball.inner_radius < ball.outer_radius, "Geometry", "Inner_Radius",
                  ball.inner_radius, "0 <= Inner_Radius < Outer_Radius");
@@ -83,10 +86,7 @@ void check(Checks& checks, const SphereGeometry& ball) {
 }
 
 void check(Checks& checks, const CylinderGeometry& cylinder) {
-  checks.positive("dp_bottom", cylinder.bottom_spacing);
-  checks.cell("dp_bottom", cylinder.bottom_spacing);
-  checks.positive("dp_top", cylinder.top_spacing);
-  checks.cell("dp_top", cylinder.top_spacing);
+  checks.spacings(cylinder.bottom_spacing, cylinder.top_spacing);
   checks.positive("height", cylinder.height);
   checks.wall("Bottom_Inner_Radius", cylinder.bottom_inner_radius, cylinder.bottom_outer_radius);
   checks.wall("Top_Inner_Radius", cylinder.top_inner_radius, cylinder.top_outer_radius);
@@ -98,10 +98,7 @@ void check(Checks& checks, const CylinderGeometry& cylinder) {
 }
 
 void check(Checks& checks, const OgiveGeometry& ogive) {
-  checks.positive("dp_bottom", ogive.bottom_spacing);
-  checks.cell("dp_bottom", ogive.bottom_spacing);
-  checks.positive("dp_top", ogive.top_spacing);
-  checks.cell("dp_top", ogive.top_spacing);
+  checks.spacings(ogive.bottom_spacing, ogive.top_spacing);
   checks.positive("End_Radius", ogive.end_radius);
   checks.require(std::isfinite(ogive.ogive_radius) && ogive.ogive_radius >= ogive.end_radius, "Geometry",
                  "Ogive_Radius", ogive.ogive_radius, "Ogive_Radius >= End_Radius");

@@ -15,7 +15,7 @@ namespace mpm::core {
 
 /// A particle to be.
 struct Seed {
-  std::array<double, 3> position{};  ///< length, global frame
+  Vec3<double> position{};  ///< length, global frame
   double mass = 0;
   double volume = 0;           ///< mass over the body's initial density
   std::uint64_t identity = 0;  ///< unique within the body, below SeedSource::identities()
@@ -50,14 +50,10 @@ class SeedSource {
 
   /// Global box that holds every seed; up to the shape's own size, or that of its turned box, larger than
   /// needed.
-  virtual std::array<std::array<double, 3>, 2> bounds() const = 0;
+  virtual std::array<Vec3<double>, 2> bounds() const = 0;
 
   /// Volume of the shape that the input states; NaN where it is not known without generating (Bool).
   virtual double solid_volume() const = 0;
-
-  /// (volume of all seeds - solid_volume)/solid_volume, counted row by row, some ten nanoseconds for each;
-  /// NaN where solid_volume is NaN or there are more than 2^30 rows.
-  virtual double relative_volume_error() const = 0;
 };
 
 /// The source for one body of the scene (for Bool bodies it looks up the operands there). Throws InputErrors

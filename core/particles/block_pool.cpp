@@ -62,10 +62,6 @@ void BlockPool::arrange(std::span<const BlockIndex> in_use) {
   slabs_.resize((next_ + slab_blocks - 1) / slab_blocks);
 }
 
-std::size_t BlockPool::bytes_reserved() const {
-  return slabs_.size() * slab_blocks * sizeof(double) * static_cast<std::size_t>(layout_.block_doubles());
-}
-
 std::shared_ptr<BlockPool> BlockPools::of(const ColumnSet& columns) {
   for (const std::shared_ptr<BlockPool>& pool : pools_) {
     if (pool->layout().set() == columns) return pool;

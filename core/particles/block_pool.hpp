@@ -32,7 +32,6 @@ class BlockPool {
   /// in_use[i] then names block i. Not beside anything else.
   void arrange(std::span<const BlockIndex> in_use);
 
-  std::size_t bytes_reserved() const;
   std::size_t blocks_in_use() const { return next_ - free_.size(); }
 
  private:

@@ -9,6 +9,7 @@
 
 #include "core/scene/errors.hpp"
 #include "core/scene/geometry.hpp"
+#include "core/tensor/vec3.hpp"
 
 namespace mpm::core {
 
@@ -16,10 +17,10 @@ namespace mpm::core {
 /// The axes are orthonormal and right-handed whatever lengths the input gave.
 struct WorkPlane {
   std::string name;
-  std::array<double, 3> origin{};
-  std::array<double, 3> x_axis{1, 0, 0};
-  std::array<double, 3> y_axis{0, 1, 0};
-  std::array<double, 3> z_axis{0, 0, 1};
+  Vec3<double> origin{};
+  Vec3<double> x_axis{1, 0, 0};
+  Vec3<double> y_axis{0, 1, 0};
+  Vec3<double> z_axis{0, 0, 1};
   SourceLocation source;
 };
 
@@ -27,20 +28,20 @@ struct WorkPlane {
 struct PrescribedAcceleration {
   struct Point {
     double time = 0;
-    std::array<double, 3> linear_factor{};
-    std::array<double, 3> angular_factor{};
+    Vec3<double> linear_factor{};
+    Vec3<double> angular_factor{};
   };
-  std::array<double, 3> linear_amplitude{};   ///< length/time^2
-  std::array<double, 3> angular_amplitude{};  ///< 1/time^2, rigid bodies only
-  std::vector<Point> points;                  ///< times strictly increasing
+  Vec3<double> linear_amplitude{};   ///< length/time^2
+  Vec3<double> angular_amplitude{};  ///< 1/time^2, rigid bodies only
+  std::vector<Point> points;         ///< times strictly increasing
 };
 
 /// Body force per mass A sin(omega t + theta) per axis, until the axis' end time.
 struct HarmonicExcitation {
-  std::array<double, 3> amplitude{};          ///< length/time^2
-  std::array<double, 3> angular_frequency{};  ///< 1/time
-  std::array<double, 3> phase{};              ///< radian
-  std::array<double, 3> end_time{};
+  Vec3<double> amplitude{};          ///< length/time^2
+  Vec3<double> angular_frequency{};  ///< 1/time
+  Vec3<double> phase{};              ///< radian
+  Vec3<double> end_time{};
 };
 
 /// A pressure all around a body, or a traction on the surfaces that look along one axis; the part of the
@@ -50,11 +51,11 @@ struct SurfaceLoad {
     double time = 0;
     double factor = 1;
   };
-  double pressure = 0;               ///< stress, pushing inwards
-  std::array<double, 3> traction{};  ///< stress
-  int normal = -1;                   ///< axis of `traction`; -1: none
-  std::array<double, 3> lower{-1e300, -1e300, -1e300};
-  std::array<double, 3> upper{1e300, 1e300, 1e300};
+  double pressure = 0;      ///< stress, pushing inwards
+  Vec3<double> traction{};  ///< stress
+  int normal = -1;          ///< axis of `traction`; -1: none
+  Vec3<double> lower{-1e300, -1e300, -1e300};
+  Vec3<double> upper{1e300, 1e300, 1e300};
   std::optional<double> ramp;  ///< over which the load falls to zero across the box's faces; a cell without
   std::vector<Point> points;   ///< times strictly increasing; none: constant
 };
@@ -77,9 +78,9 @@ struct BodyInput {
   bool deactivated = false;               ///< takes no part in the run and is not written
   bool for_bool = false;                  ///< operand of a Bool body; removed once that is made
   bool no_output = false;                 ///< takes part, but is not written
-  std::array<double, 3> initial_velocity{};
+  Vec3<double> initial_velocity{};
   std::optional<double> initial_temperature;  ///< > 0; the material's without
-  std::optional<std::array<double, 3>> prescribed_velocity;
+  std::optional<Vec3<double>> prescribed_velocity;
   std::optional<PrescribedAcceleration> prescribed_acceleration;
   std::optional<HarmonicExcitation> harmonic_excitation;
   std::vector<SurfaceLoad> surface_loads;
@@ -102,11 +103,11 @@ struct DetonationItem {
   enum class Kind { point, plane };
   Kind kind = Kind::point;
   double time = 0;
-  std::array<double, 3> position{};  ///< Kind::point
-  int normal = 0;                    ///< Kind::plane: axis normal to the rectangle
-  double location = 0;               ///< coordinate along the normal
-  std::array<double, 2> lower{};     ///< left, bottom: the other two axes in ascending order
-  std::array<double, 2> upper{};     ///< right, top
+  Vec3<double> position{};        ///< Kind::point
+  int normal = 0;                 ///< Kind::plane: axis normal to the rectangle
+  double location = 0;            ///< coordinate along the normal
+  std::array<double, 2> lower{};  ///< left, bottom: the other two axes in ascending order
+  std::array<double, 2> upper{};  ///< right, top
   SourceLocation source;
 };
 

@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/tensor/vec3.hpp"
+
 namespace mpm::core {
 
 /// How particles are laid out in a round shape.
@@ -16,7 +18,7 @@ enum class Layout { orthogonal = 0, polar = 1 };  // polar: spherical shells, or
 
 struct PointMass {
   double mass = 0;  ///< > 0
-  std::array<double, 3> position{};
+  Vec3<double> position{};
 };
 
 /// Particles given one by one: inline, or in a text file (lines: mass x y z; may be gzipped).
@@ -26,14 +28,14 @@ struct PointGeometry {
 };
 
 struct BlockGeometry {
-  double spacing = 0;              ///< distance of neighbouring particles, > 0
-  std::array<double, 3> origin{};  ///< corner with the smallest coordinates
-  std::array<double, 3> size{};    ///< > 0
+  double spacing = 0;     ///< distance of neighbouring particles, > 0
+  Vec3<double> origin{};  ///< corner with the smallest coordinates
+  Vec3<double> size{};    ///< > 0
 };
 
 struct SphereGeometry {
   double spacing = 0;
-  std::array<double, 3> centre{};
+  Vec3<double> centre{};
   double outer_radius = 0;
   double inner_radius = 0;
   double angle = 360;       ///< sweep about local Z from the xz half plane, (0, 360]
@@ -43,7 +45,7 @@ struct SphereGeometry {
 
 /// Cylinder, cone or frustum along local Z; the spacing grades geometrically from bottom to top.
 struct CylinderGeometry {
-  std::array<double, 3> base_centre{};
+  Vec3<double> base_centre{};
   double bottom_spacing = 0;
   double top_spacing = 0;
   double bottom_inner_radius = 0;
@@ -57,7 +59,7 @@ struct CylinderGeometry {
 
 /// Ogive nose along local Z.
 struct OgiveGeometry {
-  std::array<double, 3> base_centre{};
+  Vec3<double> base_centre{};
   double bottom_spacing = 0;
   double top_spacing = 0;
   double ogive_radius = 0;
@@ -78,7 +80,7 @@ template <std::size_t N>
 struct MeshGeometry {
   struct Node {
     std::int64_t id = 0;  ///< from 1
-    std::array<double, 3> position{};
+    Vec3<double> position{};
   };
   struct Element {
     std::int64_t id = 0;  ///< from 1
@@ -104,17 +106,17 @@ struct BarLinesGeometry {
   int extend_direction = 0;  ///< axis along which each bar runs
   int expand_direction = 0;  ///< axis along which the bars are repeated
   double length = 0;
-  std::array<double, 3> origin{};
+  Vec3<double> origin{};
   double interval = 0;  ///< distance of neighbouring bars
 };
 
 /// A lattice of bars, copied in two directions.
 struct BarNetGeometry {
   double sectional_area = 0;
-  std::array<double, 3> origin{};
-  std::array<double, 3> element_size{};  ///< z: 0 leaves the layers unconnected
-  std::array<std::int64_t, 3> lines{};   ///< lines along x, lines along y, layers in z
-  std::array<double, 3> interval{};
+  Vec3<double> origin{};
+  Vec3<double> element_size{};          ///< z: 0 leaves the layers unconnected
+  std::array<std::int64_t, 3> lines{};  ///< lines along x, lines along y, layers in z
+  Vec3<double> interval{};
   int line_direction = 0;
   int column_direction = 1;
   std::int64_t column_copies = 0;
@@ -127,7 +129,7 @@ struct BarNetGeometry {
 struct MembraneRectangleGeometry {
   double thickness = 0;
   double element_size = 0;
-  std::array<double, 3> origin{};
+  Vec3<double> origin{};
   std::array<double, 2> size{};
 };
 
@@ -135,7 +137,7 @@ struct MembraneRectangleGeometry {
 struct MembraneCylinderGeometry {
   double thickness = 0;
   double element_size = 0;
-  std::array<double, 3> base_centre{};
+  Vec3<double> base_centre{};
   double radius = 0;
   double height = 0;
   double angle = 360;

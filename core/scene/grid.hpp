@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/scene/errors.hpp"
+#include "core/tensor/vec3.hpp"
 
 namespace mpm::core {
 
@@ -55,8 +56,8 @@ struct MovingGridInput {
   bool consider_failed_particles = false;
   double time_step_factor = 0.8;
   /// Infinite where the motion is not bounded.
-  std::array<double, 3> min{-infinity, -infinity, -infinity};
-  std::array<double, 3> max{infinity, infinity, infinity};
+  Vec3<double> min{-infinity, -infinity, -infinity};
+  Vec3<double> max{infinity, infinity, infinity};
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };

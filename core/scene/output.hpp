@@ -1,12 +1,12 @@
 #pragma once
 // What the run writes, as the input states it.
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/scene/errors.hpp"
+#include "core/tensor/vec3.hpp"
 
 namespace mpm::core {
 
@@ -33,8 +33,8 @@ struct PostProcessingInput {
 /// Histories of variables at the particle nearest to a point, or at a point in space.
 struct TimeHistoryInput {
   std::vector<std::string> variables;
-  std::vector<std::array<double, 3>> particles;
-  std::vector<std::array<double, 3>> points;
+  std::vector<Vec3<double>> particles;
+  std::vector<Vec3<double>> points;
   SourceLocation source;
 };
 

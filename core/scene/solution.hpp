@@ -1,11 +1,11 @@
 #pragma once
 // How the equations are integrated, as the input states it.
 
-#include <array>
 #include <optional>
 #include <vector>
 
 #include "core/scene/body.hpp"
+#include "core/tensor/vec3.hpp"
 
 namespace mpm::core {
 
@@ -98,7 +98,7 @@ struct SolutionInput {
   WarnInput warn;
   std::optional<double> energy_fraction;  ///< stop when the relative error of the total energy exceeds this
   double damping = 0;                     ///< dynamic relaxation: force per mass and velocity, 1/time
-  std::array<double, 3> gravity{};
+  Vec3<double> gravity{};
   std::optional<ImplicitInput> implicit;
   std::optional<FemInput> fem;
   std::optional<int> threads;  ///< OpenMP threads per rank

@@ -33,7 +33,7 @@ void check_start(Model model, const std::vector<const BodyInput*>& inputs,
   for (std::size_t b = 0; b < samples.size(); ++b) {
     const ColumnLayout& layout = model.bodies[b].pool->layout();
     for (const Seed& s : samples[b]) {
-      const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
+      const Vec3<double>& x = s.position;
       if (!geometry.contains(x)) continue;
       fill_columns(layout, model.bodies[b], *inputs[b], s, static_cast<double>(s.identity), columns);
       counts.push_back({geometry.brick_at(x), 1});

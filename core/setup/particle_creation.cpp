@@ -79,7 +79,7 @@ SeedCount count_seeds(const GridGeometry& geometry, std::span<const BodySeeds> b
     bricks.clear();
     for_each_piece(*body.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
       for (const Seed& s : seeds) {
-        const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
+        const Vec3<double>& x = s.position;
         if (geometry.contains(x)) {
           if (body.block_bytes > 0) ++bricks[key_of(geometry.brick_at(x))];
           continue;
@@ -122,9 +122,9 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
   columns.assign(static_cast<std::size_t>(layout.columns()), 0.0);
   const auto set = [&](Column c, double v) { columns[layout.index(c)] = v; };
   for (int a = 0; a < 3; ++a) {
-    set(next(Column::position_x, a), seed.position[static_cast<std::size_t>(a)]);
+    set(next(Column::position_x, a), seed.position[a]);
     const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a]
-                                              : input.initial_velocity[static_cast<std::size_t>(a)];
+                                              : input.initial_velocity[a];
     set(next(Column::velocity_x, a), v);
   }
   set(Column::mass, seed.mass);
@@ -153,7 +153,7 @@ void create_particles(Model& model, std::span<const BodySeeds> bodies, Communica
     for_each_piece(*of.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
       for (const Seed& s : seeds) {
         fill_columns(layout, body, *of.input, s, base + static_cast<double>(s.identity), columns);
-        const BrickCoord to = model.grid->geometry().brick_at({s.position[0], s.position[1], s.position[2]});
+        const BrickCoord to = model.grid->geometry().brick_at(s.position);
         particles.add(to, static_cast<int>(of.body), columns.data(), layout.columns());
       }
       ranks.any(true);

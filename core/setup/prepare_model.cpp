@@ -96,7 +96,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     body.rigid = body.model->rigid();
     check_material_of(*scene, input, *body.model);
     body.no_output = input.no_output;
-    if (input.prescribed_velocity) { body.prescribed_velocity = to_vec(*input.prescribed_velocity); }
+    body.prescribed_velocity = input.prescribed_velocity;
     ColumnSet columns = ColumnSet::mechanics();
     columns.add(body.model->columns(model.options));
     columns.add(output_columns);

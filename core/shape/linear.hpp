@@ -205,9 +205,6 @@ struct LinearInterpolation {
   }
 };
 
-/// The shape function of one node along an axis, `distance` in cells from it.
-inline double linear_weight(double distance) { return std::fmax(0.0, 1 - std::abs(distance)); }
-
 struct Linear {
   static constexpr std::string_view name = "linear";
   static constexpr NodeBlockShape node_block{0};

@@ -153,9 +153,6 @@ using std::log;
 using std::pow;
 using std::sin;
 using std::sqrt;
-inline double reduce_min(double a) { return a; }
-inline double reduce_max(double a) { return a; }
-inline double reduce_add(double a) { return a; }
 
 // --- the vector instances ---------------------------------------------------------------------------------
 template <int L>
@@ -254,25 +251,6 @@ inline Lanes<L> sqrt(Lanes<L> a) {
 template <int L>
 inline Lanes<L> floor(Lanes<L> a) {
   return detail::lanewise(a, [](double x) { return std::floor(x); });
-}
-template <int L>
-inline double reduce_min(Lanes<L> a) {
-  double r = a[0];
-  for (int i = 1; i < L; ++i) r = a[i] < r ? a[i] : r;
-  return r;
-}
-template <int L>
-inline double reduce_max(Lanes<L> a) {
-  double r = a[0];
-  for (int i = 1; i < L; ++i) r = a[i] > r ? a[i] : r;
-  return r;
-}
-/// Lanes are added in their order, so the sum is a function of the order of particles alone.
-template <int L>
-inline double reduce_add(Lanes<L> a) {
-  double r = a[0];
-  for (int i = 1; i < L; ++i) r += a[i];
-  return r;
 }
 
 }  // namespace mpm::core

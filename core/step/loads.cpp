@@ -99,8 +99,8 @@ void Loads::begin_step(double time, double dt) {
     if (mine.input == nullptr) continue;
     const BodyInput& input = *mine.input;
     if (input.constrain_rigid_position) {
-      const std::array<double, 3> start = input.prescribed_velocity.value_or(input.initial_velocity);
-      motions_[b] = {BodyMotion::Kind::prescribed, to_vec(start) + velocity_gained(input, time + dt)};
+      const Vec3<double> start = input.prescribed_velocity.value_or(input.initial_velocity);
+      motions_[b] = {BodyMotion::Kind::prescribed, start + velocity_gained(input, time + dt)};
     }
     if (!mine.loaded) continue;
     mine.acceleration = acceleration_of(input, middle);
@@ -111,7 +111,7 @@ void Loads::begin_step(double time, double dt) {
       for (int j = 0; j < 3; ++j) {
         s.column[j] = {};
         s.column[j][j] = -factor * load.pressure;
-        if (j == load.normal) s.column[j] = s.column[j] + factor * to_vec(load.traction);
+        if (j == load.normal) s.column[j] = s.column[j] + factor * load.traction;
       }
     }
   }

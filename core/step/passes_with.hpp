@@ -131,7 +131,7 @@ template <ShapePolicy S, TransferPolicy T>
 PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
     : model_(model), halo_(halo), shared_(model.grid->shape()), loads_(model) {
   const SolutionInput& solution = model.scene->solution;
-  forces_.gravity = to_vec(solution.gravity);
+  forces_.gravity = solution.gravity;
   forces_.damping = solution.damping;
   if (solution.scheme == Scheme::usl) {
     // The lightest material's: a floor above what a light body's full nodes weigh would freeze it beside a

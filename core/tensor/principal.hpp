@@ -17,9 +17,10 @@ namespace mpm::core {
 
 namespace detail {
 
-/// The root of 4 c^3 - 3 c = r in [cos(pi/6), 1], for 0 <= r <= 1.
+/// Cosine of a third of the acute angle of cosine r, 0 <= r <= 1: the root of 4 c^3 - 3 c = r in
+/// [cos(pi/6), 1].
 template <class T>
-T cosine_of_third(const T& r) {
+T cosine_of_third_of_acute(const T& r) {
   // A parabola within 2e-3 of the root; the error of each Newton step is below 2.1 times the square of the
   // last.
   T c = 0.8660254037844386 + r * (0.166 - 0.032 * r);
@@ -62,7 +63,7 @@ Vec3<T> principal_values(const Sym3<T>& a) {
                           b.xz * (b.xy * b.yz - b.yy * b.xz);
   const auto flipped = determinant_b < 0.0;
   const T sign = select(flipped, T(-1.0), T(1.0));
-  const T first = 2.0 * detail::cosine_of_third(min(abs(determinant_b) * 0.5, 1.0));
+  const T first = 2.0 * detail::cosine_of_third_of_acute(min(abs(determinant_b) * 0.5, 1.0));
 
   // The plane normal to the first axis n: M = P (B + first/2) P with P = I - n n has the values +-half, 0.
   const Sym3<T> s = sign * b;

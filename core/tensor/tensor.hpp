@@ -1,31 +1,27 @@
-// Small tensors of any value type (double or Lanes): vectors, general and symmetric second-order tensors.
+// Small tensors of any value type (double or Lanes): general and symmetric second-order tensors.
 // Components refer to the global Cartesian frame. Symmetric tensors hold tensor (not engineering) shear.
 #pragma once
 
-#include <array>
-
 #include "core/simd/lanes.hpp"
+#include "core/tensor/vec3.hpp"
 
 namespace mpm::core {
-
-template <class T>
-struct Vec3 {
-  T x, y, z;
-  friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend Vec3 operator*(T k, Vec3 a) { return {k * a.x, k * a.y, k * a.z}; }
-  friend T dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-  T& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
-  const T& operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
-  bool operator==(const Vec3&) const = default;
-};
-
-inline Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// Component ij is row i, column j; a velocity gradient has xy = d v_x / d y.
 template <class T>
 struct Mat3 {
   T xx, xy, xz, yx, yy, yz, zx, zy, zz;
+  friend Mat3 operator+(const Mat3& a, const Mat3& b) {
+    return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yx + b.yx, a.yy + b.yy,
+            a.yz + b.yz, a.zx + b.zx, a.zy + b.zy, a.zz + b.zz};
+  }
+  friend Mat3 operator-(const Mat3& a, const Mat3& b) {
+    return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yx - b.yx, a.yy - b.yy,
+            a.yz - b.yz, a.zx - b.zx, a.zy - b.zy, a.zz - b.zz};
+  }
+  friend Mat3 operator*(T k, const Mat3& a) {
+    return {k * a.xx, k * a.xy, k * a.xz, k * a.yx, k * a.yy, k * a.yz, k * a.zx, k * a.zy, k * a.zz};
+  }
   friend Mat3 operator*(const Mat3& a, const Mat3& b) {
     return {a.xx * b.xx + a.xy * b.yx + a.xz * b.zx, a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
             a.xx * b.xz + a.xy * b.yz + a.xz * b.zz, a.yx * b.xx + a.yy * b.yx + a.yz * b.zx,
@@ -39,6 +35,14 @@ template <class T>
 T determinant(const Mat3<T>& a) {
   return a.xx * (a.yy * a.zz - a.yz * a.zy) - a.xy * (a.yx * a.zz - a.yz * a.zx) +
          a.xz * (a.yx * a.zy - a.yy * a.zx);
+}
+
+/// Inverse of `a` times its determinant.
+template <class T>
+Mat3<T> adjugate(const Mat3<T>& a) {
+  return {a.yy * a.zz - a.yz * a.zy, a.xz * a.zy - a.xy * a.zz, a.xy * a.yz - a.xz * a.yy,
+          a.yz * a.zx - a.yx * a.zz, a.xx * a.zz - a.xz * a.zx, a.xz * a.yx - a.xx * a.yz,
+          a.yx * a.zy - a.yy * a.zx, a.xy * a.zx - a.xx * a.zy, a.xx * a.yy - a.xy * a.yx};
 }
 
 template <class T>

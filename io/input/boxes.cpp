@@ -6,11 +6,9 @@ namespace mpm::io {
 
 namespace {
 
-using Vector = std::array<double, 3>;
-
 Box local_box(const core::Geometry& geometry) {
   Box box;
-  const auto around = [&](const Vector& base, double radius, double below, double above) {
+  const auto around = [&](const core::Vec3<double>& base, double radius, double below, double above) {
     box.include({base[0] - radius, base[1] - radius, base[2] - below});
     box.include({base[0] + radius, base[1] + radius, base[2] + above});
   };
@@ -30,9 +28,10 @@ Box local_box(const core::Geometry& geometry) {
 Box global_box(const Box& local, const core::WorkPlane& plane) {
   Box box;
   for (int corner = 0; corner < 8; ++corner) {
-    Vector p = plane.origin;
-    const Vector r{corner & 1 ? local.upper[0] : local.lower[0], corner & 2 ? local.upper[1] : local.lower[1],
-                   corner & 4 ? local.upper[2] : local.lower[2]};
+    core::Vec3<double> p = plane.origin;
+    const core::Vec3<double> r{corner & 1 ? local.upper[0] : local.lower[0],
+                               corner & 2 ? local.upper[1] : local.lower[1],
+                               corner & 4 ? local.upper[2] : local.lower[2]};
     for (std::size_t i = 0; i < 3; ++i)
       p[i] += r[0] * plane.x_axis[i] + r[1] * plane.y_axis[i] + r[2] * plane.z_axis[i];
     box.include(p);

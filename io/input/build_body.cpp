@@ -14,23 +14,13 @@ namespace mpm::io {
 
 namespace {
 
-using Vector = std::array<double, 3>;
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vector scaled(const Vector& a, double factor) { return {a[0] * factor, a[1] * factor, a[2] * factor}; }
-
 core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) {
   core::WorkPlane plane;
   plane.name = node.word("name");
   plane.source = context.at(node);
   plane.origin = node.reals("r0x", "r0y", "r0z");
-  const Vector z = node.reals("ex", "ey", "ez");
-  const Vector x = node.reals("a11", "a21", "a31");
+  const core::Vec3<double> z = node.reals("ex", "ey", "ez");
+  const core::Vec3<double> x = node.reals("a11", "a21", "a31");
   const double lengths = std::sqrt(dot(z, z)) * std::sqrt(dot(x, x));
   if (lengths == 0 || std::isinf(lengths)) {
     node.complain(context.diagnostics, "the axes (ex, ey, ez) and (a11, a21, a31) must not be zero");
@@ -45,9 +35,9 @@ core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) 
                               "angle between them is {:.6g} degrees",
                               degrees));
   }
-  plane.z_axis = scaled(z, 1 / std::sqrt(dot(z, z)));
+  plane.z_axis = (1 / std::sqrt(dot(z, z))) * z;
   plane.y_axis = cross(plane.z_axis, x);  // exactly orthogonal, whatever the tolerance let through
-  plane.y_axis = scaled(plane.y_axis, 1 / std::sqrt(dot(plane.y_axis, plane.y_axis)));
+  plane.y_axis = (1 / std::sqrt(dot(plane.y_axis, plane.y_axis))) * plane.y_axis;
   plane.x_axis = cross(plane.y_axis, plane.z_axis);
   return plane;
 }
@@ -82,7 +72,7 @@ core::PrescribedAcceleration build_acceleration(const Node& node, const BuildCon
   core::PrescribedAcceleration load;
   load.linear_amplitude = node.reals("ax", "ay", "az");
   load.angular_amplitude = node.reals("arx", "ary", "arz");
-  if (load.angular_amplitude != Vector{})
+  if (load.angular_amplitude != core::Vec3<double>{})
     node.complain(
         context.diagnostics, "arx",
         "angular accelerations turn rigid bodies, which is not implemented yet: set arx, ary, arz to 0");
@@ -98,7 +88,7 @@ core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& conte
   core::SurfaceLoad load;
   load.pressure = node.real("pressure");
   load.traction = node.reals("tx", "ty", "tz");
-  const bool pulls = load.traction != Vector{};
+  const bool pulls = load.traction != core::Vec3<double>{};
   if (const auto normal = node.given_integer("normal")) load.normal = static_cast<int>(*normal);
   if (pulls != (load.normal >= 0))
     node.complain(context.diagnostics, "normal and tx, ty, tz go together: give both or neither");
@@ -123,7 +113,7 @@ core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& conte
 core::HarmonicExcitation build_excitation(const Node& node) {
   const auto reals_of = [&](std::string_view child) {
     const std::optional<Node> found = node.child(child);
-    return found ? found->reals("x", "y", "z") : Vector{};
+    return found ? found->reals("x", "y", "z") : core::Vec3<double>{};
   };
   return {reals_of("A"), reals_of("Omega"), reals_of("Theta"), reals_of("EndTime")};
 }

@@ -8,10 +8,8 @@ namespace mpm::io {
 
 namespace {
 
-using Vector = std::array<double, 3>;
-
 void echo_vector(XmlWriter& w, std::string_view name, std::string_view a, std::string_view b,
-                 std::string_view c, const Vector& values) {
+                 std::string_view c, const core::Vec3<double>& values) {
   const auto scope = w.element(name);
   w.numbers(a, b, c, values);
 }

@@ -158,8 +158,8 @@ void echo_post_processing(XmlWriter& w, const core::PostProcessingInput& post) {
 void echo_history(XmlWriter& w, const core::TimeHistoryInput& history) {
   const auto scope = w.element("TimeHistory");
   w.text("var", fmt::format("{}", fmt::join(history.variables, "|")));
-  const auto places = [&](std::string_view name, const std::vector<std::array<double, 3>>& list) {
-    for (const std::array<double, 3>& place : list) {
+  const auto places = [&](std::string_view name, const std::vector<core::Vec3<double>>& list) {
+    for (const core::Vec3<double>& place : list) {
       const auto element = w.element(name);
       w.numbers("x", "y", "z", place);
     }

@@ -215,7 +215,7 @@ const std::vector<Rule>& rules() {
       {"Component/Body/PrescribedAcceleration/Coefficient",
        {"crx", "cry", "crz"},
        [](const Place& at) {
-         return at.body->prescribed_acceleration->angular_amplitude == std::array<double, 3>{};
+         return at.body->prescribed_acceleration->angular_amplitude == core::Vec3<double>{};
        },
        "a factor of arx, ary, arz, which are 0"},
       {"Component/Body/ConstrainRigidPosition",

@@ -3,7 +3,6 @@
 // that later checks can go on and stay silent about them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "core/scene/errors.hpp"
+#include "core/tensor/vec3.hpp"
 #include "io/input/diagnostics.hpp"
 #include "io/input/document.hpp"
 #include "io/input/specification.hpp"
@@ -48,7 +48,7 @@ class Node {
   bool boolean(std::string_view attribute) const { return integer(attribute) == 1; }
   std::string word(std::string_view attribute) const;
   std::vector<std::string> words(std::string_view attribute) const;  ///< joined by |, each once
-  std::array<double, 3> reals(std::string_view a, std::string_view b, std::string_view c) const {
+  core::Vec3<double> reals(std::string_view a, std::string_view b, std::string_view c) const {
     return {real(a), real(b), real(c)};
   }
   /// The value where it was given (validly); defaults do not count.

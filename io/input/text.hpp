@@ -38,7 +38,8 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
 /// `; did you mean 'x'?`, or nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// 16 hexadecimal digits: FNV-1a, 64 bit.
+/// 16 hexadecimal digits: FNV-1a, 64 bit, the public function, so that others can compute it of an input file
+/// too. What only we compare has the faster one of io/output/hash.hpp.
 std::string fnv1a_hex(std::string_view bytes);
 
 }  // namespace mpm::io

@@ -35,7 +35,7 @@ void XmlWriter::text(std::string_view attribute, std::string_view value) {
 }
 
 void XmlWriter::numbers(std::string_view a, std::string_view b, std::string_view c,
-                        const std::array<double, 3>& values) {
+                        const core::Vec3<double>& values) {
   number(a, values[0]);
   number(b, values[1]);
   number(c, values[2]);

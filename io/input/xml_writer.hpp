@@ -1,12 +1,13 @@
 // Elements and attributes as indented text.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include "core/tensor/vec3.hpp"
 
 namespace mpm::io {
 
@@ -31,8 +32,7 @@ class XmlWriter {
   void number(std::string_view attribute, double value) { text(attribute, fmt::format("{}", value)); }
   void integer(std::string_view attribute, long long value) { text(attribute, fmt::format("{}", value)); }
   void flag(std::string_view attribute, bool value) { text(attribute, value ? "1" : "0"); }
-  void numbers(std::string_view a, std::string_view b, std::string_view c,
-               const std::array<double, 3>& values);
+  void numbers(std::string_view a, std::string_view b, std::string_view c, const core::Vec3<double>& values);
   template <class T>
   void maybe(std::string_view attribute, const std::optional<T>& value) {
     if (value) text(attribute, fmt::format("{}", *value));

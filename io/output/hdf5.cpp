@@ -149,14 +149,6 @@ Handle create_group(hid_t parent, const std::string& name) {
                 "make group '" + name + "'");
 }
 
-void create_group_before_link(hid_t parent, const std::string& name) {
-  const std::string doing = "make group '" + name + "'";
-  const Handle list = group_properties();
-  const Handle group(H5Gcreate_anon(parent, list, H5P_DEFAULT), H5Gclose, doing);
-  check(H5Fflush(parent, H5F_SCOPE_GLOBAL), doing);
-  check(H5Olink(group, parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), doing);
-}
-
 Handle open_group(hid_t parent, const std::string& name) {
   return Handle(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "open group '" + name + "'");
 }
@@ -261,11 +253,6 @@ std::int64_t read_int64(hid_t object, const std::string& name) {
   std::int64_t value = 0;
   check(H5Aread(open_attribute(object, name), H5T_NATIVE_INT64, &value), "read attribute '" + name + "'");
   return value;
-}
-bool has_attribute(hid_t object, const std::string& name) {
-  const htri_t found = H5Aexists(object, name.c_str());
-  if (found < 0) fail("look for attribute '" + name + "'");
-  return found > 0;
 }
 
 }  // namespace mpm::io::hdf5

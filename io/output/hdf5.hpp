@@ -53,9 +53,6 @@ Handle create_file(const std::string& path, hsize_t user_block = 0, bool links =
 
 /// The links in the group are kept in its own header.
 Handle create_group(hid_t parent, const std::string& name);
-/// As create_group, but the group is in the file before its name is: a kill leaves the parent as it was or
-/// complete.
-void create_group_before_link(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
 /// Contiguous, its place in the file fixed at once and not filled. `shape` has one or two entries.
 Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::span<const hsize_t> shape);
@@ -85,6 +82,5 @@ void write_attribute(hid_t object, const ProvenanceLines& lines);
 std::string read_string(hid_t object, const std::string& name);
 double read_double(hid_t object, const std::string& name);
 std::int64_t read_int64(hid_t object, const std::string& name);
-bool has_attribute(hid_t object, const std::string& name);
 
 }  // namespace mpm::io::hdf5

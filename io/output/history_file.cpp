@@ -30,8 +30,6 @@ constexpr std::size_t first_value = 4;
 /// How far from where it was last a particle is looked for.
 enum Reach { same_brick, neighbour_bricks, everywhere };
 
-core::Vec3<double> to_vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
 /// A particle and the body that it is of.
 struct Found {
   core::ConstParticle particle;
@@ -111,9 +109,9 @@ std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scen
   for (const core::TimeHistoryInput& history : scene.output.histories) {
     const std::vector<Variable> variables = variables_of(history.variables);
     for (const auto& p : history.particles)
-      targets.push_back({to_vec(p), true, variables, 0, no_identity, false, {}, {}});
+      targets.push_back({p, true, variables, 0, no_identity, false, {}, {}});
     for (const auto& p : history.points)
-      targets.push_back({to_vec(p), false, variables, 0, no_identity, false, {}, {}});
+      targets.push_back({p, false, variables, 0, no_identity, false, {}, {}});
   }
   return targets;
 }

@@ -59,7 +59,7 @@ std::string to_xml_comment(const ProvenanceLines& lines) {
   return "<!--\n" + text + "-->\n";
 }
 
-std::string xml_escaped(const std::string& text) {
+std::string xml_escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,7 +25,8 @@ std::string to_text(const ProvenanceLines& lines, const std::string& prefix);
 /// An XML comment with the same lines.
 std::string to_xml_comment(const ProvenanceLines& lines);
 
-std::string xml_escaped(const std::string& text);
+/// As text or as the value of an attribute; a control character becomes a space.
+std::string xml_escaped(std::string_view text);
 
 /// `name` with all that a file name or a column head cannot hold replaced by '_'; never empty.
 std::string safe_name(const std::string& name);

@@ -106,10 +106,6 @@ namespace {
 Mat3<double> transpose(const Mat3<double>& a) {
   return {a.xx, a.yx, a.zx, a.xy, a.yy, a.zy, a.xz, a.yz, a.zz};
 }
-Mat3<double> operator+(const Mat3<double>& a, const Mat3<double>& b) {
-  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yx + b.yx, a.yy + b.yy,
-          a.yz + b.yz, a.zx + b.zx, a.zy + b.zy, a.zz + b.zz};
-}
 
 const Vec3<double> axis{2.0 / 7, 3.0 / 7, 6.0 / 7};
 Mat3<double> skew(double w) {

@@ -11,9 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
-#include "core/random/philox.hpp"
+#include "core/random/normal.hpp"
 #include "core/scene/material.hpp"
 
 namespace mpm::physics {
@@ -29,14 +28,13 @@ class ThresholdScatter {
   /// `item`: identity of the particle, or number of the cell.
   double factor(std::uint64_t item) const {
     constexpr std::uint64_t seed = 0x4661696c75726531;  // any; fixed, so that a case repeats
-    const auto [u, v] = core::uniform_pair(item, static_cast<std::uint32_t>(input_.spread), seed);
+    const auto kind = static_cast<std::uint32_t>(input_.spread);
     switch (input_.distribution) {
-      case Input::Distribution::gauss: {
-        // Box and Muller, Ann. Math. Stat. 29 (1958) 610.
-        const double normal = std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
-        return std::max(input_.gauss_mean + input_.gauss_deviation * normal, 0.0);
-      }
+      case Input::Distribution::gauss:
+        return std::max(input_.gauss_mean + input_.gauss_deviation * core::standard_normal(item, kind, seed),
+                        0.0);
       case Input::Distribution::weibull: {
+        const double u = core::uniform_pair(item, kind, seed)[0];
         const double volumes = input_.weibull_reference_volume / input_.weibull_particle_volume;
         return input_.weibull_median * std::pow(-std::log(u) * volumes, 1 / input_.weibull_modulus);
       }

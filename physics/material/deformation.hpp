@@ -9,14 +9,6 @@
 
 namespace mpm::physics {
 
-/// Inverse of `a` times its determinant.
-template <class T>
-core::Mat3<T> adjugate(const core::Mat3<T>& a) {
-  return {a.yy * a.zz - a.yz * a.zy, a.xz * a.zy - a.xy * a.zz, a.xy * a.yz - a.xz * a.yy,
-          a.yz * a.zx - a.yx * a.zz, a.xx * a.zz - a.xz * a.zx, a.xz * a.yx - a.xx * a.yz,
-          a.yx * a.zy - a.yy * a.zx, a.xy * a.zx - a.xx * a.zy, a.xx * a.yy - a.xy * a.yx};
-}
-
 template <class T>
 [[gnu::noinline, gnu::flatten]] void update_deformation_gradient(core::Batch& batch) {
   using core::Column;

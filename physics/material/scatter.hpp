@@ -2,20 +2,17 @@
 // again, on any number of ranks. Shown by tests/physics/gurson_test.cpp.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 
-#include "core/random/philox.hpp"
+#include "core/random/normal.hpp"
 #include "core/simd/lanes.hpp"
 
 namespace mpm::physics {
 
-/// Standard normal (Box and Muller, Ann. Math. Stat. 29 (1958) 610).
+/// Standard normal.
 inline double normal_deviate(double identity) {
   constexpr std::uint64_t seed = 0x506f726f73697479;  // any; fixed, so that a case repeats
-  const auto [u, v] = core::uniform_pair(static_cast<std::uint64_t>(identity), 0, seed);
-  return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
+  return core::standard_normal(static_cast<std::uint64_t>(identity), 0, seed);
 }
 template <int L>
 core::Lanes<L> normal_deviate(core::Lanes<L> identity) {

@@ -140,7 +140,7 @@ struct Gurson : MisesPlasticity {
   std::string fault() const {
     const int matrices = int(tangent_modulus != not_given) + int(power != not_given) + int(b != not_given);
     if (matrices != 1) return "Gurson needs one matrix: TangMod, or N_hard, or B, n, C and epso";
-    if (!(tangent_modulus < young)) return "TangMod must be smaller than Young";
+    if (std::string wrong = tangent_modulus_fault(young, tangent_modulus); !wrong.empty()) return wrong;
     if (!(fc < ff)) return "fc must be smaller than ff";
     if (!(fc < 1 / q1)) return "fc must be smaller than 1/q1";
     if (!(f0 < ff)) return "f0 must be smaller than ff";
@@ -149,7 +149,7 @@ struct Gurson : MisesPlasticity {
   }
   void prepare() {
     derive_moduli();
-    if (tangent_modulus >= 0) hardening = young * tangent_modulus / (young - tangent_modulus);
+    if (tangent_modulus >= 0) hardening = plastic_modulus(young, tangent_modulus);
   }
   static constexpr bool fails_by_damage() { return true; }
   bool scatters() const { return deviation_f0 > 0; }

@@ -20,19 +20,12 @@ struct IsoHarden : MisesPlasticity {
 
   static constexpr auto parameters() {
     return join(plastic_parameters<IsoHarden>(),
-                std::array<Parameter<IsoHarden>, 1>{{
-                    {&IsoHarden::tangent_modulus,
-                     {.name = "TangMod",
-                      .required = true,
-                      .min = 0,
-                      .dimension = "stress",
-                      .meaning = "tangent modulus d(stress)/d(strain), < Young"}},
-                }});
+                std::array<Parameter<IsoHarden>, 1>{{{&IsoHarden::tangent_modulus, tangent_modulus_row}}});
   }
-  std::string fault() const { return tangent_modulus < young ? "" : "TangMod must be smaller than Young"; }
+  std::string fault() const { return tangent_modulus_fault(young, tangent_modulus); }
   void prepare() {
     derive_moduli();
-    hardening = young * tangent_modulus / (young - tangent_modulus);
+    hardening = plastic_modulus(young, tangent_modulus);
   }
 
   template <class T>

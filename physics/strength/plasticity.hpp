@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "physics/strength/elasticity.hpp"
 
@@ -35,6 +36,15 @@ struct MisesPlasticity : IsotropicElasticity {
     radial_return(point, trial, start, after, increment);
   }
 };
+
+/// Linear isotropic hardening: E_p = d yield stress / d plastic strain, of the tangent modulus
+/// d stress / d strain of a bar beyond yield.
+inline double plastic_modulus(double young, double tangent_modulus) {
+  return young * tangent_modulus / (young - tangent_modulus);
+}
+inline std::string tangent_modulus_fault(double young, double tangent_modulus) {
+  return tangent_modulus < young ? "" : "TangMod must be smaller than Young";
+}
 
 template <class Law>
 constexpr auto plastic_parameters() {

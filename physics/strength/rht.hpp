@@ -18,10 +18,10 @@
 
 namespace mpm::physics {
 
-/// cos(theta) of cos(3 theta) = x within -1 and 1, for 0 <= theta <= pi/3. With cos(theta) = 1/2 + u:
-/// u^2 (6 + 4 u) = 1 + x, Newton's method for its root u sqrt(6 + 4 u) = sqrt(1 + x).
+/// cos(theta) of the Lode angle theta, 0 <= theta <= pi/3, from cos(3 theta) = x within -1 and 1. With
+/// cos(theta) = 1/2 + u: u^2 (6 + 4 u) = 1 + x, Newton's method for its root u sqrt(6 + 4 u) = sqrt(1 + x).
 template <class T>
-T cosine_of_third(const T& x) {
+T cosine_of_lode_angle(const T& x) {
   const T root = sqrt(core::max(1.0 + x, 0.0));
   T u = root * (1 / std::sqrt(7.0));
   for (int i = 0; i < 5; ++i) {
@@ -151,7 +151,7 @@ struct RHT : BrittlePlasticity {
     using core::min;
     const T cube = equivalent * equivalent * equivalent;
     const T cos3 = core::select(cube > 0.0, 13.5 * third_invariant(s) / cube, 0.0);
-    const T c = cosine_of_third(T(min(max(cos3, -1.0), 1.0)));
+    const T c = cosine_of_lode_angle(T(min(max(cos3, -1.0), 1.0)));
     const T q = min(max(q20 + bq * p, 0.5), 1.0);
     const T e = 1.0 - q * q, f = 2.0 * q - 1.0, g = 4.0 * e * c * c;
     return (2.0 * e * c + f * sqrt(max(g + 5.0 * q * q - 4.0 * q, 0.0))) / (g + f * f);

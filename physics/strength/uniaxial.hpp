@@ -72,16 +72,11 @@ struct LinHarElaPlastic1D : UniaxialElasticity {
         {&P::young, young_row},
         {&P::yield0, yield0_row},
         {&P::plastic_work_coefficient, plastic_work_row},
-        {&P::tangent_modulus,
-         {.name = "TangMod",
-          .required = true,
-          .min = 0,
-          .dimension = "stress",
-          .meaning = "tangent modulus d(stress)/d(strain), < Young"}},
+        {&P::tangent_modulus, tangent_modulus_row},
     }};
   }
-  std::string fault() const { return tangent_modulus < young ? "" : "TangMod must be smaller than Young"; }
-  void prepare() { hardening = young * tangent_modulus / (young - tangent_modulus); }
+  std::string fault() const { return tangent_modulus_fault(young, tangent_modulus); }
+  void prepare() { hardening = plastic_modulus(young, tangent_modulus); }
 
   template <class T>
   void update(StrengthPoint<T>& point) const {

@@ -53,15 +53,6 @@ TEST_CASE("What rank 0 throws, all ranks throw") {
   CHECK_THROWS_AS(on_root_then_all(world(), fails), std::runtime_error);
 }
 
-TEST_CASE("The lowest rank's complaint is everybody's") {
-  CHECK(first_complaint(world(), "").empty());
-  for (int r = 0; r < world().size(); ++r) {
-    const bool complains = world().rank() >= r;
-    CHECK(first_complaint(world(), complains ? "rank " + std::to_string(world().rank()) : "") ==
-          "rank " + std::to_string(r));
-  }
-}
-
 TEST_CASE("Stretches reach their ranks whole, however the messages are cut") {
   const auto ranks = static_cast<std::size_t>(world().size());
   const auto length = [](std::size_t from, std::size_t to) {

@@ -31,7 +31,7 @@ core::MaterialInput tnt(double beta) {
   return input;
 }
 
-DetonationItem point_at(double time, std::array<double, 3> position) {
+DetonationItem point_at(double time, core::Vec3<double> position) {
   DetonationItem item;
   item.time = time;
   item.position = position;

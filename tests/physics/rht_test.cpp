@@ -57,7 +57,7 @@ const core::ParameterValues at_rest{{"alpha", 0.0}, {"delta", 0.0}};
 TEST_CASE("the cosine of a third of the angle", "[physics][rht]") {
   for (const double x : {-1.0, -0.9999999, -0.5, 0.0, 0.3, 0.999, 1.0}) {
     INFO("cos(3 theta) = " << x);
-    CHECK(physics::cosine_of_third(x) == Approx(std::cos(std::acos(x) / 3)).epsilon(1e-14));
+    CHECK(physics::cosine_of_lode_angle(x) == Approx(std::cos(std::acos(x) / 3)).epsilon(1e-14));
   }
 }
 

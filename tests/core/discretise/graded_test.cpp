@@ -129,7 +129,7 @@ TEST_CASE("shells: cell volumes add up to the ball's volume, spacing close to dp
   for (const Seed& seed : all(polar(ball(0.1, 1)))) {
     smallest = std::min(smallest, seed.volume);
     largest = std::max(largest, seed.volume);
-    for (const double c : seed.position) second_moment += seed.volume * c * c;
+    second_moment += seed.volume * dot(seed.position, seed.position);
   }
   // Whole numbers of arcs and bands: 4 cells at a pole, 8 in the innermost shell.
   CHECK(smallest > 0.4e-3);

@@ -40,7 +40,7 @@ TEST_CASE("Block: sizes that are no multiple of dp", "[discretise]") {
   const Seeds seeds = all(*from);
   CHECK(seeds.size() == 70 * 7 * 1);
   CHECK(seeds.back().position[1] == Approx(0.65).epsilon(1e-15));
-  CHECK(from->relative_volume_error() == Approx(7 * 0.7 * 0.1 / (7 * 0.66 * 0.001) - 1).epsilon(1e-12));
+  CHECK(volume_error(*from) == Approx(7 * 0.7 * 0.1 / (7 * 0.66 * 0.001) - 1).epsilon(1e-12));
 }
 
 TEST_CASE("Sphere: the count is that of the lattice points within the radii", "[discretise]") {
@@ -101,11 +101,11 @@ TEST_CASE("orthogonal lattices converge to the solid's volume", "[discretise]") 
     cone.bottom_spacing = cone.top_spacing = dp;
     wedge.bottom_spacing = wedge.top_spacing = dp;
     OgiveGeometry nose = ogive(2 * dp, 2 * dp);
-    CHECK(std::abs(source(ball(dp, 1))->relative_volume_error()) < 0.2 * dp);
-    CHECK(std::abs(source(hollow)->relative_volume_error()) < 0.2 * dp);
-    CHECK(std::abs(source(cone)->relative_volume_error()) < 0.2 * dp);
-    CHECK(std::abs(source(wedge)->relative_volume_error()) < 0.5 * dp);
-    CHECK(std::abs(source(nose)->relative_volume_error()) < 0.5 * dp);
+    CHECK(std::abs(volume_error(*source(ball(dp, 1)))) < 0.2 * dp);
+    CHECK(std::abs(volume_error(*source(hollow))) < 0.2 * dp);
+    CHECK(std::abs(volume_error(*source(cone))) < 0.2 * dp);
+    CHECK(std::abs(volume_error(*source(wedge))) < 0.5 * dp);
+    CHECK(std::abs(volume_error(*source(nose))) < 0.5 * dp);
   }
 }
 

@@ -1,5 +1,5 @@
 // What every kind of source owes its callers: the same bits in any number of shares, unique identities, seeds
-// within the bounds, masses that follow the density, an honest estimate and volume error.
+// within the bounds, masses that follow the density, an honest estimate, and the volume of the shape.
 #include <cstring>
 #include <set>
 #include <string>
@@ -17,6 +17,7 @@ struct Case {
   std::string name;
   Geometry geometry;
   double estimate_error;  ///< relative; particles on the surface over particles within
+  bool fills;             ///< the particles' cells are the shape, none of them cut
 };
 
 std::vector<Case> cases() {
@@ -38,17 +39,17 @@ std::vector<Case> cases() {
   ogive_rings.layout = Layout::polar;
   PointGeometry points;
   for (int i = 0; i < 10000; ++i) points.points.push_back({1.0 + i, {0.1 * i, -0.2 * i, 0.3}});
-  return {{"block", block(0.1, {1, 2, 3}, {1, 2, 3}), 0},
-          {"plate", block(0.001, {0, 0, 0}, {10, 0.001, 0.003}), 0},
-          {"ball", ball(0.07, 1), 0.02},
-          {"wedge of a hollow ball", wedge, 0.02},
-          {"ball in shells", shells, 0.1},
-          {"cylinder", cylinder(0.1, 1, 2.55), 0.05},
-          {"graded tube", graded, 0.05},
-          {"frustum in rings", rings, 0.1},
-          {"ogive", ogive(0.2, 0.1), 0.05},
-          {"ogive in rings", ogive_rings, 0.1},
-          {"points", points, 0}};
+  return {{"block", block(0.1, {1, 2, 3}, {1, 2, 3}), 0, true},
+          {"plate", block(0.001, {0, 0, 0}, {10, 0.001, 0.003}), 0, true},
+          {"ball", ball(0.07, 1), 0.02, false},
+          {"wedge of a hollow ball", wedge, 0.02, false},
+          {"ball in shells", shells, 0.1, true},
+          {"cylinder", cylinder(0.1, 1, 2.55), 0.05, false},
+          {"graded tube", graded, 0.05, false},
+          {"frustum in rings", rings, 0.1, true},
+          {"ogive", ogive(0.2, 0.1), 0.05, false},
+          {"ogive in rings", ogive_rings, 0.1, true},
+          {"points", points, 0, true}};
 }
 
 /// The units cut into `shares` stretches, taken from the last to the first.
@@ -97,8 +98,8 @@ TEST_CASE("every source: shares, identities, bounds, mass, estimate", "[discreti
 
     const auto particles = static_cast<double>(whole.size());
     CHECK(std::abs(from->expected_particles() - particles) <= c.estimate_error * particles);
-    // Sums of some 1e5 terms.
-    CHECK(volume(whole) / from->solid_volume() - 1 == Approx(from->relative_volume_error()).margin(1e-12));
+    // Round-off of sums of some 1e5 terms.
+    CHECK(std::abs(volume_error(*from)) <= (c.fills ? 1e-12 : c.estimate_error));
   }
 }
 

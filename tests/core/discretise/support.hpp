@@ -2,19 +2,19 @@
 // Scenes of one body, and what the tests ask of its seeds.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "core/discretise/frame.hpp"
 #include "core/discretise/seeds.hpp"
 
 namespace mpm::core::testing {
 
 using Seeds = std::vector<Seed>;
-using Position = std::array<double, 3>;
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double density = 8930;
@@ -54,6 +54,9 @@ inline double volume(const Seeds& seeds) {
   return sum;
 }
 
+/// (volume of all seeds - that of the shape) / that of the shape
+inline double volume_error(const SeedSource& from) { return volume(all(from)) / from.solid_volume() - 1; }
+
 inline double mass(const Seeds& seeds) {
   double sum = 0;
   for (const Seed& seed : seeds) sum += seed.mass;
@@ -67,10 +70,11 @@ std::vector<Position> sorted(const Seeds& seeds, Map&& map) {
   positions.reserve(seeds.size());
   for (const Seed& seed : seeds) {
     Position p = map(seed.position);
-    for (double& c : p) c += 0.0;
-    positions.push_back(p);
+    positions.push_back(p + Position{0, 0, 0});
   }
-  std::sort(positions.begin(), positions.end());
+  std::sort(positions.begin(), positions.end(), [](const Position& a, const Position& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  });
   return positions;
 }
 

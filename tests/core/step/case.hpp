@@ -143,7 +143,7 @@ struct SmallRun {
     scene->solution.scheme = scheme_of(c.scheme);
     scene->solution.end_time = 1e30;
     scene->solution.time_step.factor = c.dt_factor;
-    scene->solution.gravity = c.gravity;
+    scene->solution.gravity = {c.gravity[0], c.gravity[1], c.gravity[2]};
     model.scene = scene;
     model.materials.push_back(std::make_unique<OracleLaw>(c.material));
     core::GridGeometry g;

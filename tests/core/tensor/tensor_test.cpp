@@ -17,10 +17,6 @@ double largest(const Mat3<double>& a) {
   for (const double x : {a.xx, a.xy, a.xz, a.yx, a.yy, a.yz, a.zx, a.zy, a.zz}) m = std::max(m, std::abs(x));
   return m;
 }
-Mat3<double> minus(const Mat3<double>& a, const Mat3<double>& b) {
-  return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yx - b.yx, a.yy - b.yy,
-          a.yz - b.yz, a.zx - b.zx, a.zy - b.zy, a.zz - b.zz};
-}
 Mat3<double> transposed(const Mat3<double>& a) {
   return {a.xx, a.yx, a.zx, a.xy, a.yy, a.zy, a.xz, a.yz, a.zz};
 }
@@ -46,7 +42,7 @@ TEST_CASE("The mid-point rotation is orthogonal to round-off, whatever the angle
       const Vec3<double> w{size * unit(random), size * unit(random), size * unit(random)};
       const Mat3<double> r = mid_point_rotation(w);
       // Each entry is a few operations on numbers up to 1 (in 1 + k (x x - n) numbers up to 2 cancel).
-      CHECK(largest(minus(r * transposed(r), identity)) < 20 * epsilon);
+      CHECK(largest(r * transposed(r) - identity) < 20 * epsilon);
       CHECK(std::abs(determinant(r) - 1) < 20 * epsilon);
       // It leaves its own axis alone.
       const double n = std::sqrt(dot(w, w));
@@ -58,7 +54,7 @@ TEST_CASE("The mid-point rotation is orthogonal to round-off, whatever the angle
 
 TEST_CASE("The mid-point rotation turns the right way, with second order in the angle") {
   const Mat3<double> quarter = mid_point_rotation(Vec3<double>{0, 0, 2});  // tan(angle / 2) = 1
-  CHECK(largest(minus(quarter, {0, -1, 0, 1, 0, 0, 0, 0, 1})) < 4 * epsilon);
+  CHECK(largest(quarter - Mat3<double>{0, -1, 0, 1, 0, 0, 0, 0, 1}) < 4 * epsilon);
   // Many small turns make up one of 1 rad: the error of all falls with the square of the single turn.
   const Vec3<double> whole{0.48, -0.6, 0.64};
   double error[3];
@@ -67,7 +63,7 @@ TEST_CASE("The mid-point rotation turns the right way, with second order in the 
     const Mat3<double> r = mid_point_rotation((1.0 / turns) * whole);
     Mat3<double> all = identity;
     for (int i = 0; i < turns; ++i) all = r * all;
-    error[level] = largest(minus(all, exact_rotation(whole)));
+    error[level] = largest(all - exact_rotation(whole));
   }
   // Angle 2 atan(h/2) = h - h^3/12: h^2/12 over the whole turn; the ratio of errors is 4 but for h^2 of it.
   CHECK(error[0] < 1.1 / 12 / (16 * 16));

@@ -34,13 +34,13 @@ TEST_CASE("a scene holds what the input states") {
   CHECK(rod.name == "rod");
   CHECK(rod.density == 8.93e-3);
   CHECK(rod.work_plane == 0);
-  CHECK(rod.initial_velocity == std::array{0., 0., -190.});
+  CHECK(rod.initial_velocity == core::Vec3<double>{0., 0., -190.});
   CHECK_FALSE(rod.prescribed_velocity.has_value());
   CHECK(rod.source.file == "case.xmp");
   CHECK(rod.source.line == 12);
   const auto& block = std::get<core::BlockGeometry>(rod.geometry);
   CHECK(block.spacing == 0.38);
-  CHECK(block.size == std::array{3.8, 3.8, 19.});
+  CHECK(block.size == core::Vec3<double>{3.8, 3.8, 19.});
 
   CHECK(scene.grid.axes[2].cells == 35);
   CHECK(scene.grid.axes[2].lower == core::Boundary::symmetry);
@@ -121,7 +121,7 @@ TEST_CASE("settings") {
   CHECK(s.warn.level == core::WarnInput::Level::stop);
   CHECK(s.energy_fraction == 0.01);
   CHECK(s.damping == 3);
-  CHECK(s.gravity == std::array{0., 0., -9.81});
+  CHECK(s.gravity == core::Vec3<double>{0., 0., -9.81});
   CHECK(s.threads == 4);
   const core::OutputInput& o = scene.output;
   CHECK((o.console.print_time == 0.1 && o.console.print_momentum));
@@ -130,8 +130,8 @@ TEST_CASE("settings") {
   CHECK(o.post_processing->vtk == core::PostProcessingInput::Vtk::file_per_body);
   CHECK(o.post_processing->variables == std::vector<std::string>{"seqv", "epef"});
   REQUIRE(o.histories.size() == 2);
-  CHECK(o.histories[0].particles == std::vector{std::array{1., 2., 3.}});
-  CHECK(o.histories[0].points == std::vector{std::array{4., 5., 6.}});
+  CHECK(o.histories[0].particles == std::vector{core::Vec3<double>{1., 2., 3.}});
+  CHECK(o.histories[0].points == std::vector{core::Vec3<double>{4., 5., 6.}});
   CHECK(o.restart_interval == 0.25);
   CHECK((o.statistics.memory && o.statistics.cell_occupancy));
   CHECK(scene.decomposition.dimensions == std::array{2, 1, 3});
@@ -165,9 +165,9 @@ TEST_CASE("work planes are orthonormal whatever lengths the input gives") {
   const core::Scene scene = test::parse(replaced(
       bar, "<WorkPlane", "<WorkPlane name='w' ex='3' ey='0' ez='0' a11='0' a21='0' a31='2'/><WorkPlane"));
   const core::WorkPlane& plane = scene.work_planes[0];
-  CHECK(plane.z_axis == std::array{1., 0., 0.});
-  CHECK(plane.x_axis == std::array{0., 0., 1.});
-  CHECK(plane.y_axis == std::array{0., -1., 0.});  // z cross x
+  CHECK(plane.z_axis == core::Vec3<double>{1., 0., 0.});
+  CHECK(plane.x_axis == core::Vec3<double>{0., 0., 1.});
+  CHECK(plane.y_axis == core::Vec3<double>{0., -1., 0.});  // z cross x
 }
 
 TEST_CASE("both ways to leave a body out") {

@@ -29,8 +29,7 @@ std::vector<std::vector<double>> rows_of(const std::string& path) {
 }
 
 /// Two particles in one cell and one in another, with the pressures 1, 2 and 3.
-core::Model three_particles(core::SoloCommunication& solo,
-                            const std::array<std::array<double, 3>, 3>& positions) {
+core::Model three_particles(core::SoloCommunication& solo, const std::array<core::Vec3<double>, 3>& positions) {
   auto scene = small_scene();
   core::TimeHistoryInput& history = scene->output.histories.emplace_back();
   history.variables = {"pres", "posx"};
@@ -38,7 +37,7 @@ core::Model three_particles(core::SoloCommunication& solo,
   history.points = {{0.25, 0.5, 0.5}, {6.5, 6.5, 6.5}, {-1, 0, 0}};
   core::Model model = prepared_model(scene);
   std::vector<core::BrickCount> counts;
-  for (const auto& x : positions) counts.push_back({model.grid->geometry().brick_at({x[0], x[1], x[2]}), 1});
+  for (const auto& x : positions) counts.push_back({model.grid->geometry().brick_at(x), 1});
   solo.bricks.partition(*model.grid, counts, {});
   for (std::size_t i = 0; i < 3; ++i) {
     const core::ColumnLayout& layout = model.bodies[0].pool->layout();
@@ -46,8 +45,7 @@ core::Model three_particles(core::SoloCommunication& solo,
     const auto set = [&](Column c, double v) {
       columns[static_cast<std::size_t>(layout.offset(c) / core::block_lanes)] = v;
     };
-    for (int a = 0; a < 3; ++a)
-      set(core::next(Column::position_x, a), positions[i][static_cast<std::size_t>(a)]);
+    for (int a = 0; a < 3; ++a) set(core::next(Column::position_x, a), positions[i][a]);
     set(Column::mass, static_cast<double>(i + 1));
     set(Column::pressure, static_cast<double>(i + 1));
     set(Column::identity, static_cast<double>(10 - i));
@@ -58,7 +56,7 @@ core::Model three_particles(core::SoloCommunication& solo,
   return model;
 }
 
-constexpr std::array<std::array<double, 3>, 3> at_start{{{0.25, 0.5, 0.5}, {0.75, 0.5, 0.5}, {10, 10, 10}}};
+constexpr std::array<core::Vec3<double>, 3> at_start{{{0.25, 0.5, 0.5}, {0.75, 0.5, 0.5}, {10, 10, 10}}};
 
 void set_position(core::Model& model, std::size_t brick, double x) {
   core::Cohort& cohort = model.grid->bricks()[brick].cohorts[0];

@@ -1,0 +1,19 @@
+// Normal random numbers by counting: as philox.hpp, a pure function of what they are for.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/random/philox.hpp"
+
+namespace mpm::core {
+
+/// Of mean 0 and deviation 1, for the `item`-th draw of a kind (Box and Muller, Ann. Math. Stat. 29 (1958)
+/// 610).
+inline double standard_normal(std::uint64_t item, std::uint32_t kind, std::uint64_t seed) {
+  const auto [u, v] = uniform_pair(item, kind, seed);
+  return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
+}
+
+}  // namespace mpm::core

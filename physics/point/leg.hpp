@@ -1,0 +1,63 @@
+// A leg of a loading path: what of the strain and of the stress it prescribes, and the legs of the usual
+// laboratory tests.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/tensor/tensor.hpp"
+
+namespace mpm::physics {
+
+/// The sum of weight times component over xx, yy, zz, xy, yz, xz; so (0, 0, 0, 2, 0, 0) of a strain is
+/// gamma_xy.
+double weighted(const core::Sym3<double>& weights, const core::Sym3<double>& tensor);
+
+/// A stress that is prescribed, and the rate of deformation that is free to reach it.
+struct StressControl {
+  core::Mat3<double> mode;    ///< velocity gradient per unit of the unknown rate
+  core::Sym3<double> weight;  ///< of the Cauchy stress
+  double target = 0;
+  bool ramp =
+      false;  ///< linear from what it is at the beginning of the leg; else the target from the first step
+};
+
+struct DeformationRow {
+  double time = 0;
+  core::Mat3<double> gradient;  ///< F
+};
+
+struct Leg {
+  std::string kind;
+  core::Mat3<double> direction{};  ///< velocity gradient per unit rate of the measure
+  core::Sym3<double> measure{};    ///< which strain the leg counts, by weights of the accumulated strain
+  bool from_zero = false;          ///< the measure is counted from the beginning of this leg on
+  std::optional<double> strain;  ///< value of the measure at the end; without: stress alone drives, or a hold
+  std::optional<double> time;    ///< duration; without: from the rate
+  bool whole = false;            ///< direction is the strain of the whole leg, not per unit of the measure
+  double rate = 1;               ///< of the measure, or of the first ramp's stress; > 0
+  int steps = 100;
+  std::vector<StressControl> controls;
+  std::vector<DeformationRow> table;  ///< F over time, linear between its rows, each in `steps` steps
+};
+
+/// The legs of the usual tests; x is the axis. Each counts from where the run of legs of its kind began.
+namespace legs {
+Leg uniaxial_strain(double strain);
+Leg uniaxial_stress(double strain);
+/// Axial strain under a constant lateral pressure (positive in compression).
+Leg triaxial(double strain, double confining_pressure);
+/// Plane strain: z is held, y carries the confining pressure.
+Leg biaxial(double strain, double confining_pressure);
+/// x and y are strained alike, z is free.
+Leg equibiaxial(double strain);
+Leg simple_shear(double gamma);
+/// Volumetric strain, equal in all directions.
+Leg hydrostatic(double strain);
+/// To a pressure, by equal strains.
+Leg pressure(double pressure, double time);
+Leg hold(double time);
+}  // namespace legs
+
+}  // namespace mpm::physics
