@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "core/discretise/seeds.hpp"
+#include "core/discretise/shape_check.hpp"
 #include "core/scene/limits.hpp"
 #include "core/setup/first_step.hpp"
 #include "core/setup/memory.hpp"
@@ -63,9 +64,10 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
     set(Column::temperature, *input.initial_temperature);
 }
 
-/// Counts per brick, and the first seed outside the grid in words.
+/// Counts per brick and per body, and the first seed outside the grid in words.
 struct Census {
   std::map<BrickKey, std::int64_t> bricks;
+  std::vector<std::int64_t> bodies;  ///< of all particles, outside the grid too
   std::int64_t block_bytes = 0;  ///< of the blocks that hold them: in every brick of every body, full but one
   std::int64_t outside = 0;
   std::string first_outside;
@@ -76,10 +78,12 @@ Census take_census(const GridGeometry& geometry, const std::vector<std::unique_p
                    const std::vector<const BodyInput*>& inputs, const Exchange& exchange,
                    const Model* model) {
   Census census;
+  census.bodies.resize(sources.size());
   std::map<BrickKey, std::int64_t> bricks;  // of one body
   for (std::size_t b = 0; b < sources.size(); ++b) {
     bricks.clear();
     for_each_piece(*sources[b], exchange.rank(), exchange.size(), [&](const std::vector<Seed>& seeds) {
+      census.bodies[b] += static_cast<std::int64_t>(seeds.size());
       for (const Seed& s : seeds) {
         const Vec3<double> x{s.position[0], s.position[1], s.position[2]};
         if (geometry.contains(x)) {
@@ -120,6 +124,28 @@ void refuse_outside(const Scene& scene, const GridGeometry& g, const Census& cen
                   outside[0], g.origin.x, g.origin.x + double(g.cells[0]) * g.cell.x, g.origin.y,
                   g.origin.y + double(g.cells[1]) * g.cell.y, g.origin.z,
                   g.origin.z + double(g.cells[2]) * g.cell.z, first));
+}
+
+/// Of the bodies that were too large to be tried before (shape_check.hpp).
+void refuse_empty(const Scene& scene, const Census& census, const std::vector<const BodyInput*>& inputs,
+                  Exchange& exchange) {
+  std::vector<std::int64_t> particles = census.bodies;
+  exchange.sum(std::span<std::int64_t>(particles));
+  Complaints wrong;
+  for (std::size_t b = 0; b < inputs.size(); ++b)
+    if (particles[b] == 0) wrong.add(no_particles(scene, *inputs[b]));
+  wrong.raise_if_any();
+}
+
+/// The sources of all bodies; throws every complaint about any of them.
+std::vector<std::unique_ptr<SeedSource>> sources_of(const Scene& scene,
+                                                    const std::vector<const BodyInput*>& inputs) {
+  Complaints wrong;
+  std::vector<std::unique_ptr<SeedSource>> sources;
+  for (const BodyInput* input : inputs)
+    wrong.collect([&] { sources.push_back(make_seed_source(scene, *input)); });
+  wrong.raise_if_any();
+  return sources;
 }
 
 /// Throws InputErrors where the bodies' identities together cannot be numbered; names the largest body.
@@ -370,10 +396,11 @@ namespace {
 
 using Sources = std::vector<std::unique_ptr<SeedSource>>;
 
+constexpr std::uint64_t most_units = 1 << 16;  // of a body, that may be empty before the first with particles
+
 /// A few particles of a body, whose first state is like that of all others.
 std::vector<Seed> sample_of(const SeedSource& source) {
   constexpr std::size_t few = 8;
-  constexpr std::uint64_t most_units = 1 << 16;  // that may be empty before the first with particles
   std::vector<Seed> seeds;
   for (std::uint64_t u = 0; u < std::min(source.units(), most_units) && seeds.empty(); ++u)
     source.generate(u, u + 1, seeds);
@@ -432,6 +459,8 @@ double check_setup(std::shared_ptr<const Scene> scene,
   std::vector<const BodyInput*> owners;
   for (std::size_t b = 0; b < sources.size(); ++b) {
     samples.push_back(sample_of(*sources[b]));
+    if (samples.back().empty() && sources[b]->units() <= most_units)
+      wrong.add(no_particles(*scene, *inputs[b]));
     const auto [lower, upper] = sources[b]->bounds();
     const bool inside = geometry.contains({lower[0], lower[1], lower[2]}) &&
                         geometry.contains({upper[0], upper[1], upper[2]});
@@ -439,6 +468,7 @@ double check_setup(std::shared_ptr<const Scene> scene,
     doubtful.push_back(std::move(sources[b]));
     owners.push_back(inputs[b]);
   }
+  wrong.raise_if_any();
   SoloExchange alone;
   refuse_outside(*scene, geometry, take_census(geometry, doubtful, owners, alone, nullptr), alone);
   check_start(prepare_model(scene, std::move(materials), output_columns), inputs, samples);
@@ -447,13 +477,13 @@ double check_setup(std::shared_ptr<const Scene> scene,
 
 void discretise(Model& model, Exchange& exchange) {
   const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
-  std::vector<std::unique_ptr<SeedSource>> sources;
-  for (const BodyInput* input : inputs) sources.push_back(make_seed_source(*model.scene, *input));
+  const std::vector<std::unique_ptr<SeedSource>> sources = sources_of(*model.scene, inputs);
   refuse_uncounted(sources, inputs);
   const ModelPlan plan = plan_of(model);
   refuse_too_large(model, plan, exchange);
   const GridGeometry& geometry = model.grid->geometry();
   const Census census = take_census(geometry, sources, inputs, exchange, &model);
+  refuse_empty(*model.scene, census, inputs, exchange);
   refuse_outside(*model.scene, geometry, census, exchange);
   std::vector<BrickCount> counts;
   for (const auto& [key, n] : census.bricks) counts.push_back({brick_of_key(key), n});

@@ -111,11 +111,12 @@ std::string body(const std::string& type, const std::string& geometry, const std
 std::string bodies() {
   const std::string base = " x0='0' y0='0' z0='0' ";
   const std::string block = "<Geometry dp='1' lx='5' ly='5' lz='5'" + base + "/>";
+  const std::string corner = "<Geometry dp='1' lx='2' ly='2' lz='2'" + base + "/>";
   const std::string round = " dp_bottom='1' dp_top='0.5' angle='90' discretization='1'" + base;
   const std::string nodes = "<Point node_id='1' x='0' y='0' z='0'/><Point node_id='2' x='1' y='0' z='0'/>";
   std::string text =
       "<Body name='a' material='1' type='Block' density='1' workPlane='plane' Deactive='0' ForBoolBody='1'>" +
-      block + "</Body><Body name='b' material='1' type='Block' ForBoolBody='1'>" + block + "</Body>" +
+      block + "</Body><Body name='b' material='1' type='Block' ForBoolBody='1'>" + corner + "</Body>" +
       "<Body name='a-b' material='1' type='Bool' BoolType='subtract' BoolBodyA='a' BoolBodyB='b'/>";
   text += body("Point", "<Geometry><Point mass='1' x='1' y='1' z='1'/></Geometry>");
   text += body("Point", "<Geometry file='points.txt'/>");
@@ -287,7 +288,7 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
 
   CHECK(scene.materials.size() == 26);
   CHECK(scene.components[0].bodies.size() == 22);
-  CHECK(std::get<core::BoolGeometry>(scene.components[0].bodies[2].geometry).subtrahend_body == 1);
+  CHECK(std::get<core::BoolGeometry>(scene.components[0].bodies[2].geometry).subtrahend.body == 1);
   CHECK(scene.detonations.size() == 2);
   CHECK(scene.grid.axes[0].segments.size() == 2);
   CHECK(scene.grid.axes[0].cells == 7);

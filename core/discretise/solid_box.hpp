@@ -1,14 +1,14 @@
-// Boxes around bodies, from what the input states of their shapes: no particles are made.
 #pragma once
+// Boxes around the shapes of bodies as the input states them: no particles are made.
 
 #include <array>
 #include <cmath>
 
 #include "core/scene/scene.hpp"
 
-namespace mpm::io {
+namespace mpm::core {
 
-struct Box {
+struct SolidBox {
   std::array<double, 3> lower{INFINITY, INFINITY, INFINITY};
   std::array<double, 3> upper{-INFINITY, -INFINITY, -INFINITY};
 
@@ -21,7 +21,8 @@ struct Box {
   }
 };
 
-/// In the global frame; empty for shapes that are read from files or made later.
-Box box_of(const core::BodyInput& body, const core::Scene& scene);
+/// In the global frame; of a Bool body the box around the one from which is subtracted. Empty for shapes that
+/// are read from files and for finite elements.
+SolidBox solid_box(const Scene& scene, const BodyInput& body);
 
-}  // namespace mpm::io
+}  // namespace mpm::core
