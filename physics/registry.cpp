@@ -135,7 +135,7 @@ core::Catalogue Registry::catalogue() const {
   all.strength = types(strength_);
   all.eos = types(eos_);
   all.failure = types(failure_);
-  all.failure.push_back({"none", "never fails", {}});
+  all.failure.insert(all.failure.begin(), {"none", "never fails", {}});
   return all;
 }
 

@@ -77,14 +77,37 @@ const core::BodyInput* find_body(const core::Scene& scene, const std::string& na
   return nullptr;
 }
 
+core::BodyPlace place_of(const core::Scene& scene, const std::string& name) {
+  for (std::size_t c = 0; c < scene.components.size(); ++c) {
+    for (std::size_t b = 0; b < scene.components[c].bodies.size(); ++b) {
+      if (scene.components[c].bodies[b].name == name) return {c, b};
+    }
+  }
+  return {};
+}
+
+/// A body's shape in the words of another scene: its operands by their places there. Nothing where that scene
+/// has no operand of the name.
+std::optional<core::Geometry> translated(const core::Geometry& geometry, const core::Scene& from,
+                                         const core::Scene& to) {
+  const auto* difference = std::get_if<core::BoolGeometry>(&geometry);
+  if (difference == nullptr) return geometry;
+  const core::BoolGeometry there{place_of(to, core::body_at(from, difference->minuend).name),
+                                 place_of(to, core::body_at(from, difference->subtrahend).name)};
+  const std::size_t none = core::BodyPlace{}.component;
+  if (there.minuend.component == none || there.subtrahend.component == none) return {};
+  return there;
+}
+
 /// What made the particles of a restart file is in them: another input that says otherwise asks for something
 /// that would not happen. Throws InputErrors.
 void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
   std::vector<core::Diagnostic> complaints;
   core::Scene then = now;
   const std::string text = io::to_text(now);
-  const auto compare = [&](const core::SourceLocation& at, const char* element, const std::string& name) {
-    if (io::to_text(then) == text) return;
+  const auto compare = [&](const core::SourceLocation& at, const char* element, const std::string& name,
+                           bool differs = false) {
+    if (!differs && io::to_text(then) == text) return;
     complaints.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
                           "differs from the input of the restart file, where the particles have it from; -rt "
                           "may change Grid, Solution, Output and Deactive: restore it"});
@@ -96,12 +119,13 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
       // Its loads, its outputs and its material's parameters hold from here on; these do not.
       const core::BodyInput stated = body;
       body.type = before->type;
-      body.geometry = before->geometry;
+      const std::optional<core::Geometry> geometry = translated(before->geometry, old, now);
+      if (geometry) body.geometry = *geometry;
       body.density = before->density;
       body.initial_velocity = before->initial_velocity;
       body.initial_temperature = before->initial_temperature;
       body.work_plane = before->work_plane;
-      compare(stated.source, "Body", stated.name);
+      compare(stated.source, "Body", stated.name, !geometry);
       body = stated;
     }
   }

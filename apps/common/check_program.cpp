@@ -61,7 +61,7 @@ class Checker {
   Checker(const Settings& settings, const Registry& registry)
       : settings_(settings), registry_(registry), language_(io::language(registry.catalogue())) {
     if (settings.specification.empty()) return;
-    users_ = io::read_user_specification(settings.specification);
+    users_ = io::read_user_specification(settings.specification, registry.catalogue());
     language_ = io::with_additions(std::move(language_), users_->root);
   }
 

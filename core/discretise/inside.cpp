@@ -1,15 +1,15 @@
 #include "core/discretise/inside.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <variant>
 
 #include "core/discretise/line.hpp"
+#include "core/discretise/make_source.hpp"
 #include "core/discretise/profile.hpp"
-#include "core/discretise/seeds.hpp"
 #include "core/discretise/sweep.hpp"
 
 namespace mpm::core {
@@ -61,6 +61,9 @@ class PointCloud {
   }
 
   bool any_within(const Position& position, double distance) const {
+    // More cubes than points: of points that are far denser than the particles that ask.
+    if (std::pow(2 * distance / cube_ + 1, 3) > static_cast<double>(points_.size()))
+      return std::ranges::any_of(points_, [&](const auto& p) { return near(p.second, position, distance); });
     const auto reach = static_cast<std::int64_t>(std::ceil(distance / cube_));
     const std::array<std::int64_t, 3> middle = cell(position);
     for (std::int64_t i = middle[0] - reach; i <= middle[0] + reach; ++i)
@@ -81,13 +84,12 @@ class PointCloud {
     for (const std::int64_t i : c) hash = (hash ^ static_cast<std::uint64_t>(i)) * 0x9E3779B97F4A7C15U;
     return hash;
   }
+  static bool near(const Position& q, const Position& p, double distance) {
+    return std::hypot(q[0] - p[0], q[1] - p[1], q[2] - p[2]) <= distance * (1 + on_boundary);
+  }
   bool any_in(const std::array<std::int64_t, 3>& c, const Position& p, double distance) const {
     const auto [first, last] = points_.equal_range(key(c));
-    for (auto it = first; it != last; ++it) {
-      const Position& q = it->second;
-      if (std::hypot(q[0] - p[0], q[1] - p[1], q[2] - p[2]) <= distance * (1 + on_boundary)) return true;
-    }
-    return false;
+    return std::any_of(first, last, [&](const auto& q) { return near(q.second, p, distance); });
   }
 
   double cube_;
@@ -95,7 +97,7 @@ class PointCloud {
 };
 
 InsideTest near_points(const Scene& scene, const BodyInput& body) {
-  const auto source = make_seed_source(scene, body);
+  const auto source = make_unchecked_source(scene, body);
   std::vector<Seed> seeds;
   source->generate(0, source->units(), seeds);
   const double cube = std::cbrt(source->solid_volume() / static_cast<double>(seeds.size()));
@@ -105,8 +107,8 @@ InsideTest near_points(const Scene& scene, const BodyInput& body) {
 }
 
 InsideTest inside_difference(const Scene& scene, const BodyInput& body, const BoolGeometry& difference) {
-  InsideTest kept = make_inside_test(scene, body_number(scene, difference.minuend_body));
-  InsideTest removed = make_inside_test(scene, body_number(scene, difference.subtrahend_body));
+  InsideTest kept = make_inside_test(scene, body_at(scene, difference.minuend));
+  InsideTest removed = make_inside_test(scene, body_at(scene, difference.subtrahend));
   return [kept, removed, frame = Frame(scene, body)](const Position& position, double spacing) {
     const Position p = frame.to_local(position);
     return kept(p, spacing) && !removed(p, spacing);
@@ -127,14 +129,6 @@ InsideTest make_inside_test(const Scene& scene, const BodyInput& body) {
   throw InputErrors(
       body.source, "Body",
       "only bodies of particles can be subtracted, not the finite elements of `" + body.name + "`");
-}
-
-const BodyInput& body_number(const Scene& scene, std::size_t index) {
-  for (const ComponentInput& component : scene.components) {
-    if (index < component.bodies.size()) return component.bodies[index];
-    index -= component.bodies.size();
-  }
-  throw std::out_of_range("a Bool body names a body that the scene does not have");
 }
 
 }  // namespace mpm::core

@@ -57,8 +57,8 @@ class SeedSource {
 };
 
 /// The source for one body of the scene (for Bool bodies it looks up the operands there). Throws InputErrors
-/// for a shape without particles, an impossible geometry, a bad point file, and geometries made of finite
-/// elements. Reads a point file once, to count and check it; every rank does so.
+/// for a shape without particles, an impossible geometry (shape_check.hpp), a bad point file, and geometries
+/// made of finite elements. Reads a point file once, to count and check it; every rank does so.
 std::unique_ptr<SeedSource> make_seed_source(const Scene& scene, const BodyInput& body);
 
 }  // namespace mpm::core

@@ -28,7 +28,6 @@ struct ParameterInfo {
   std::string_view meaning;  ///< one line for the keyword reference
   /// Attributes of one law with the same non-empty group are given all together or not at all (D1 .. D5).
   std::string_view group = {};
-  bool implemented = true;  ///< false: the reader refuses every value but the default
   /// Every finite number makes sense: what a parameter of a law from outside says that has no range.
   bool any_number = false;
 };
@@ -38,7 +37,6 @@ struct TypeInfo {
   std::string_view name;  ///< the word after `type=` in the input
   std::string_view summary;
   std::vector<ParameterInfo> parameters;
-  bool implemented = true;
 };
 
 /// All laws. The common tables hold for every type of their family; a type's own entry of the same name wins

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -68,10 +69,16 @@ struct OgiveGeometry {
   Layout layout = Layout::orthogonal;
 };
 
-/// A minus B. Body numbers count through all components in the order of the input.
+/// Where a body stands in the scene: components[component].bodies[body]. By itself it means no body.
+struct BodyPlace {
+  std::size_t component = std::numeric_limits<std::size_t>::max();
+  std::size_t body = 0;
+};
+
+/// A minus B.
 struct BoolGeometry {
-  std::size_t minuend_body = 0;
-  std::size_t subtrahend_body = 0;
+  BodyPlace minuend;
+  BodyPlace subtrahend;
 };
 
 /// A mesh given node by node, inline or in a file; N nodes per element: 2 bar, 3 membrane triangle, 8

@@ -63,6 +63,11 @@ struct Scene {
   Provenance provenance;
 };
 
+/// Throws std::out_of_range for a place without a body.
+inline const BodyInput& body_at(const Scene& scene, BodyPlace place) {
+  return scene.components.at(place.component).bodies.at(place.body);
+}
+
 /// The bodies that take part, in the order of the input; with them the numbers of their components.
 template <class F>
 void for_each_active_body(const Scene& scene, F f) {

@@ -62,6 +62,7 @@ void build_model(Model& model, Communication& communication) {
   refuse_too_large(model, plan, communication);
   const GridGeometry& geometry = model.grid->geometry();
   const SeedCount count = count_seeds(geometry, seeds, communication.reductions);
+  refuse_empty(*model.scene, seeds, count, communication);
   refuse_outside(*model.scene, geometry, count, communication);
   communication.bricks.partition(*model.grid, count.in_bricks(), model.scene->decomposition);
   refuse_too_large(model, plan, count, communication);
@@ -75,6 +76,7 @@ void add_bodies(Model& model, std::span<const std::size_t> bodies, Communication
   refuse_uncounted(seeds, model.next_identity);
   const GridGeometry& geometry = model.grid->geometry();
   const SeedCount count = count_seeds(geometry, seeds, communication.reductions);
+  refuse_empty(*model.scene, seeds, count, communication);
   refuse_outside(*model.scene, geometry, count, communication);
   std::vector<BrickCoord> wanted;
   for (const auto& [key, n] : count.bricks) wanted.push_back(brick_of_key(key));

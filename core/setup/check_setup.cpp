@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/communication/solo.hpp"
+#include "core/discretise/shape_check.hpp"
 #include "core/particles/tile_order.hpp"
 #include "core/setup/particle_creation.hpp"
 #include "core/setup/prepare_model.hpp"
@@ -12,10 +13,11 @@ namespace mpm::core {
 
 namespace {
 
+constexpr std::uint64_t most_units = 1 << 16;  // of a body, that may be empty before the first with particles
+
 /// A few particles of a body, whose first state is like that of all others.
 std::vector<Seed> sample_of(const SeedSource& source) {
   constexpr std::size_t few = 8;
-  constexpr std::uint64_t most_units = 1 << 16;  // that may be empty before the first with particles
   std::vector<Seed> seeds;
   for (std::uint64_t u = 0; u < std::min(source.units(), most_units) && seeds.empty(); ++u)
     source.generate(u, u + 1, seeds);
@@ -72,12 +74,14 @@ double check_setup(std::shared_ptr<const Scene> scene,
   std::vector<BodySeeds> doubtful;
   for (BodySeeds& body : bodies) {
     samples.push_back(sample_of(*body.source));
+    if (samples.back().empty() && body.source->units() <= most_units)
+      wrong.add(no_particles(*scene, *body.input));
     const auto [lower, upper] = body.source->bounds();
-    const bool inside = geometry.contains({lower[0], lower[1], lower[2]}) &&
-                        geometry.contains({upper[0], upper[1], upper[2]});
+    const bool inside = geometry.contains(lower) && geometry.contains(upper);
     if (inside || body.source->expected_particles() > most_looked_at) continue;
     doubtful.push_back(std::move(body));
   }
+  wrong.raise_if_any();
   SoloCommunication alone;
   refuse_outside(*scene, geometry, count_seeds(geometry, doubtful, alone.reductions), alone);
   check_start(prepare_model(scene, std::move(materials), output_columns), inputs, samples);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/discretise/shape_check.hpp"
 #include "core/particles/tile_order.hpp"
 #include "core/threads.hpp"
 
@@ -37,11 +38,15 @@ void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
 std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies) {
   const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
   std::vector<BodySeeds> seeds;
+  Complaints wrong;
   for (const std::size_t b : bodies) {
     const auto block =
         static_cast<std::int64_t>(sizeof(double)) * model.bodies[b].pool->layout().block_doubles();
-    seeds.push_back({b, inputs[b], make_seed_source(*model.scene, *inputs[b]), block});
+    wrong.collect([&] {
+      seeds.push_back({b, inputs[b], make_seed_source(*model.scene, *inputs[b]), block});
+    });
   }
+  wrong.raise_if_any();
   return seeds;
 }
 
@@ -77,7 +82,9 @@ SeedCount count_seeds(const GridGeometry& geometry, std::span<const BodySeeds> b
   std::map<BrickKey, std::int64_t> bricks;  // of one body
   for (const BodySeeds& body : bodies) {
     bricks.clear();
+    std::int64_t& particles = count.bodies.emplace_back();
     for_each_piece(*body.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
+      particles += static_cast<std::int64_t>(seeds.size());
       for (const Seed& s : seeds) {
         const Vec3<double>& x = s.position;
         if (geometry.contains(x)) {
@@ -117,14 +124,23 @@ void refuse_outside(const Scene& scene, const GridGeometry& g, const SeedCount& 
                   g.origin.z + double(g.cells[2]) * g.cell.z, first));
 }
 
+void refuse_empty(const Scene& scene, std::span<const BodySeeds> bodies, const SeedCount& count,
+                  Reductions& ranks) {
+  std::vector<std::int64_t> particles = count.bodies;
+  ranks.sum(std::span<std::int64_t>(particles));
+  Complaints wrong;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (particles[b] == 0) wrong.add(no_particles(scene, *bodies[b].input));
+  wrong.raise_if_any();
+}
+
 void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
                   double identity, std::vector<double>& columns) {
   columns.assign(static_cast<std::size_t>(layout.columns()), 0.0);
   const auto set = [&](Column c, double v) { columns[layout.index(c)] = v; };
   for (int a = 0; a < 3; ++a) {
     set(next(Column::position_x, a), seed.position[a]);
-    const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a]
-                                              : input.initial_velocity[a];
+    const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a] : input.initial_velocity[a];
     set(next(Column::velocity_x, a), v);
   }
   set(Column::mass, seed.mass);

@@ -26,7 +26,7 @@ struct BodySeeds {
   std::int64_t block_bytes = 0;  ///< of eight of its particles; 0: only those outside the grid are counted
 };
 
-/// Of these bodies of the model.
+/// Of these bodies of the model. Throws every complaint about any of them.
 std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies);
 
 /// Throws InputErrors where the bodies' identities, from `first_identity` on, cannot be numbered; names the
@@ -36,6 +36,7 @@ void refuse_uncounted(std::span<const BodySeeds> bodies, std::uint64_t first_ide
 /// This rank's share, counted.
 struct SeedCount {
   std::map<BrickKey, std::int64_t> bricks;
+  std::vector<std::int64_t> bodies;  ///< of each body all particles, outside of the grid too
   std::int64_t block_bytes = 0;  ///< of the blocks that hold them: in every brick of every body, full but one
   std::int64_t outside = 0;      ///< of the grid
   std::string first_outside;     ///< in words
@@ -48,6 +49,11 @@ SeedCount count_seeds(const GridGeometry& geometry, std::span<const BodySeeds> b
 /// Throws InputErrors on every rank if any has a particle outside the grid. Collective.
 void refuse_outside(const Scene& scene, const GridGeometry& geometry, const SeedCount& count,
                     Reductions& ranks);
+
+/// Throws InputErrors on every rank for each body without a particle (those that were too large to be tried
+/// before, core/discretise/shape_check.hpp). Collective.
+void refuse_empty(const Scene& scene, std::span<const BodySeeds> bodies, const SeedCount& count,
+                  Reductions& ranks);
 
 /// The columns of a particle as a body's input states them, in the order of `layout`; the material's own
 /// start from zero (ConstitutiveModel::initialise).

@@ -31,6 +31,8 @@ std::vector<core::WorkPlane> build_work_planes(const Node& root, const BuildCont
 /// Uses the materials, work planes, grid and contact of `scene`.
 std::vector<core::ComponentInput> build_components(const Node& root, const core::Scene& scene,
                                                    const BuildContext& context);
+/// Complains about what is wrong with the shapes of the bodies (core/discretise/shape_check.hpp).
+void check_shapes(const Node& root, const core::Scene& scene, const BuildContext& context);
 /// All alternatives but BoolGeometry, whose operands are bodies.
 core::Geometry build_geometry(const Node& geometry, const BuildContext& context);
 std::vector<core::DetonationItem> build_detonations(const Node& root, const BuildContext& context);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
-#include "io/input/boxes.hpp"
 #include "io/input/build.hpp"
 #include "io/input/text.hpp"
 
@@ -40,23 +40,6 @@ core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) 
   plane.y_axis = (1 / std::sqrt(dot(plane.y_axis, plane.y_axis))) * plane.y_axis;
   plane.x_axis = cross(plane.y_axis, plane.z_axis);
   return plane;
-}
-
-/// Refuses a body no part of which can be in the grid; particles are checked one by one when they are made.
-void check_inside(const Node& node, const core::BodyInput& body, const core::Scene& scene,
-                  const BuildContext& context) {
-  if (body.for_bool || body.deactivated) return;
-  const Box box = box_of(body, scene);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const core::GridAxis& axis = scene.grid.axes[i];
-    if (std::isinf(box.lower[i]) || !(axis.min < axis.max)) continue;
-    if (box.upper[i] < axis.min || box.lower[i] > axis.max)
-      return node.complain(
-          context.diagnostics, "name",
-          fmt::format("the body lies outside the grid: its {0} from {1} to {2}, the grid's from {3} "
-                      "to {4}",
-                      "xyz"[i], box.lower[i], box.upper[i], axis.min, axis.max));
-  }
 }
 
 /// The last of `points`, which `node` has given, must come after the one before.
@@ -187,7 +170,7 @@ core::BodyInput build_body(const Node& node, const core::Scene& scene, const Bui
   body.type = node.type();
   const auto material = resolve(node, "material", "material", names_of(scene.materials), context);
   body.material = material.value_or(0);
-  if (material) body.density = scene.materials[*material].reference_density;
+  body.density = material ? scene.materials[*material].reference_density : NAN;
   if (const auto density = node.given_real("density")) body.density = *density;
   body.work_plane = resolve(node, "workPlane", "work plane", names_of(scene.work_planes), context);
   const std::optional<Node> control = node.child("BodyContrl");
@@ -198,30 +181,37 @@ core::BodyInput build_body(const Node& node, const core::Scene& scene, const Bui
     body.geometry = build_geometry(*geometry, context);
   build_loads(body, node, context);
   check_held(body, node, context);
-  check_inside(node, body, scene, context);
   return body;
 }
 
-/// The operands of Bool bodies, once all bodies are known.
-void build_bool(core::BodyInput& body, const Node& node, const std::vector<core::BodyInput*>& bodies,
-                const BuildContext& context) {
-  std::vector<std::string_view> names;
-  for (const core::BodyInput* other : bodies) names.emplace_back(other->name);
-  const auto operand = [&](std::string_view attribute) {
-    const auto found = resolve(node, attribute, "body", names, context);
-    if (!found) return std::size_t{0};
-    const core::BodyInput& other = *bodies[*found];
-    if (!other.for_bool)
-      node.complain(context.diagnostics, attribute,
-                    fmt::format("body '{}' needs ForBoolBody=\"1\"", other.name));
-    constexpr std::array operands{"Point", "Block", "Sphere", "Cylinder", "Ogive"};
-    if (std::ranges::find(operands, other.type) == operands.end())
-      node.complain(context.diagnostics, attribute,
-                    fmt::format("a body of type {} cannot be an operand", other.type));
-    return *found;
-  };
-  body.geometry = core::BoolGeometry{operand("BoolBodyA"), operand("BoolBodyB")};
-}
+/// Finds bodies by name, in the same time however many there are.
+class BodyNames {
+ public:
+  explicit BodyNames(const std::vector<core::ComponentInput>& components) {
+    for (std::size_t c = 0; c < components.size(); ++c)
+      for (std::size_t b = 0; b < components[c].bodies.size(); ++b)
+        places_.emplace(components[c].bodies[b].name, core::BodyPlace{c, b});
+  }
+
+  /// The body that an attribute names; complains, and returns the place of no body, where there is none.
+  core::BodyPlace resolve(const Node& node, std::string_view attribute, const BuildContext& context) {
+    const std::string name = node.word(attribute);
+    if (name.empty()) return {};
+    if (const auto found = places_.find(name); found != places_.end()) return found->second;
+    constexpr int most_suggestions = 20;  // each looks at all names
+    std::vector<std::string_view> names;
+    if (suggestions_++ < most_suggestions)
+      for (const auto& [known, place] : places_) names.emplace_back(known);
+    std::ranges::sort(names);
+    node.complain(context.diagnostics, attribute,
+                  fmt::format("there is no body of this name{}", did_you_mean(name, names)));
+    return {};
+  }
+
+ private:
+  std::unordered_map<std::string, core::BodyPlace> places_;
+  int suggestions_ = 0;
+};
 
 }  // namespace
 
@@ -252,8 +242,11 @@ std::vector<core::ComponentInput> build_components(const Node& root, const core:
   std::vector<core::BodyInput*> bodies;
   for (core::ComponentInput& component : components)
     for (core::BodyInput& body : component.bodies) bodies.push_back(&body);
+  BodyNames names(components);
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i]->type == "Bool") build_bool(*bodies[i], body_nodes[i], bodies, context);
+    if (bodies[i]->type == "Bool")
+      bodies[i]->geometry = core::BoolGeometry{names.resolve(body_nodes[i], "BoolBodyA", context),
+                                               names.resolve(body_nodes[i], "BoolBodyB", context)};
   check_rigid(bodies, body_nodes, scene, context);
   return components;
 }

@@ -178,14 +178,6 @@ void echo_loads(XmlWriter& w, const core::BodyInput& body) {
   for (const core::FixedLayer& layer : body.fixed_layers) echo_fixed_layer(w, "LocalBoundaryCond", layer);
 }
 
-const std::string& body_name(const core::Scene& scene, std::size_t number) {
-  for (const core::ComponentInput& component : scene.components) {
-    if (number < component.bodies.size()) return component.bodies[number].name;
-    number -= component.bodies.size();
-  }
-  return scene.components.front().bodies.front().name;
-}
-
 void echo_body(XmlWriter& w, const core::BodyInput& body, const core::Scene& scene) {
   const auto scope = w.element("Body");
   w.text("name", body.name);
@@ -196,8 +188,8 @@ void echo_body(XmlWriter& w, const core::BodyInput& body, const core::Scene& sce
   w.flag("ForBoolBody", body.for_bool);
   if (const auto* difference = std::get_if<core::BoolGeometry>(&body.geometry)) {
     w.text("BoolType", "subtract");
-    w.text("BoolBodyA", body_name(scene, difference->minuend_body));
-    w.text("BoolBodyB", body_name(scene, difference->subtrahend_body));
+    w.text("BoolBodyA", core::body_at(scene, difference->minuend).name);
+    w.text("BoolBodyB", core::body_at(scene, difference->subtrahend).name);
   } else {
     const auto geometry = w.element("Geometry");
     std::visit(GeometryEcho{w}, body.geometry);

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <span>
 #include <string_view>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
-#include "io/input/boxes.hpp"
+#include "core/discretise/solid_box.hpp"
 #include "io/input/text.hpp"
 
 namespace mpm::io {
@@ -22,6 +23,8 @@ struct Place {
   const Node& node;
   const MaterialInput* material = nullptr;
   const core::BodyInput* body = nullptr;
+  /// Operands of the Bool bodies.
+  const std::unordered_set<const core::BodyInput*>* operands = nullptr;
 
   const core::LawInput& strength() const { return material->strength; }
   double eos(std::string_view name) const { return material->eos ? material->eos->value_or(name, 0) : 0; }
@@ -79,6 +82,8 @@ bool all_zero(const Place& at) {
          });
 }
 
+bool operand(const Place& at) { return at.body->for_bool; }
+
 bool nothing_explodes(const Place& at) {
   return !any_body(at.scene, [&](const core::BodyInput& body) {
     const core::LawInput& law = material_of(at.scene, body).strength;
@@ -117,6 +122,7 @@ struct Rule {
 
 const std::vector<Rule>& rules() {
   static constexpr std::string_view no_contact = "acts in contact only, and Contact is off";
+  static constexpr std::string_view no_part = "an operand of Bool bodies takes no part in the run";
   static const std::vector<Rule> table{
       {"Material", {}, unused_material, "no body is made of this material"},
       {"Material/StrengthModel",
@@ -208,6 +214,19 @@ const std::vector<Rule>& rules() {
       {"Friction", {}, contact_is_off, no_contact},
       {"WorkPlane", {}, unused_plane, "no body names this work plane"},
       {"Component", {"normal_vector_weight"}, contact_is_off, no_contact},
+      {"Component/Body",
+       {"ForBoolBody"},
+       [](const Place& at) { return operand(at) && !at.operands->contains(at.body); },
+       "no Bool body names this body, and it is no part of the run"},
+      {"Component/Body", {"density"}, operand, "the Bool body's own density holds"},
+      {"Component/Body/InitialVelocity", {}, operand, no_part},
+      {"Component/Body/InitialTemperature", {}, operand, no_part},
+      {"Component/Body/PrescribedVelocity", {}, operand, no_part},
+      {"Component/Body/PrescribedAcceleration", {}, operand, no_part},
+      {"Component/Body/HarmExcit", {}, operand, no_part},
+      {"Component/Body/Traction", {}, operand, no_part},
+      {"Component/Body/ConstrainRigidPosition", {}, operand, no_part},
+      {"Component/Body/BodyContrl", {}, operand, no_part},
       {"Component/Body/InitialVelocity",
        {"vx", "vy", "vz"},
        [](const Place& at) { return at.body->prescribed_velocity.has_value(); },
@@ -288,7 +307,13 @@ std::vector<std::string> asked(const Node& node, const Rule& rule) {
 
 class Walk {
  public:
-  explicit Walk(const Scene& scene) : scene_(scene), times_(rules().size()), notes_(rules().size()) {}
+  explicit Walk(const Scene& scene) : scene_(scene), times_(rules().size()), notes_(rules().size()) {
+    for (const core::ComponentInput& component : scene.components)
+      for (const core::BodyInput& body : component.bodies)
+        if (const auto* difference = std::get_if<core::BoolGeometry>(&body.geometry))
+          operands_.insert(
+              {&core::body_at(scene, difference->minuend), &core::body_at(scene, difference->subtrahend)});
+  }
 
   void element(const Node& node, const std::string& path, const MaterialInput* material,
                const core::BodyInput* body) {
@@ -299,7 +324,7 @@ class Walk {
     }
     if (path == "Component/Body") body = &component_->bodies[bodies_++];
     for (std::size_t i = 0; i < rules().size(); ++i)
-      if (rules()[i].path == path) apply(i, {scene_, node, material, body});
+      if (rules()[i].path == path) apply(i, {scene_, node, material, body, &operands_});
     for (const ElementSpec& child : node.spec().children)
       for (const Node& n : node.children(child.name))
         element(n, path.empty() ? child.name : path + "/" + child.name, material, body);
@@ -340,6 +365,7 @@ class Walk {
   }
 
   const Scene& scene_;
+  std::unordered_set<const core::BodyInput*> operands_;
   std::vector<int> times_;
   std::vector<core::Diagnostic> notes_;
   std::size_t materials_ = 0, components_ = 0, bodies_ = 0;
@@ -349,13 +375,13 @@ class Walk {
 /// Two bodies of different components that are less than a cell apart at the start, as far as boxes tell.
 std::string touching(const Scene& scene) {
   struct Item {
-    Box box;
+    core::SolidBox box;
     std::size_t component;
     const std::string* name;
   };
   std::vector<Item> items;
   core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
-    const Box box = box_of(body, scene);
+    const core::SolidBox box = core::solid_box(scene, body);
     if (!box.empty()) items.push_back({box, static_cast<std::size_t>(component), &body.name});
   });
   std::ranges::sort(items, {}, [](const Item& item) { return item.box.lower[0]; });

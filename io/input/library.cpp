@@ -236,8 +236,8 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-bool implemented(const std::vector<core::TypeInfo>& types, std::string_view name) {
-  return std::ranges::any_of(types, [&](const core::TypeInfo& t) { return t.name == name && t.implemented; });
+bool knows(const std::vector<core::TypeInfo>& types, std::string_view name) {
+  return std::ranges::find(types, name, &core::TypeInfo::name) != types.end();
 }
 
 }  // namespace
@@ -319,7 +319,7 @@ std::string library_listing(const Library& library, const core::Catalogue& catal
     const auto add = [&](std::string_view name, const std::vector<core::TypeInfo>& types) {
       if (name.empty()) return;
       laws.append(laws.empty() ? ": " : ", ").append(name);
-      if (!implemented(types, name)) laws.append(" (not implemented yet)");
+      if (!knows(types, name)) laws.append(" (not a law of this program)");
     };
     add(entry.strength, catalogue.strength);
     add(entry.eos, catalogue.eos);

@@ -50,6 +50,7 @@ core::Scene build(const Node& root, const BuildContext& context) {
   scene.grid = build_grid(root, context);
   scene.contact = build_contact(root);
   scene.components = build_components(root, scene, context);
+  check_shapes(root, scene, context);
   scene.detonations = build_detonations(root, context);
   scene.solution = build_solution(root, context);
   scene.output = build_output(root, scene.solution.end_time, context);

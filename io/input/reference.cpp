@@ -86,8 +86,7 @@ std::vector<std::string> shortest(const std::vector<std::string>& types,
 
 /// Attributes that many types share, then one table for each type with what is its own.
 std::string law_tables(const ElementSpec& element, const core::Catalogue& catalogue) {
-  const AttributeSpec& type_row = element.attributes.front();
-  const std::vector<std::string>& all = type_row.range.words;
+  const std::vector<std::string>& all = element.attributes.front().range.words;
   const auto shared = [&](const AttributeSpec& a) { return a.for_types.empty() || a.for_types.size() >= 4; };
   std::vector<AttributeSpec> common;
   for (const AttributeSpec& a : element.attributes) {
@@ -99,10 +98,8 @@ std::string law_tables(const ElementSpec& element, const core::Catalogue& catalo
   for (const AttributeSpec& a : common) rows.push_back(&a);
   std::string text = table(rows, true);
   for (const std::string& type : all) {
-    const bool later = std::ranges::find(type_row.later_values, type) != type_row.later_values.end();
     const std::string summary = summary_of(catalogue, element.laws, type);
-    text += fmt::format("`type=\"{}\"`{}{}\n\n", type, later ? " (not yet)" : "",
-                        summary.empty() ? "" : ": " + summary);
+    text += fmt::format("`type=\"{}\"`{}\n\n", type, summary.empty() ? "" : ": " + summary);
     rows.clear();
     for (const AttributeSpec& a : element.attributes)
       if (!shared(a) && a.applies_to(type)) rows.push_back(&a);

@@ -197,6 +197,9 @@ ElementSpec parse_element(const Document& document, const XmlElement& element, D
       mistakes.add(child.line, child.name, fmt::format("described twice in <{}>", spec.name));
     spec.children.push_back(parse_element(document, child, mistakes));
   }
+  if (spec.laws != LawFamily::none &&
+      std::ranges::find(spec.attributes, "type", &AttributeSpec::name) == spec.attributes.end())
+    mistakes.add(element.line, element.name, "has laws, so it needs the attribute 'type' that chooses one");
   return spec;
 }
 

@@ -1,5 +1,5 @@
-// The input language as data: what io/input/Specification.xml says, with the laws' own parameter tables
-// merged in. Its notation is described at the head of that file.
+// The input language as data: what io/input/Specification.xml says, and the laws of the catalogue with their
+// parameters. The notation is described at the head of that file.
 #pragma once
 
 #include <limits>
@@ -81,12 +81,14 @@ struct ElementSpec {
 /// Reads the notation. Throws core::InputErrors with every mistake in it, which `file` is named for.
 ElementSpec parse_specification(std::string_view xml, const std::string& file = "Specification.xml");
 
-/// The built-in Specification.xml; the root is PeneBlast.
+/// The built-in Specification.xml, without the laws; the root is PeneBlast.
 const ElementSpec& specification();
 
-/// The language that a program with these laws reads: for types that the catalogue implements, its parameters
-/// replace the Specification's; types that only the Specification knows are marked as not implemented yet;
-/// types that only the catalogue knows are added.
+/// Adds the catalogue's laws to the elements that have `laws`, at any depth: their names to the words of the
+/// attribute `type`, their parameters to the attributes.
+void add_laws(ElementSpec& element, const core::Catalogue& catalogue);
+
+/// The language that a program with these laws reads.
 ElementSpec language(const core::Catalogue& catalogue);
 
 /// `a number greater than 0`, `one of a, b, c` ...

@@ -104,11 +104,13 @@ class Finder {
 
 }  // namespace
 
-UserSpecification read_user_specification(const std::filesystem::path& file) {
+UserSpecification read_user_specification(const std::filesystem::path& file,
+                                          const core::Catalogue& catalogue) {
   UserSpecification read{file.string(), parse_specification(read_bytes(file), file.string())};
   if (read.root.name != specification().name)
     throw core::InputErrors(core::SourceLocation{read.file, 0}, read.root.name,
                             fmt::format("the root of a Specification is <{}>", specification().name));
+  add_laws(read.root, catalogue);
   return read;
 }
 

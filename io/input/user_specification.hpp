@@ -17,8 +17,10 @@ struct UserSpecification {
   ElementSpec root;
 };
 
-/// Throws core::InputErrors with every mistake in the file, by its line.
-UserSpecification read_user_specification(const std::filesystem::path& file);
+/// Elements with `laws` get those of the catalogue. Throws core::InputErrors with every mistake in the file,
+/// by its line.
+UserSpecification read_user_specification(const std::filesystem::path& file,
+                                          const core::Catalogue& catalogue);
 
 /// The program's language and what the user's Specification has beyond it: elements, attributes, and words
 /// among an attribute's values.

@@ -18,7 +18,7 @@ inline constexpr int solid_number<Polynomial2> = 2;
 template <>
 inline constexpr int solid_number<Gruneisen> = 3;
 
-using EquationsOfState = LawList<Gruneisen, Polynomial, Polynomial2, Jwl, HolmquistJohnsonCookBulk,
-                                 PAlpha<Polynomial>, PAlpha<Polynomial2>, PAlpha<Gruneisen>>;
+using EquationsOfState = LawList<Polynomial, Polynomial2, Jwl, Gruneisen, PAlpha<Polynomial>,
+                                 PAlpha<Polynomial2>, PAlpha<Gruneisen>, HolmquistJohnsonCookBulk>;
 
 }  // namespace mpm::physics

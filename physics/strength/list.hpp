@@ -22,8 +22,9 @@
 
 namespace mpm::physics {
 
-using StrengthModels = LawList<IsoElastic, CauchyElastic, ElaPlastic, IsoHarden, SimJohnsonCook, JohnsonCook,
-                               Null, HighExpBurn, HolmquistJohnsonCook, RHT, JH2, DruckerPrager, DFFoam,
-                               Gurson, MooneyRivlin, Elastic1D, LinHarElaPlastic1D, Rigid>;
+using StrengthModels =
+    LawList<IsoElastic, CauchyElastic, Elastic1D, ElaPlastic, IsoHarden, LinHarElaPlastic1D, JohnsonCook,
+            SimJohnsonCook, Null, HighExpBurn, HolmquistJohnsonCook, MooneyRivlin, Rigid, RHT, JH2,
+            DruckerPrager, DFFoam, Gurson>;
 
 }  // namespace mpm::physics

@@ -9,12 +9,12 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// A scene of one component with these bodies, and last a Bool body: the first minus the second.
+/// A scene of two components with these bodies, and last a Bool body: the first minus the second.
 Scene difference(std::vector<BodyInput> bodies) {
   Scene scene;
-  bodies.push_back(body(BoolGeometry{0, 1}));
+  for (BodyInput& operand : bodies) operand.for_bool = true;
+  bodies.push_back(body(BoolGeometry{{0, 0}, {1, 0}}));
   bodies.back().name = "rest";
-  // Over two components: numbers count through both.
   scene.components.resize(2);
   scene.components[0].bodies.push_back(bodies.front());
   scene.components[1].bodies.assign(bodies.begin() + 1, bodies.end());
@@ -82,29 +82,39 @@ TEST_CASE("Bool: points take away what is within half a spacing", "[discretise]"
 
 TEST_CASE("Bool: nothing left, and a body made of itself", "[discretise]") {
   const BodyInput cube = body(block(1, {0, 0, 0}, {10, 10, 10}));
-  CHECK_THROWS_WITH(rest(difference({cube, cube})), Contains("`rest` has no particles"));
+  CHECK_THROWS_WITH(
+      rest(difference({cube, cube})),
+      "case.xmp:7: <Body BoolBodyB=\"bar\">: body `rest`: the body has no particles: none of body "
+      "'bar' lies outside this one");
   Scene scene = difference({cube, cube});
-  scene.components[1].bodies[1].geometry = BoolGeometry{0, 2};
+  scene.components[1].bodies[1].geometry = BoolGeometry{{0, 0}, {1, 1}};
+  scene.components[1].bodies[1].for_bool = true;
   CHECK_THROWS_WITH(rest(scene),
-                    "case.xmp:7: <Body>: Bool body `rest` is made of itself, through its operands");
+                    "case.xmp:7: <Body BoolBodyB=\"rest\">: body `rest`: the body is made of itself: rest -> "
+                    "rest; expected operands that do without it");
 }
 
 TEST_CASE("impossible geometries are refused by their attributes' names", "[discretise]") {
   CHECK(complaint(block(0, {0, 0, 0}, {1, -1, 1})) ==
-        "case.xmp:7: <Geometry dp=\"0\">: body `bar`: expected a number above 0\n"
-        "case.xmp:7: <Geometry ly=\"-1\">: body `bar`: expected a number above 0");
+        "case.xmp:7: <Geometry dp=\"0\">: body `bar`: expected a number greater than 0\n"
+        "case.xmp:7: <Geometry ly=\"-1\">: body `bar`: expected a number greater than 0");
   CHECK_THAT(complaint(block(std::nan(""), {0, 0, 0}, {1, 1, 1})), Contains("dp=\"nan\""));
-  CHECK_THAT(complaint(ball(0.1, 1, 1)), Contains("0 <= Inner_Radius < Outer_Radius"));
+  CHECK_THAT(complaint(ball(0.1, 1, 1)),
+             Contains("Outer_Radius=\"1\"") && Contains("expected more than Inner_Radius, 1"));
   SphereGeometry wide = ball(0.1, 1);
   wide.angle = 361;
-  CHECK_THAT(complaint(wide), Contains("angle=\"361\"") && Contains("0 < angle <= 360"));
+  CHECK_THAT(complaint(wide), Contains("angle=\"361\"") && Contains("expected a number in (0, 360]"));
   CylinderGeometry tube = cylinder(0.1, 1, 1);
   tube.top_inner_radius = 2;
-  CHECK_THAT(complaint(tube), Contains("Top_Inner_Radius=\"2\""));
+  CHECK_THAT(complaint(tube),
+             Contains("Top_Outer_Radius=\"1\"") && Contains("expected more than Top_Inner_Radius, 2"));
   OgiveGeometry blunt = ogive(0.1, 0.1);
   blunt.ogive_radius = 1;
-  CHECK_THAT(complaint(blunt), Contains("Ogive_Radius >= End_Radius"));
-  CHECK_THAT(complaint(ball(1, 0.5)), Contains("body `bar` has no particles"));
-  CHECK_THAT(complaint(BarLinesGeometry{}), Contains("known but not implemented yet"));
-  CHECK_THAT(complaint(HexahedronBlockGeometry{}), Contains("known but not implemented yet"));
+  CHECK_THAT(complaint(blunt), Contains("expected at least End_Radius, 2"));
+  CHECK_THAT(complaint(ball(1, 0.5)), Contains("body `bar`: the body has no particles"));
+  BarLinesGeometry bars;
+  bars.expand_direction = 1;
+  CHECK_THAT(complaint(bars), Contains("known but not implemented yet"));
+  CHECK_THAT(complaint(HexahedronBlockGeometry{block(1, {0, 0, 0}, {1, 1, 1})}),
+             Contains("known but not implemented yet"));
 }

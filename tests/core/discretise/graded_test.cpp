@@ -121,8 +121,10 @@ TEST_CASE("shells: cell volumes add up to the ball's volume, spacing close to dp
   SphereGeometry hollow = polar(ball(0.1, 1.03, 0.4));
   CHECK(volume(all(hollow)) == Approx(4 * pi / 3 * (1.03 * 1.03 * 1.03 - 0.064)).epsilon(1e-12));
   hollow.angle = 77;
+  CHECK(volume(all(hollow)) == Approx(4 * pi / 3 * (1.03 * 1.03 * 1.03 - 0.064) * 77 / 360).epsilon(1e-12));
+  hollow.angle = 90;
   hollow.upper_half = true;
-  CHECK(volume(all(hollow)) == Approx(2 * pi / 3 * (1.03 * 1.03 * 1.03 - 0.064) * 77 / 360).epsilon(1e-12));
+  CHECK(volume(all(hollow)) == Approx(pi / 6 * (1.03 * 1.03 * 1.03 - 0.064)).epsilon(1e-12));
   double smallest = 1;
   double largest = 0;
   double second_moment = 0;

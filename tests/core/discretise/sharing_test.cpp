@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/discretise/make_source.hpp"
 #include "tests/core/discretise/support.hpp"
 
 using namespace mpm::core;
@@ -135,7 +136,7 @@ TEST_CASE("absurd numbers of particles are answered without making them", "[disc
                                                         {block(1e-100, {0, 0, 0}, {1, 1, 1}), -1}};
   for (const auto& [geometry, expected] : absurd) {
     INFO(geometry.index());
-    const auto from = source(geometry);
+    const auto from = make_unchecked_source({}, body(geometry));
     CHECK(from->identities() >= identity_limit);
     CHECK(from->units() < identity_limit);
     Seeds seeds;

@@ -1,4 +1,4 @@
-// The notation of Specification.xml, and how the laws' tables are merged into it.
+// The notation of Specification.xml, and the laws in the language.
 
 #include <algorithm>
 #include <cstdlib>
@@ -55,51 +55,70 @@ TEST_CASE("mistakes in the specification are found when it is read") {
         "<E spec='REQUIRED' attribute1='a, REQUIRED, DOUBLE, x:y'/>", "<E spec='REQUIRED' default1='1'/>",
         "<E spec='REQUIRED' colour='red'/>", "<E", "<E/>", "<E spec='REQUIREDX'/>",
         "<E spec='REQUIRED, STRING'/>", "<E spec='REQUIRED' attribute1='a, REQUIRED, DOUBLE, 0:1, 2:3'/>",
-        "<E spec='REQUIRED'><F spec='OPTIONAL'/><F spec='OPTIONAL'/></E>"})
+        "<E spec='REQUIRED'><F spec='OPTIONAL'/><F spec='OPTIONAL'/></E>",
+        "<E spec='REQUIRED' laws='plastic' attribute1='type, REQUIRED, STRING'/>",
+        "<E spec='REQUIRED' laws='strength' attribute1='kind, REQUIRED, STRING'/>"})
     CHECK_THROWS_AS(io::parse_specification(wrong), core::InputErrors);
 }
 
-TEST_CASE("laws' tables replace the rows of the types that they implement") {
+TEST_CASE("types and attributes of laws are those of the catalogue") {
   const io::ElementSpec root = io::language(test::small_catalogue());
   const io::ElementSpec& strength = *root.child("Material")->child("StrengthModel");
+  CHECK(strength.attribute("type", {})->range.words ==
+        std::vector<std::string>{"IsoHarden", "JohnsonCook", "Null", "Homemade"});
   CHECK(strength.attribute("strength", "Homemade")->required);
+  CHECK(strength.attribute("strength", "IsoHarden") == nullptr);
   CHECK(strength.attribute("Poisson", "IsoHarden")->range.max == 0.5);
-  CHECK(strength.attribute("Poisson", "IsoHarden")->range.min == 0);    // of the table
-  CHECK(strength.attribute("Poisson", "ElaPlastic")->range.min == -1);  // of the Specification
-  CHECK(strength.attribute("SpecHeat", "IsoHarden")->later);            // only the Specification knows it
-  CHECK_FALSE(strength.attribute("SpecHeat", "IsoHarden")->required);
-  CHECK(strength.attribute("Young", "Null")->range.words.empty());
+  CHECK(strength.attribute("Young", "IsoHarden")->required);
+  CHECK_FALSE(strength.attribute("Young", "Null")->required);  // of the common table
+  CHECK(strength.attribute("SpecHeat", "IsoHarden") == nullptr);
   CHECK(root.child("Material")->child("FailureModel")->attribute("Erosion", "Pmin") != nullptr);
 }
 
-/// Whatever the program implements is part of the language: its types and parameters are in the
-/// Specification.
-void check_family(std::string_view element, const std::vector<core::TypeInfo>& types) {
-  const io::ElementSpec& spec = *io::specification().child("Material")->child(element);
-  const std::vector<std::string>& words = spec.attribute("type", {})->range.words;
-  for (const core::TypeInfo& type : types) {
-    INFO(element << " " << type.name);
-    CHECK(std::ranges::find(words, type.name) != words.end());
-    for (const core::ParameterInfo& p : type.parameters) {
-      INFO(p.name);
-      CHECK(spec.attribute(p.name, type.name) != nullptr);
-      CHECK_FALSE(p.meaning.empty());
+TEST_CASE("the Specification itself says nothing about a law") {
+  for (const char* element : {"StrengthModel", "EquationOfState", "FailureModel"}) {
+    INFO(element);
+    const io::ElementSpec& spec = *io::specification().child("Material")->child(element);
+    CHECK(spec.attribute("type", {})->range.words.empty());
+    CHECK(spec.together.empty());
+    for (const io::AttributeSpec& a : spec.attributes) {
+      INFO(a.name);
+      const bool of_the_element = a.name == "type" || a.name == "Erosion";
+      CHECK((of_the_element && a.for_types.empty()));
     }
   }
 }
 
-TEST_CASE("the program's laws are in the Specification") {
+TEST_CASE("every law of the program has a word, and every parameter a meaning, in the language") {
   const core::Catalogue catalogue = physics::catalogue();
-  check_family("StrengthModel", catalogue.strength);
-  check_family("EquationOfState", catalogue.eos);
-  check_family("FailureModel", catalogue.failure);
+  const io::ElementSpec root = io::language(catalogue);
+  const auto check = [&](std::string_view element, const std::vector<core::TypeInfo>& types) {
+    const io::ElementSpec& spec = *root.child("Material")->child(element);
+    const std::vector<std::string>& words = spec.attribute("type", {})->range.words;
+    CHECK(words.size() == types.size());
+    for (const core::TypeInfo& type : types) {
+      INFO(element << " " << type.name);
+      CHECK(std::ranges::find(words, type.name) != words.end());
+      for (const core::ParameterInfo& p : type.parameters) {
+        INFO(p.name);
+        const io::AttributeSpec* row = spec.attribute(p.name, type.name);
+        REQUIRE(row != nullptr);
+        CHECK(row->required == p.required);
+        CHECK((row->range.min == p.min && row->range.max == p.max));
+        CHECK_FALSE(row->meaning.empty());
+      }
+    }
+  };
+  check("StrengthModel", catalogue.strength);
+  check("EquationOfState", catalogue.eos);
+  check("FailureModel", catalogue.failure);
 }
 
 TEST_CASE("the reference names every attribute") {
   const std::string reference = io::keyword_reference(test::small_catalogue());
   for (const std::string_view piece :
        {"## Grid\n", "### Grid / Cell / XMin\n", "`DamageRandom`", "`NotConsiderVisForCp`",
-        "`type=\"Homemade\"`: a law that only", "`type=\"RHT\"` (not yet)", "**Not implemented yet.**",
+        "`type=\"Homemade\"`: a law of these tests", "**Not implemented yet.**",
         "`RectangluarForMembrane` is accepted for"})
     CHECK(reference.find(piece) != reference.npos);
 }

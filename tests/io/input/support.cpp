@@ -34,8 +34,6 @@ core::ParameterInfo group(std::string_view name) {
 }
 
 core::Catalogue make_catalogue() {
-  core::ParameterInfo conductivity = optional("CoefficientOfThermalConductivity", 0);
-  conductivity.implemented = false;
   core::ParameterInfo poisson = positive("Poisson");
   poisson.max = 0.5;
   poisson.max_open = true;
@@ -48,18 +46,16 @@ core::Catalogue make_catalogue() {
   pmin.max = 0;
   pmin.max_open = true;
   core::Catalogue c;
-  c.common_strength = {optional("bq1", 1.5), optional("Young", core::no_default), failed_type, conductivity};
+  c.common_strength = {optional("bq1", 1.5), optional("Young", core::no_default), failed_type};
   c.common_eos = {optional("C0", core::no_default), optional("E0", 0)};
   c.strength = {{"IsoHarden",
                  "linear hardening",
-                 {positive("Young"), poisson, positive("Yield0"), positive("TangMod")},
-                 true},
-                {"JohnsonCook", "", {positive("Young"), poisson, group("D1"), group("D2")}, true},
-                {"Null", "fluid", {optional("mu", 0)}, true},
-                {"RHT", "", {}, false},
-                {"Homemade", "a law that only the catalogue knows", {positive("strength")}, true}};
-  c.eos = {{"Gruneisen", "shock", {positive("C0"), positive("S1"), positive("gamma0")}, true}};
-  c.failure = {{"Pmin", "", {pmin}, true}};
+                 {positive("Young"), poisson, positive("Yield0"), positive("TangMod")}},
+                {"JohnsonCook", "", {positive("Young"), poisson, group("D1"), group("D2")}},
+                {"Null", "fluid", {optional("mu", 0)}},
+                {"Homemade", "a law of these tests alone", {positive("strength")}}};
+  c.eos = {{"Gruneisen", "shock", {positive("C0"), positive("S1"), positive("gamma0")}}};
+  c.failure = {{"none", "", {}}, {"Pmin", "", {pmin}}};
   return c;
 }
 

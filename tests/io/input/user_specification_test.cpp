@@ -109,7 +109,7 @@ TEST_CASE("mistakes in the user's Specification are named by their lines, all at
                                  "<PeneBlast spec='REQUIRED'\n  attribute1='version, ALWAYS, STRING'\n"
                                  "  attribute2='x, REQUIRED, FLOAT'>\n<Grid/>\n</PeneBlast>\n");
   try {
-    io::read_user_specification(file);
+    io::read_user_specification(file, {});
     FAIL("accepted");
   } catch (const core::InputErrors& errors) {
     REQUIRE(errors.diagnostics().size() == 3);
@@ -121,9 +121,9 @@ TEST_CASE("mistakes in the user's Specification are named by their lines, all at
     CHECK(errors.diagnostics()[2].line == 4);
     CHECK(errors.diagnostics()[2].message == "attribute 'spec' is missing");
   }
-  CHECK_THROWS_WITH(io::read_user_specification(folder.write("S.xml", "<Grid spec='REQUIRED'/>")),
+  CHECK_THROWS_WITH(io::read_user_specification(folder.write("S.xml", "<Grid spec='REQUIRED'/>"), {}),
                     Catch::Contains("the root of a Specification is <PeneBlast>"));
-  CHECK_THROWS_WITH(io::read_user_specification(folder / "none.xml"), Catch::Contains("no such file"));
+  CHECK_THROWS_WITH(io::read_user_specification(folder / "none.xml", {}), Catch::Contains("no such file"));
 }
 
 }  // namespace
