@@ -178,9 +178,9 @@ class Contestant {
   Contestant(core::Scene scene, int warm_up) : bar_(endless(std::move(scene))) {
     for (int i = 0; i < warm_up; ++i) bar_.stepper->step();
   }
-  /// ns per particle-step over one tidy interval.
+  /// ns per particle-step over one sorting interval.
   double run() {
-    constexpr int steps = core::Stepper::tidy_interval;
+    constexpr int steps = core::Stepper::sorting_interval;
     const double particles = bar_.particles();
     const Seconds before = Seconds::now();
     for (int i = 0; i < steps; ++i) bar_.stepper->step();
@@ -239,7 +239,7 @@ void write_csv(const std::string& path, const Options& o, const std::vector<Row>
                const std::vector<std::pair<std::string, std::string>>& left_out) {
   Facts facts = machine_facts();
   facts.emplace_back("case", fmt::format("{:.0f} particles, {} pairs of {} steps", o.particles, o.pairs,
-                                         core::Stepper::tidy_interval));
+                                         core::Stepper::sorting_interval));
   for (const auto& [name, why] : left_out) facts.emplace_back("left out", name + ": " + why);
   const TableFile file(path, facts);
   fmt::print(file.handle,

@@ -54,9 +54,9 @@ struct Repeat {
   std::array<core::Spread, TimedCommunication::parts> parts;
 };
 
-/// Steps of one tidy interval. `by_processor`: more threads than cores. Collective.
+/// Steps of one sorting interval. `by_processor`: more threads than cores. Collective.
 Repeat repeat(BarRun& bar, TimedCommunication& communication, int threads, bool by_processor) {
-  constexpr int steps = core::Stepper::tidy_interval;
+  constexpr int steps = core::Stepper::sorting_interval;
   communication.reductions.any(false);  // all start together
   communication.take();
   const double process = seconds_of(CLOCK_PROCESS_CPUTIME_ID);

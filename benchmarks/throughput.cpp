@@ -81,7 +81,7 @@ Json measure(const BarInput& input, const Options& o) {
   Stopwatch watch(*bar.stepper);
   watch.run(o.warm_up);
   const double n = bar.particles();
-  constexpr int steps = core::Stepper::tidy_interval;
+  constexpr int steps = core::Stepper::sorting_interval;
   Series cores, wall;
   std::vector<double> best_phases;
   double spent = 0;

@@ -1,6 +1,6 @@
-// What one rank holds of a run: the grid's bricks with their particles, the bodies, the clock and the books.
+// What one rank holds of a run: the grid's bricks with their particles, the bodies, the clock and the ledger.
 //
-// Particles are found as grid -> brick -> cohort (one per body) -> blocks of eight. Everything that a restart
+// Particles are found as grid -> brick -> tile (one per body) -> blocks of eight. Everything that a restart
 // file must carry is reachable from here, and nothing else is.
 #pragma once
 
@@ -41,7 +41,7 @@ struct Clock {
 };
 
 /// What has come in and gone out since time zero. Exact sums: the same on any ranks.
-struct Books {
+struct Ledger {
   ExactSum external_work;  ///< by gravity, prescribed velocities and damping; energy
   ExactSum removed_mass;   ///< of particles that left the grid or were eroded
   ExactSum removed_kinetic;
@@ -61,7 +61,7 @@ struct Model {
   std::vector<Body> bodies;
   std::unique_ptr<BrickGrid> grid;
   Clock clock;
-  Books books;
+  Ledger ledger;
   double initial_energy = 0;  ///< kinetic + internal at time zero
   std::uint64_t next_identity = 0;
 

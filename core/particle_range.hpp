@@ -33,26 +33,26 @@ class BlockRange {
     }
 
     value_type operator*() const {
-      const Cohort& tile = brick_->cohorts[tile_];
+      const ParticleTile& tile = brick_->tiles[tile_];
       return {tile.body, &pool_->layout(), pool_->block(tile.blocks[block_]), tile.used_lanes(block_)};
     }
     Iterator& operator++() {
-      if (++block_ == brick_->cohorts[tile_].blocks.size()) find_tile(tile_ + 1);
+      if (++block_ == brick_->tiles[tile_].blocks.size()) find_tile(tile_ + 1);
       return *this;
     }
     bool operator==(std::default_sentinel_t) const { return brick_ == of_->bricks_.end(); }
 
    private:
     std::size_t first_tile() const {
-      const auto at = std::ranges::lower_bound(brick_->cohorts, of_->first_body_, {}, &Cohort::body);
-      return static_cast<std::size_t>(at - brick_->cohorts.begin());
+      const auto at = std::ranges::lower_bound(brick_->tiles, of_->first_body_, {}, &ParticleTile::body);
+      return static_cast<std::size_t>(at - brick_->tiles.begin());
     }
     /// The next tile of the bodies with particles, from this one of the brick on.
     void find_tile(std::size_t tile) {
       block_ = 0;
       while (brick_ != of_->bricks_.end()) {
-        for (tile_ = tile; tile_ < brick_->cohorts.size(); ++tile_) {
-          const Cohort& c = brick_->cohorts[tile_];
+        for (tile_ = tile; tile_ < brick_->tiles.size(); ++tile_) {
+          const ParticleTile& c = brick_->tiles[tile_];
           if (c.body >= of_->last_body_) break;
           if (c.blocks.empty()) continue;
           pool_ = of_->model_.bodies[static_cast<std::size_t>(c.body)].pool.get();

@@ -49,7 +49,7 @@ concept IsStrength = requires(const Law& law, StrengthPoint<double>& point) {
 };
 template <class Law>
 concept IsEos = requires(const Law& law, EosPoint<double>& point) {
-  law.line(point);
+  law.linearise(point);
 };
 template <class Law>
 concept IsFailure = requires(const Law& law, const FailurePoint<double>& point) {
@@ -116,10 +116,11 @@ class Registry {
   /// A law from outside. What is wrong with it goes to faults(), and the law is left out.
   template <class Law>
   Registry& add() {
-    static_assert(IsStrength<Law> || IsEos<Law> || IsFailure<Law>,
-                  "a law has template <class T> functions: a strength model `void update(StrengthPoint<T>&) "
-                  "const`, an equation of state `EosLine<T> line(EosPoint<T>&) const`, a failure model "
-                  "`core::MaskOf<T> fails(const FailurePoint<T>&) const`");
+    static_assert(
+        IsStrength<Law> || IsEos<Law> || IsFailure<Law>,
+        "a law has template <class T> functions: a strength model `void update(StrengthPoint<T>&) "
+        "const`, an equation of state `LinearisedPressure<T> linearise(EosPoint<T>&) const`, a failure model "
+        "`core::MaskOf<T> fails(const FailurePoint<T>&) const`");
     static_assert(
         requires { std::string_view(Law::name), std::string_view(Law::summary); },
         "a law has its word in the input and one line for the keyword reference: static constexpr "

@@ -102,15 +102,15 @@ std::optional<core::Geometry> translated(const core::Geometry& geometry, const c
 /// What made the particles of a restart file is in them: another input that says otherwise asks for something
 /// that would not happen. Throws InputErrors.
 void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
-  std::vector<core::Diagnostic> complaints;
+  std::vector<core::Diagnostic> faults;
   core::Scene then = now;
   const std::string text = io::to_text(now);
   const auto compare = [&](const core::SourceLocation& at, const char* element, const std::string& name,
                            bool differs = false) {
     if (!differs && io::to_text(then) == text) return;
-    complaints.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
-                          "differs from the input of the restart file, where the particles have it from; -rt "
-                          "may change Grid, Solution, Output and Deactive: restore it"});
+    faults.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
+                      "differs from the input of the restart file, where the particles have it from; -rt "
+                      "may change Grid, Solution, Output and Deactive: restore it"});
   };
   for (core::ComponentInput& component : then.components) {
     for (core::BodyInput& body : component.bodies) {
@@ -132,7 +132,7 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
   then.detonations = old.detonations;
   // One that is missing has no line; where it would stand is before the Grid.
   compare(now.detonations.empty() ? now.grid.source : now.detonations.front().source, "Detonation", "");
-  if (!complaints.empty()) throw core::InputErrors(complaints);
+  if (!faults.empty()) throw core::InputErrors(faults);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // mpm_check FILE...: checks input files, and the particle files that they name, without running them: what a
 // run would refuse before its first step for reasons in the input, and what the input states without effect.
-// Prints every complaint; exit code 0 when all files are right, 2 when any is not, 6 out of memory.
+// Prints every fault; exit code 0 when all files are right, 2 when any is not, 6 out of memory.
 
 #include <cstdio>
 #include <filesystem>
@@ -50,7 +50,7 @@ std::string summary(const core::Scene& scene) {
                      axes[2].cells, scene.solution.end_time);
 }
 
-/// What no description of the language says: materials, and all that a run sets up. Throws every complaint.
+/// What no description of the language says: materials, and all that a run sets up. Throws every fault.
 double make_everything(const core::Scene& scene, const Registry& registry) {
   return core::check_setup(std::make_shared<const core::Scene>(scene),
                            physics::make_materials(scene, registry), io::columns_for(scene.output));

@@ -94,10 +94,10 @@ int test(Settings& settings, const Registry& registry) {
   sample.cell_size = settings.cell_size > 0 ? settings.cell_size : in_units_of(choice, 1e-3, {.length = 1});
   int failed = 0;
   for (const physics::LawCheck& check : physics::law_checks()) {
-    const std::vector<std::string> complaints = check.complaints(sample, registry);
-    fmt::print("{:<7}{:<13}{}\n", complaints.empty() ? "passed" : "FAILED", check.name, check.statement);
-    for (const std::string& complaint : complaints) fmt::print("       {:<13}{}\n", "", complaint);
-    failed += complaints.empty() ? 0 : 1;
+    const std::vector<std::string> faults = check.failures(sample, registry);
+    fmt::print("{:<7}{:<13}{}\n", faults.empty() ? "passed" : "FAILED", check.name, check.statement);
+    for (const std::string& fault : faults) fmt::print("       {:<13}{}\n", "", fault);
+    failed += faults.empty() ? 0 : 1;
   }
   if (std::fflush(stdout) != 0) return 5;
   if (failed > 0)

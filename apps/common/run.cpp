@@ -302,7 +302,7 @@ class Run {
         save();
         restart_.done(model_.clock.time);
       }
-      if (stepper_->stop_agreed())
+      if (stepper_->stopping())
         return noted_signal() != 0 ? fmt::format("signal {}", noted_signal())
                                    : "asked to stop: signal or --max-wall-time";
       if (status_rows_reached()) return fmt::format("{} rows in the .sta file", outputs_->status_rows());
@@ -325,9 +325,9 @@ class Run {
 
   /// What had a defined answer instead of an ordinary one, in particles times steps. Collective.
   void say_what_was_counted() {
-    const core::MaterialEvents& events = model_.books.events;
+    const core::MaterialEvents& events = model_.ledger.events;
     std::int64_t counts[] = {events.failed,         events.negative_volume, events.volume_limited,
-                             events.undefined_root, events.unresolved,      model_.books.velocity_limited};
+                             events.undefined_root, events.unresolved,      model_.ledger.velocity_limited};
     static constexpr const char* words[] = {
         "failed",
         "would have had no volume and kept the old one",

@@ -41,7 +41,7 @@ void Watch::after_step(const core::Model& model, const core::Stepper::Incidents&
   for (int i = 0; i < 3; ++i) {
     Kind& kind = kinds_[i];
     kind.incidents += counts[i];
-    const bool all_named = kind.named.size() == core::Witnesses::most;
+    const bool all_named = kind.named.size() == core::OffendingParticles::most;
     if (counts[i] == 0 || all_named) continue;
     warn(kind, counts[i],
          core::first_of_all(ranks, i == 0   ? mine.negative
@@ -52,16 +52,17 @@ void Watch::after_step(const core::Model& model, const core::Stepper::Incidents&
 }
 
 /// `first`: of all ranks.
-void Watch::warn(Kind& kind, std::int64_t count, const core::Witnesses& first, const core::Model& model,
-                 io::Log& log) const {
+void Watch::warn(Kind& kind, std::int64_t count, const core::OffendingParticles& first,
+                 const core::Model& model, io::Log& log) const {
   const std::string when = fmt::format("step {}, time {:.6g}: ", model.clock.step, model.clock.time);
   if (warn_.level == core::WarnInput::Level::per_particle) {
     for (const auto& [identity, words] : first.words()) {
-      if (kind.named.size() == core::Witnesses::most || !kind.named.insert(identity).second) continue;
+      if (kind.named.size() == core::OffendingParticles::most || !kind.named.insert(identity).second)
+        continue;
       log.warn("{}{} {}", when, words, kind.words);
-      if (kind.named.size() == core::Witnesses::most)
-        log.warn("these were {} particles {}: from now on they are only counted", core::Witnesses::most,
-                 kind.words);
+      if (kind.named.size() == core::OffendingParticles::most)
+        log.warn("these were {} particles {}: from now on they are only counted",
+                 core::OffendingParticles::most, kind.words);
     }
     return;
   }

@@ -35,7 +35,7 @@ class Watch {
     std::set<double> named;      ///< identities, at level 1
     std::int64_t incidents = 0;  ///< of all ranks, particles times steps
   };
-  void warn(Kind& kind, std::int64_t count, const core::Witnesses& first, const core::Model& model,
+  void warn(Kind& kind, std::int64_t count, const core::OffendingParticles& first, const core::Model& model,
             io::Log& log) const;
   void check_energy(const core::Model& model, core::Reductions& ranks) const;
 

@@ -157,8 +157,9 @@ inline std::vector<PhaseCost> phase_costs(core::Scheme scheme, const Filling& fi
   // Every so many steps positions are read and, since hardly a brick stays in order, everything is moved.
   const double all_columns =
       position + velocity + mass + volume + deviator + pressures + energy + 1 + own_columns;
-  const double often = 1.0 / static_cast<double>(core::Stepper::tidy_interval);
-  costs.push_back({"tidy", all_columns * fill.line * often, all_columns * fill.line * often, 0, 0, 0});
+  const double often = 1.0 / static_cast<double>(core::Stepper::sorting_interval);
+  costs.push_back(
+      {"sort and prune", all_columns * fill.line * often, all_columns * fill.line * often, 0, 0, 0});
   return costs;
 }
 

@@ -29,7 +29,7 @@ class NumberCheck {
  public:
   explicit NumberCheck(const BodyInput& body) : body_(body) {
     dense_ = std::isfinite(body.density) && body.density > 0;
-    if (!dense_) complain({"Body", 0, "density", as_text(body.density), "expected a number greater than 0"});
+    if (!dense_) report({"Body", 0, "density", as_text(body.density), "expected a number greater than 0"});
     std::visit([this](const auto& geometry) { check(geometry); }, body.geometry);
   }
 
@@ -37,24 +37,24 @@ class NumberCheck {
 
  private:
   static std::string as_text(double value) { return fmt::format("{}", value); }
-  void complain(ShapeFault fault) { faults_.push_back(std::move(fault)); }
-  void complain(std::string_view attribute, double value, std::string message) {
-    complain({"Geometry", 0, std::string(attribute), as_text(value), std::move(message)});
+  void report(ShapeFault fault) { faults_.push_back(std::move(fault)); }
+  void report(std::string_view attribute, double value, std::string message) {
+    report({"Geometry", 0, std::string(attribute), as_text(value), std::move(message)});
   }
 
   void positive(std::string_view attribute, double value) {
-    if (!(std::isfinite(value) && value > 0)) complain(attribute, value, "expected a number greater than 0");
+    if (!(std::isfinite(value) && value > 0)) report(attribute, value, "expected a number greater than 0");
   }
   void not_negative(std::string_view attribute, double value) {
-    if (!(std::isfinite(value) && value >= 0)) complain(attribute, value, "expected a number of at least 0");
+    if (!(std::isfinite(value) && value >= 0)) report(attribute, value, "expected a number of at least 0");
   }
   void place(const Vec3<double>& position) {
     static constexpr std::array names{"x0", "y0", "z0"};
     for (std::size_t d = 0; d < 3; ++d)
-      if (!std::isfinite(position[d])) complain(names[d], position[d], "expected a number");
+      if (!std::isfinite(position[d])) report(names[d], position[d], "expected a number");
   }
   void angle(double value) {
-    if (!(value > 0 && value <= 360)) complain("angle", value, "expected a number in (0, 360]");
+    if (!(value > 0 && value <= 360)) report("angle", value, "expected a number in (0, 360]");
   }
   /// The distance of particles: their volume and mass are numbers, and not 0.
   void spacing(std::string_view attribute, double value) {
@@ -62,22 +62,22 @@ class NumberCheck {
     if (!(value > 0)) return;
     const double volume = value * value * value;
     if (!std::isnormal(volume) || (dense_ && !std::isnormal(volume * body_.density)))
-      complain(attribute, value,
-               "the volume or the mass of a particle with this distance from its neighbours is 0 or beyond "
-               "all numbers: choose other units");
+      report(attribute, value,
+             "the volume or the mass of a particle with this distance from its neighbours is 0 or beyond "
+             "all numbers: choose other units");
   }
   /// A wall between two radii. Both may be 0 where a cone ends in its tip.
   void wall(std::string_view inner_name, double inner, std::string_view outer_name, double outer, bool tip) {
     if (inner >= outer && outer >= 0 && !(tip && outer == 0 && inner == 0))
-      complain(outer_name, outer, fmt::format("expected more than {}, {}", inner_name, inner));
+      report(outer_name, outer, fmt::format("expected more than {}, {}", inner_name, inner));
   }
   /// Children of Geometry or a file: one of the two.
   void one_source(bool has_children, const std::string& file, std::string_view children) {
     if (has_children && !file.empty())
-      complain({"Geometry", 0, "file", file,
-                fmt::format("{} are given in the input too; expected one of the two ways", children)});
+      report({"Geometry", 0, "file", file,
+              fmt::format("{} are given in the input too; expected one of the two ways", children)});
     if (!has_children && file.empty())
-      complain({"Geometry", 0, {}, {}, fmt::format("expected {}, or file=\"...\"", children)});
+      report({"Geometry", 0, {}, {}, fmt::format("expected {}, or file=\"...\"", children)});
   }
 
   void check(const PointGeometry& points) {
@@ -85,10 +85,10 @@ class NumberCheck {
     for (std::size_t i = 0; i < points.points.size(); ++i) {
       const double mass = points.points[i].mass;
       if (!(std::isnormal(mass) && mass > 0))
-        complain({"Point", i, "mass", as_text(mass), "expected a number greater than 0"});
+        report({"Point", i, "mass", as_text(mass), "expected a number greater than 0"});
       for (std::size_t d = 0; d < 3; ++d)
         if (const double x = points.points[i].position[d]; !std::isfinite(x))
-          complain({"Point", i, std::string(1, "xyz"[d]), as_text(x), "expected a number"});
+          report({"Point", i, std::string(1, "xyz"[d]), as_text(x), "expected a number"});
     }
   }
   void check(const BlockGeometry& block) {
@@ -108,7 +108,7 @@ class NumberCheck {
       wall("Inner_Radius", ball.inner_radius, "Outer_Radius", ball.outer_radius, false);
     angle(ball.angle);
     if (ball.upper_half && std::isfinite(ball.angle) && ball.angle != 90)
-      complain("half", 1, fmt::format("needs angle=\"90\", not {}", ball.angle));
+      report("half", 1, fmt::format("needs angle=\"90\", not {}", ball.angle));
   }
   void check(const CylinderGeometry& c) {
     spacing("dp_bottom", c.bottom_spacing);
@@ -132,15 +132,15 @@ class NumberCheck {
     positive("End_Radius", ogive.end_radius);
     positive("Ogive_Radius", ogive.ogive_radius);
     if (ogive.ogive_radius > 0 && ogive.ogive_radius < ogive.end_radius)
-      complain("Ogive_Radius", ogive.ogive_radius,
-               fmt::format("expected at least End_Radius, {}: the arc starts at the rim of the base, in the "
-                           "direction of the axis; with less it would end before it reaches the axis",
-                           ogive.end_radius));
+      report("Ogive_Radius", ogive.ogive_radius,
+             fmt::format("expected at least End_Radius, {}: the arc starts at the rim of the base, in the "
+                         "direction of the axis; with less it would end before it reaches the axis",
+                         ogive.end_radius));
     if (ogive.end_radius > 0 && ogive.ogive_radius > most_slender * ogive.end_radius)
-      complain("Ogive_Radius", ogive.ogive_radius,
-               fmt::format("expected at most {} times End_Radius, {}; a Cylinder with Top_Outer_Radius=\"0\" "
-                           "makes a longer tip",
-                           most_slender, ogive.end_radius));
+      report("Ogive_Radius", ogive.ogive_radius,
+             fmt::format("expected at most {} times End_Radius, {}; a Cylinder with Top_Outer_Radius=\"0\" "
+                         "makes a longer tip",
+                         most_slender, ogive.end_radius));
     angle(ogive.angle);
   }
   template <std::size_t N>
@@ -152,12 +152,12 @@ class NumberCheck {
     for (std::size_t e = 0; e < mesh.elements.size(); ++e)
       for (std::size_t i = 0; i < N; ++i)
         if (const std::int64_t id = mesh.elements[e].nodes[i]; id > 0 && !ids.contains(id))
-          complain({"Element", e, fmt::format("id{}", i + first_id), fmt::format("{}", id),
-                    "there is no node of this number"});
+          report({"Element", e, fmt::format("id{}", i + first_id), fmt::format("{}", id),
+                  "there is no node of this number"});
   }
   void check(const BarLinesGeometry& bars) {
     if (bars.extend_direction >= 0 && bars.extend_direction == bars.expand_direction)
-      complain("expand_direction", bars.expand_direction, "expected another axis than extend_direction");
+      report("expand_direction", bars.expand_direction, "expected another axis than extend_direction");
   }
   template <class Geometry>
   void check(const Geometry&) {}  // nothing beyond the ranges of its attributes, or nothing of its own (Bool)
@@ -190,18 +190,18 @@ void check_operands(const Scene& scene, const BoolGeometry& difference, const Pa
   const auto check = [&](const char* attribute, BodyPlace place) {
     if (place.component == BodyPlace{}.component) return;  // the reader knows no body of this name
     const BodyInput& other = body_at(scene, place);
-    const auto complain = [&](std::string message) {
+    const auto report = [&](std::string message) {
       faults.push_back({"Body", 0, attribute, other.name, std::move(message)});
     };
     if (!made_of_particles(other.geometry))
-      complain(fmt::format("a body of type {} cannot be an operand; expected one of {}", other.type,
-                           fmt::join(operand_types, ", ")));
+      report(fmt::format("a body of type {} cannot be an operand; expected one of {}", other.type,
+                         fmt::join(operand_types, ", ")));
     else if (!other.for_bool)
-      complain(fmt::format("body '{}', on line {}, needs ForBoolBody=\"1\"", other.name, other.source.line));
+      report(fmt::format("body '{}', on line {}, needs ForBoolBody=\"1\"", other.name, other.source.line));
     if (!parts.circle().empty() &&
         parts.circle_by_subtrahend() == (attribute == std::string_view("BoolBodyB")))
-      complain(fmt::format("the body is made of itself: {}; expected operands that do without it",
-                           fmt::join(parts.circle(), " -> ")));
+      report(fmt::format("the body is made of itself: {}; expected operands that do without it",
+                         fmt::join(parts.circle(), " -> ")));
   };
   check("BoolBodyA", difference.minuend);
   check("BoolBodyB", difference.subtrahend);

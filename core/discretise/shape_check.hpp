@@ -24,7 +24,7 @@ struct ShapeFault {
 };
 
 /// What is wrong with the shape of one body; nothing about the operands of a Bool body but whether they can
-/// be operands. Values that are NaN bring complaints about themselves alone, so that a reader can leave out
+/// be operands. Values that are NaN bring faults about themselves alone, so that a reader can leave out
 /// what it has said already. Reads no files. Of a body that takes part, and whose first pieces are soon made,
 /// also whether it has any particle.
 std::vector<ShapeFault> shape_faults(const Scene& scene, const BodyInput& body);
@@ -32,7 +32,7 @@ std::vector<ShapeFault> shape_faults(const Scene& scene, const BodyInput& body);
 /// The same about a body and the operands that it is made of, placed at the lines of the bodies.
 std::vector<Diagnostic> shape_errors(const Scene& scene, const BodyInput& body);
 
-/// The complaint about a body that has no particles.
+/// The fault about a body that has no particles.
 Diagnostic no_particles(const Scene& scene, const BodyInput& body);
 
 /// Whether a body, or an operand that it is made of, is read from a file. The body must have no faults.

@@ -51,7 +51,7 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   for (std::size_t s = 0; s < owned.size(); ++s) {
     bricks[s].coord = owned[s];
     if (const Slot old = find(owned[s]); old != no_slot && old < this->owned()) {
-      bricks[s].cohorts = std::move(brick(old).cohorts);
+      bricks[s].tiles = std::move(brick(old).tiles);
     }
     slot.emplace(key_of(owned[s]), static_cast<Slot>(s));
   }
@@ -62,7 +62,7 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
     }
   }
   for ([[maybe_unused]] const Brick& b : bricks_)
-    assert(b.cohorts.empty() && "a brick with particles was dropped");
+    assert(b.tiles.empty() && "a brick with particles was dropped");
   bricks_ = std::move(bricks);
   ghosts_ = std::move(ghosts);
   slot_ = std::move(slot);

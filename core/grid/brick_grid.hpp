@@ -37,10 +37,10 @@ class AlignedDoubles {
 struct Brick {
   BrickCoord coord;
   std::array<Slot, neighbourhood> neighbour{};  ///< owned or ghost slots; no_slot where no brick exists
-  std::vector<Cohort> cohorts;                  ///< ascending by body; none is empty after migration
+  std::vector<ParticleTile> tiles;              ///< ascending by body; none is empty after migration
   std::size_t particles() const {
     std::size_t n = 0;
-    for (const Cohort& c : cohorts) n += c.count;
+    for (const ParticleTile& c : tiles) n += c.count;
     return n;
   }
 };

@@ -69,34 +69,34 @@ std::shared_ptr<BlockPool> BlockPools::of(const ColumnSet& columns) {
   return pools_.emplace_back(std::make_shared<BlockPool>(ColumnLayout(columns)));
 }
 
-std::uint32_t append(BlockPool& pool, Cohort& cohort, const double* columns) {
-  const std::uint32_t lane = cohort.count % block_lanes;
-  if (lane == 0) cohort.blocks.push_back(pool.allocate());
-  double* block = pool.block(cohort.blocks.back());
+std::uint32_t append(BlockPool& pool, ParticleTile& tile, const double* columns) {
+  const std::uint32_t lane = tile.count % block_lanes;
+  if (lane == 0) tile.blocks.push_back(pool.allocate());
+  double* block = pool.block(tile.blocks.back());
   // The first particle of a block fills its unused lanes too: they go through the same arithmetic as the
   // others, and a copy of a sound particle raises no alarm. What becomes of them is never read.
   const int lanes = lane == 0 ? block_lanes : 1;
   for (int c = 0; c < pool.layout().columns(); ++c) {
     for (int i = 0; i < lanes; ++i) block[block_lanes * c + static_cast<int>(lane) + i] = columns[c];
   }
-  return cohort.count++;
+  return tile.count++;
 }
 
-void extract(const BlockPool& pool, const Cohort& cohort, std::uint32_t index, double* columns) {
-  const double* block = pool.block(cohort.blocks[index / block_lanes]);
+void extract(const BlockPool& pool, const ParticleTile& tile, std::uint32_t index, double* columns) {
+  const double* block = pool.block(tile.blocks[index / block_lanes]);
   const int lane = static_cast<int>(index % block_lanes);
   for (int c = 0; c < pool.layout().columns(); ++c) columns[c] = block[block_lanes * c + lane];
 }
 
-void remove_swapping(BlockPool& pool, Cohort& cohort, std::uint32_t index) {
-  const std::uint32_t last = cohort.count - 1;
-  double* to = pool.block(cohort.blocks[index / block_lanes]) + index % block_lanes;
-  double* from = pool.block(cohort.blocks[last / block_lanes]) + last % block_lanes;
+void remove_swapping(BlockPool& pool, ParticleTile& tile, std::uint32_t index) {
+  const std::uint32_t last = tile.count - 1;
+  double* to = pool.block(tile.blocks[index / block_lanes]) + index % block_lanes;
+  double* from = pool.block(tile.blocks[last / block_lanes]) + last % block_lanes;
   for (int c = 0; c < pool.layout().columns(); ++c) { to[block_lanes * c] = from[block_lanes * c]; }
-  cohort.count = last;
+  tile.count = last;
   if (last % block_lanes == 0) {
-    pool.release(cohort.blocks.back());
-    cohort.blocks.pop_back();
+    pool.release(tile.blocks.back());
+    tile.blocks.pop_back();
   }
 }
 

@@ -59,7 +59,7 @@ class BlockPools {
 };
 
 /// The particles of one body in one brick: all blocks full but the last.
-struct Cohort {
+struct ParticleTile {
   int body = 0;
   std::uint32_t count = 0;
   std::vector<BlockIndex> blocks;
@@ -70,11 +70,11 @@ struct Cohort {
   }
 };
 
-/// Append one particle, whose columns are given one after the other. Returns its index in the cohort.
-std::uint32_t append(BlockPool& pool, Cohort& cohort, const double* columns);
+/// Append one particle, whose columns are given one after the other. Returns its index in the tile.
+std::uint32_t append(BlockPool& pool, ParticleTile& tile, const double* columns);
 /// Copy the columns of particle `index` to `columns`.
-void extract(const BlockPool& pool, const Cohort& cohort, std::uint32_t index, double* columns);
-/// Overwrite particle `index` with the last one and drop the last; a function of the cohort's order alone.
-void remove_swapping(BlockPool& pool, Cohort& cohort, std::uint32_t index);
+void extract(const BlockPool& pool, const ParticleTile& tile, std::uint32_t index, double* columns);
+/// Overwrite particle `index` with the last one and drop the last; a function of the tile's order alone.
+void remove_swapping(BlockPool& pool, ParticleTile& tile, std::uint32_t index);
 
 }  // namespace mpm::core

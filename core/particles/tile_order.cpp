@@ -11,72 +11,72 @@ namespace mpm::core {
 
 namespace {
 
-Cohort& cohort_of(Brick& brick, int body) {
-  const auto at = std::lower_bound(brick.cohorts.begin(), brick.cohorts.end(), body,
-                                   [](const Cohort& c, int b) { return c.body < b; });
-  if (at != brick.cohorts.end() && at->body == body) return *at;
-  return *brick.cohorts.insert(at, Cohort{body, 0, {}});
+ParticleTile& tile_of(Brick& brick, int body) {
+  const auto at = std::lower_bound(brick.tiles.begin(), brick.tiles.end(), body,
+                                   [](const ParticleTile& c, int b) { return c.body < b; });
+  if (at != brick.tiles.end() && at->body == body) return *at;
+  return *brick.tiles.insert(at, ParticleTile{body, 0, {}});
 }
 
 /// Particle order[p] becomes particle p.
-void reorder(BlockPool& pool, Cohort& cohort, const std::vector<std::uint32_t>& order) {
+void reorder(BlockPool& pool, ParticleTile& tile, const std::vector<std::uint32_t>& order) {
   thread_local std::vector<double> sorted;
   const ColumnLayout& layout = pool.layout();
   const auto block_doubles = static_cast<std::size_t>(layout.block_doubles());
-  sorted.resize(cohort.blocks.size() * block_doubles);
-  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+  sorted.resize(tile.blocks.size() * block_doubles);
+  for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
     const double* from[block_lanes];  // lanes out of use hold what the first lane holds
-    const int used = cohort.used_lanes(b);
+    const int used = tile.used_lanes(b);
     for (int l = 0; l < block_lanes; ++l) {
       const std::uint32_t p = order[block_lanes * b + static_cast<std::size_t>(l < used ? l : 0)];
-      from[l] = pool.block(cohort.blocks[p / block_lanes]) + p % block_lanes;
+      from[l] = pool.block(tile.blocks[p / block_lanes]) + p % block_lanes;
     }
     double* to = sorted.data() + b * block_doubles;
     for (int c = 0; c < layout.columns(); ++c) {
       for (int l = 0; l < block_lanes; ++l) to[block_lanes * c + l] = from[l][block_lanes * c];
     }
   }
-  std::sort(cohort.blocks.begin(), cohort.blocks.end());  // what is read next lies next in memory
-  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-    std::copy_n(sorted.data() + b * block_doubles, block_doubles, pool.block(cohort.blocks[b]));
+  std::sort(tile.blocks.begin(), tile.blocks.end());  // what is read next lies next in memory
+  for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+    std::copy_n(sorted.data() + b * block_doubles, block_doubles, pool.block(tile.blocks[b]));
   }
 }
 
 }  // namespace
 
-void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort) {
+void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile) {
   constexpr NodeBlockShape shape{};  // of the least halo: the lowest nodes of cells are in the order of cells
   const BrickFrame frame(grid.geometry(), shape, brick);
   thread_local std::vector<std::uint8_t> cell;
-  cell.resize(block_lanes * cohort.blocks.size());
+  cell.resize(block_lanes * tile.blocks.size());
   std::array<std::uint32_t, shape.nodes() + 1> start{};
-  for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
-    const LinearPlace place(frame, pool.layout(), pool.block(cohort.blocks[b]));
-    const int used = cohort.used_lanes(b);
+  for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+    const LinearPlace place(frame, pool.layout(), pool.block(tile.blocks[b]));
+    const int used = tile.used_lanes(b);
     for (int l = 0; l < block_lanes; ++l) {
       cell[block_lanes * b + static_cast<std::size_t>(l)] = static_cast<std::uint8_t>(place.node[l]);
       if (l < used) ++start[static_cast<std::size_t>(place.node[l]) + 1];
     }
   }
-  cell.resize(cohort.count);
+  cell.resize(tile.count);
   if (std::is_sorted(cell.begin(), cell.end())) return;
   std::partial_sum(start.begin(), start.end(), start.begin());
   thread_local std::vector<std::uint32_t> order;
-  order.resize(cohort.count);
-  for (std::uint32_t p = 0; p < cohort.count; ++p) order[start[cell[p]]++] = p;
-  reorder(pool, cohort, order);
+  order.resize(tile.count);
+  for (std::uint32_t p = 0; p < tile.count; ++p) order[start[cell[p]]++] = p;
+  reorder(pool, tile, order);
 }
 
-void sort_by_identity(BlockPool& pool, Cohort& cohort) {
+void sort_by_identity(BlockPool& pool, ParticleTile& tile) {
   const int offset = pool.layout().offset(Column::identity);
   const auto identity = [&](std::uint32_t p) {
-    return pool.block(cohort.blocks[p / block_lanes])[offset + static_cast<int>(p % block_lanes)];
+    return pool.block(tile.blocks[p / block_lanes])[offset + static_cast<int>(p % block_lanes)];
   };
-  std::vector<std::uint32_t> order(cohort.count);
+  std::vector<std::uint32_t> order(tile.count);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return identity(a) < identity(b); });
-  reorder(pool, cohort, order);
+  reorder(pool, tile, order);
 }
 
 void insert_particles(Model& model, const MigrationBuffer& particles) {
@@ -106,8 +106,8 @@ void insert_particles(Model& model, const MigrationBuffer& particles) {
   for_each_by_threads(std::size_t{0}, groups.size() - 1, 16, [&](std::size_t g) {
     for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
       const Arrival& a = arrivals[i];
-      append(*model.bodies[static_cast<std::size_t>(a.body)].pool,
-             cohort_of(model.grid->brick(a.slot), a.body), &particles.columns[particles.offsets[a.index]]);
+      append(*model.bodies[static_cast<std::size_t>(a.body)].pool, tile_of(model.grid->brick(a.slot), a.body),
+             &particles.columns[particles.offsets[a.index]]);
     }
   });
 }
@@ -119,9 +119,9 @@ void arrange_blocks(Model& model) {
     pool_of.push_back(static_cast<std::size_t>(std::ranges::find(pools, b.pool.get()) - pools.begin()));
   std::vector<std::vector<BlockIndex>> in_use(pools.size());
   for (Brick& brick : model.grid->bricks()) {
-    for (Cohort& cohort : brick.cohorts) {
-      std::vector<BlockIndex>& blocks = in_use[pool_of[static_cast<std::size_t>(cohort.body)]];
-      for (BlockIndex& b : cohort.blocks) {
+    for (ParticleTile& tile : brick.tiles) {
+      std::vector<BlockIndex>& blocks = in_use[pool_of[static_cast<std::size_t>(tile.body)]];
+      for (BlockIndex& b : tile.blocks) {
         blocks.push_back(b);
         b = static_cast<BlockIndex>(blocks.size() - 1);
       }

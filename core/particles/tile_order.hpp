@@ -10,14 +10,14 @@
 
 namespace mpm::core {
 
-/// Append particles to their bricks, which must be ours: each cohort's in ascending order of identity.
+/// Append particles to their bricks, which must be ours: each tile's in ascending order of identity.
 void insert_particles(Model& model, const MigrationBuffer& particles);
 
-/// Particles of a cohort in ascending order of their cells, otherwise as they were.
-void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Cohort& cohort);
+/// Particles of a tile in ascending order of their cells, otherwise as they were.
+void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile);
 
-/// Particles of a cohort in ascending order of identity.
-void sort_by_identity(BlockPool& pool, Cohort& cohort);
+/// Particles of a tile in ascending order of identity.
+void sort_by_identity(BlockPool& pool, ParticleTile& tile);
 
 /// Every brick's blocks one after the other in memory. Particles that came in pieces, and by several threads,
 /// lie all over the place: the passes of two threads were a tenth slower.

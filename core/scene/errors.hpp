@@ -16,7 +16,7 @@ struct SourceLocation {
   int line = 0;
 };
 
-/// One complaint about the input. Element, attribute and value may be empty when the complaint is about more.
+/// One fault about the input. Element, attribute and value may be empty when the fault is about more.
 struct Diagnostic {
   std::string file;
   int line = 0;
@@ -29,11 +29,11 @@ struct Diagnostic {
 /// `file:line: <Element attribute="value">: message`
 std::string to_text(const Diagnostic& diagnostic);
 
-/// Every complaint about an input, sorted by file and line. what() is the full text, one complaint per line.
+/// Every fault about an input, sorted by file and line. what() is the full text, one fault per line.
 class InputErrors : public std::runtime_error {
  public:
   explicit InputErrors(std::vector<Diagnostic> diagnostics);
-  /// A single complaint about something declared at `where` (for checks made after the file was read).
+  /// A single fault about something declared at `where` (for checks made after the file was read).
   InputErrors(const SourceLocation& where, std::string element, std::string message);
 
   const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
@@ -42,8 +42,8 @@ class InputErrors : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// What several checks complain about, to be thrown together.
-class Complaints {
+/// What several checks report, to be thrown together.
+class ErrorList {
  public:
   /// Run f(); what it throws as InputErrors is kept.
   template <class F>

@@ -54,7 +54,7 @@ void check_start(Model model, const std::vector<const BodyInput*>& inputs,
 double check_setup(std::shared_ptr<const Scene> scene,
                    std::vector<std::unique_ptr<ConstitutiveModel>> materials,
                    const ColumnSet& output_columns) {
-  Complaints wrong;
+  ErrorList wrong;
   const std::vector<const BodyInput*> inputs = active_bodies(*scene);
   std::vector<BodySeeds> bodies;
   double particles = 0;

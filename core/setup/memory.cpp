@@ -96,8 +96,8 @@ MemoryNeed memory_need(const Model& model) {
   need.bricks = (place + sizeof(double) * (arrays + motion)) * grid.owned() +
                 (place + sizeof(double) * arrays) * grid.ghosts();
   for (const Brick& b : grid.bricks()) {
-    for (const Cohort& c : b.cohorts)
-      need.bricks += sizeof(Cohort) + 16 + sizeof(BlockIndex) * static_cast<double>(c.blocks.size());
+    for (const ParticleTile& c : b.tiles)
+      need.bricks += sizeof(ParticleTile) + 16 + sizeof(BlockIndex) * static_cast<double>(c.blocks.size());
   }
   need.bodies = bytes_per_body * static_cast<double>(model.bodies.size());
   return need;

@@ -10,7 +10,7 @@ namespace mpm::core {
 struct MemoryNeed {
   double particles = 0;  ///< their columns, in blocks of eight of one body, in whole pages
   double bricks = 0;     ///< nodes of owned and ghost bricks, and the bricks themselves
-  double bodies = 0;     ///< input, books, sums and rows of text that grow with the number of bodies
+  double bodies = 0;     ///< input, ledger, sums and rows of text that grow with the number of bodies
   double total() const { return particles + bricks + bodies; }
 };
 

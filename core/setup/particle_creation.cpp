@@ -38,7 +38,7 @@ void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
 std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies) {
   const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
   std::vector<BodySeeds> seeds;
-  Complaints wrong;
+  ErrorList wrong;
   for (const std::size_t b : bodies) {
     const auto block =
         static_cast<std::int64_t>(sizeof(double)) * model.bodies[b].pool->layout().block_doubles();
@@ -128,7 +128,7 @@ void refuse_empty(const Scene& scene, std::span<const BodySeeds> bodies, const S
                   Reductions& ranks) {
   std::vector<std::int64_t> particles = count.bodies;
   ranks.sum(std::span<std::int64_t>(particles));
-  Complaints wrong;
+  ErrorList wrong;
   for (std::size_t b = 0; b < bodies.size(); ++b)
     if (particles[b] == 0) wrong.add(no_particles(scene, *bodies[b].input));
   wrong.raise_if_any();
@@ -188,11 +188,11 @@ void sort_tiles(Model& model, const std::vector<bool>& wanted) {
   BrickGrid& grid = *model.grid;
   for_each_by_threads(0, grid.owned(), 4, [&](int s) {
     Brick& brick = grid.brick(static_cast<Slot>(s));
-    for (Cohort& cohort : brick.cohorts) {
-      if (!wanted.empty() && !wanted[static_cast<std::size_t>(cohort.body)]) continue;
-      BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
-      sort_by_identity(pool, cohort);
-      sort_by_cell(grid, brick.coord, pool, cohort);
+    for (ParticleTile& tile : brick.tiles) {
+      if (!wanted.empty() && !wanted[static_cast<std::size_t>(tile.body)]) continue;
+      BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
+      sort_by_identity(pool, tile);
+      sort_by_cell(grid, brick.coord, pool, tile);
     }
   });
 }

@@ -26,7 +26,7 @@ struct BodySeeds {
   std::int64_t block_bytes = 0;  ///< of eight of its particles; 0: only those outside the grid are counted
 };
 
-/// Of these bodies of the model. Throws every complaint about any of them.
+/// Of these bodies of the model. Throws every fault about any of them.
 std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies);
 
 /// Throws InputErrors where the bodies' identities, from `first_identity` on, cannot be numbered; names the

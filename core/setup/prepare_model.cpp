@@ -63,7 +63,7 @@ void refuse_temperature(const BodyInput& input, const ConstitutiveModel& materia
 }  // namespace
 
 void check_material_of(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
-  Complaints wrong;
+  ErrorList wrong;
   wrong.collect([&] { refuse_bar_material(scene, input, material); });
   wrong.collect([&] { refuse_temperature(input, material); });
   wrong.raise_if_any();
@@ -107,8 +107,8 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     body.pool = pools.of(columns);
     model.bodies.push_back(std::move(body));
   });
-  model.books.body_eroded.resize(model.bodies.size());
-  model.books.body_left.resize(model.bodies.size());
+  model.ledger.body_eroded.resize(model.bodies.size());
+  model.ledger.body_left.resize(model.bodies.size());
   return model;
 }
 

@@ -33,7 +33,7 @@ struct Fastest {
 /// rank's, if it has one. Collective.
 [[noreturn]] void refuse_particle(const Model& model, double identity, int body, const std::string& words,
                                   Reductions& ranks) {
-  Witness mine;
+  OffendingParticle mine;
   if (body >= 0) mine.offer(identity, [&] { return fmt::format("{} {}", body, words); });
   const std::string first = first_of_all(ranks, mine).words;
   std::size_t end = 0;
@@ -61,7 +61,7 @@ void Fastest::offer(int number, const Batch& batch, int i) {
 /// Collective.
 void refuse_undefined(const Model& model, Reductions& ranks) {
   int body = -1;
-  const Witness lost = first_not_finite(model, &body);
+  const OffendingParticle lost = first_not_finite(model, &body);
   if (!ranks.any(body >= 0)) return;
   refuse_particle(
       model, lost.identity, body,
@@ -107,17 +107,17 @@ Fastest initialise(Model& model, const std::vector<bool>& wanted) {
   Fastest fastest;
   const GridGeometry& geometry = model.grid->geometry();
   for (Brick& brick : model.grid->bricks()) {
-    for (const Cohort& cohort : brick.cohorts) {
-      if (!wanted[static_cast<std::size_t>(cohort.body)]) continue;
+    for (const ParticleTile& tile : brick.tiles) {
+      if (!wanted[static_cast<std::size_t>(tile.body)]) continue;
       Batch batch{};
       const auto start = [&] {
         batch.cell_size = geometry.smallest_cell();
         batch.grid = &geometry;
-        model.bodies[static_cast<std::size_t>(cohort.body)].model->initialise(batch, model.options);
-        for (int i = 0; i < batch.particles; ++i) fastest.offer(cohort.body, batch, i);
+        model.bodies[static_cast<std::size_t>(tile.body)].model->initialise(batch, model.options);
+        for (int i = 0; i < batch.particles; ++i) fastest.offer(tile.body, batch, i);
         batch = {};
       };
-      for (const ParticleBlock& block : blocks_of(model, brick, cohort.body, cohort.body + 1)) {
+      for (const ParticleBlock& block : blocks_of(model, brick, tile.body, tile.body + 1)) {
         batch.layout = block.layout;
         batch.block[batch.blocks++] = block.data;
         batch.particles += block.used;

@@ -36,8 +36,8 @@ bool is_finite(const ConstParticle& p, double reference_density) {
 
 }  // namespace
 
-Witness first_not_finite(const Model& model, int* body_of_first) {
-  Witness first;
+OffendingParticle first_not_finite(const Model& model, int* body_of_first) {
+  OffendingParticle first;
   for (const ConstParticleBlock& block : blocks_of(model)) {
     const double density = model.bodies[static_cast<std::size_t>(block.body)].model->reference_density();
     for (const ConstParticle p : block) {
@@ -58,7 +58,7 @@ Witness first_not_finite(const Model& model, int* body_of_first) {
 
 std::string fastest_in_words(const Model& model, Reductions& ranks) {
   double most = -1;
-  Witness fastest;
+  OffendingParticle fastest;
   for (const ConstParticleBlock& block : blocks_of(model)) {
     for (const ConstParticle p : block) {
       const double speed = std::sqrt(squared_speed(p));
@@ -70,7 +70,7 @@ std::string fastest_in_words(const Model& model, Reductions& ranks) {
       });
     }
   }
-  return first_of_all(ranks, most == ranks.largest(most) ? fastest : Witness{}).words;
+  return first_of_all(ranks, most == ranks.largest(most) ? fastest : OffendingParticle{}).words;
 }
 
 void require_finite(const Model& model, std::span<const double> totals, Reductions& ranks) {

@@ -12,7 +12,7 @@ namespace mpm::core {
 
 /// The rank's particle with the smallest identity whose state or energy is not all finite; empty if none. The
 /// words list its columns. `body`, if there is one, becomes the number of its body.
-Witness first_not_finite(const Model& model, int* body = nullptr);
+OffendingParticle first_not_finite(const Model& model, int* body = nullptr);
 
 /// The fastest particle of all ranks and its speed, in words; empty without particles. Collective.
 std::string fastest_in_words(const Model& model, Reductions& ranks);

@@ -23,7 +23,7 @@ struct Phase {
 
 /// A particle that leaves its brick.
 struct DepartingParticle {
-  int cohort = 0;
+  int tile = 0;
   std::uint32_t index = 0;
   bool eroded = false;  ///< to be deleted; otherwise it has moved out of its brick
 };
@@ -33,8 +33,9 @@ struct StepStatistics {
   double fastest = 0;        ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
   std::int64_t limited = 0;  ///< velocities held by LimitVelocity
   MaterialEvents events;
-  Witnesses vanishing, negative;  ///< particles of negative volume and energy, where the scene watches them
-  ExactSum work;                  ///< external work
+  OffendingParticles vanishing,
+      negative;   ///< particles of negative volume and energy, where the scene watches them
+  ExactSum work;  ///< external work
 };
 
 class Integrator {

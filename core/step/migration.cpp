@@ -35,73 +35,74 @@ std::string describe_particle(const Body& body, const double* columns) {
 Migration::Migration(Model& model, Communication& communication)
     : model_(model),
       communication_(communication),
-      harvests_(static_cast<std::size_t>(omp_get_max_threads())) {
+      by_thread_(static_cast<std::size_t>(omp_get_max_threads())) {
   for (const Body& b : model.bodies) columns_of_.push_back(b.pool->layout().columns());
-  for (Harvest& h : harvests_) {
-    h.books.body_eroded.resize(model.bodies.size());
-    h.books.body_left.resize(model.bodies.size());
+  for (ThreadMigration& h : by_thread_) {
+    h.ledger.body_eroded.resize(model.bodies.size());
+    h.ledger.body_left.resize(model.bodies.size());
   }
 }
 
-void Migration::dispose(std::size_t body_index, const double* columns, bool eroded, Harvest& harvest) const {
+void Migration::dispose(std::size_t body_index, const double* columns, bool eroded,
+                        ThreadMigration& mine) const {
   const Body& body = model_.bodies[body_index];
   const ColumnLayout& layout = body.pool->layout();
-  Books& books = harvest.books;
+  Ledger& ledger = mine.ledger;
   const double m = columns[layout.index(Column::mass)];
   const double* v = columns + layout.index(Column::velocity_x);
-  books.removed_mass.add(m);
-  books.removed_kinetic.add(0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-  books.removed_internal.add(columns[layout.index(Column::internal_energy)] * m /
-                             body.model->reference_density());
-  ++(eroded ? books.eroded : books.left_grid);
-  ++(eroded ? books.body_eroded : books.body_left)[body_index];
+  ledger.removed_mass.add(m);
+  ledger.removed_kinetic.add(0.5 * m * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  ledger.removed_internal.add(columns[layout.index(Column::internal_energy)] * m /
+                              body.model->reference_density());
+  ++(eroded ? ledger.eroded : ledger.left_grid);
+  ++(eroded ? ledger.body_eroded : ledger.body_left)[body_index];
   if (eroded) return;
-  ++harvest.left;
-  harvest.first_left.offer(columns[layout.index(Column::identity)],
-                           [&] { return describe_particle(body, columns); });
+  ++mine.left;
+  mine.first_left.offer(columns[layout.index(Column::identity)],
+                        [&] { return describe_particle(body, columns); });
 }
 
-void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departing, Harvest& harvest) {
+void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departing, ThreadMigration& mine) {
   const BrickGrid& grid = *model_.grid;
   Brick& brick = model_.grid->brick(slot);
   double columns[column_count];
-  const auto complain = [&](const Body& body, const char* what) {
-    harvest.complaint.offer(columns[body.pool->layout().index(Column::identity)],
-                            [&] { return describe_particle(body, columns) + what; });
+  const auto report = [&](const Body& body, const char* what) {
+    mine.fault.offer(columns[body.pool->layout().index(Column::identity)],
+                     [&] { return describe_particle(body, columns) + what; });
   };
   // From the last to the first: the particle that fills a gap is then never one that has yet to leave.
   std::sort(departing.begin(), departing.end(), [](const DepartingParticle& a, const DepartingParticle& b) {
-    return a.cohort != b.cohort ? a.cohort > b.cohort : a.index > b.index;
+    return a.tile != b.tile ? a.tile > b.tile : a.index > b.index;
   });
   for (const DepartingParticle& l : departing) {
-    Cohort& cohort = brick.cohorts[static_cast<std::size_t>(l.cohort)];
-    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
-    extract(*body.pool, cohort, l.index, columns);
+    ParticleTile& tile = brick.tiles[static_cast<std::size_t>(l.tile)];
+    const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
+    extract(*body.pool, tile, l.index, columns);
     const Vec3<double> x = position_of(body.pool->layout(), columns);
     if (l.eroded || !grid.geometry().contains(x)) {
       if (!l.eroded && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
-        complain(body, " is nowhere (not a number)");
+        report(body, " is nowhere (not a number)");
         continue;
       }
-      dispose(static_cast<std::size_t>(cohort.body), columns, l.eroded, harvest);
+      dispose(static_cast<std::size_t>(tile.body), columns, l.eroded, mine);
     } else {
       const BrickCoord to = grid.geometry().brick_at(x);
       if (to == brick.coord) continue;  // on the grid's upper face, or within round-off of the brick's own
       if (!adjacent(to, brick.coord)) {
-        complain(body, " moved over more than a brick in one step");
+        report(body, " moved over more than a brick in one step");
         continue;
       }
-      if (grid.find(to) == no_slot) harvest.wanted.push_back(to);
-      harvest.particles.add(to, cohort.body, columns, body.pool->layout().columns());
+      if (grid.find(to) == no_slot) mine.wanted.push_back(to);
+      mine.particles.add(to, tile.body, columns, body.pool->layout().columns());
     }
-    remove_swapping(*body.pool, cohort, l.index);
+    remove_swapping(*body.pool, tile, l.index);
   }
-  std::erase_if(brick.cohorts, [](const Cohort& c) { return c.count == 0; });
+  std::erase_if(brick.tiles, [](const ParticleTile& c) { return c.count == 0; });
   departing.clear();
 }
 
-void Migration::merge(Harvest& h) {
-  Books& books = model_.books;
+void Migration::merge(ThreadMigration& h) {
+  Ledger& ledger = model_.ledger;
   if (particles_.size() == 0) std::swap(particles_, h.particles);  // mostly all there are
   for (std::size_t i = 0; i < h.particles.size(); ++i) {
     const MigrationBuffer::Head& head = h.particles.heads[i];
@@ -111,22 +112,22 @@ void Migration::merge(Harvest& h) {
   wanted_.insert(wanted_.end(), h.wanted.begin(), h.wanted.end());
   left_now_ += h.left;
   first_left_.merge(h.first_left);
-  if (!h.complaint.empty()) complaint_.offer(h.complaint.identity, [&] { return h.complaint.words; });
+  if (!h.fault.empty()) fault_.offer(h.fault.identity, [&] { return h.fault.words; });
   h.first_left = {};
-  h.complaint = {};
-  if (h.books.eroded + h.books.left_grid > 0) {
-    books.removed_mass += h.books.removed_mass;
-    books.removed_kinetic += h.books.removed_kinetic;
-    books.removed_internal += h.books.removed_internal;
-    books.eroded += h.books.eroded;
-    books.left_grid += h.books.left_grid;
+  h.fault = {};
+  if (h.ledger.eroded + h.ledger.left_grid > 0) {
+    ledger.removed_mass += h.ledger.removed_mass;
+    ledger.removed_kinetic += h.ledger.removed_kinetic;
+    ledger.removed_internal += h.ledger.removed_internal;
+    ledger.eroded += h.ledger.eroded;
+    ledger.left_grid += h.ledger.left_grid;
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      books.body_eroded[b] += h.books.body_eroded[b];
-      books.body_left[b] += h.books.body_left[b];
+      ledger.body_eroded[b] += h.ledger.body_eroded[b];
+      ledger.body_left[b] += h.ledger.body_left[b];
     }
-    h.books = Books{};
-    h.books.body_eroded.resize(model_.bodies.size());
-    h.books.body_left.resize(model_.bodies.size());
+    h.ledger = Ledger{};
+    h.ledger.body_eroded.resize(model_.bodies.size());
+    h.ledger.body_left.resize(model_.bodies.size());
   }
   h.particles.clear();
   h.wanted.clear();
@@ -137,16 +138,16 @@ void Migration::collect(std::vector<std::vector<DepartingParticle>>& departing) 
   wanted_.clear();
   left_now_ = 0;
   first_left_ = {};
-  complaint_ = {};
+  fault_ = {};
   for_each_by_threads(
       std::size_t{0}, departing.size(), 16,
       [&](std::size_t s) {
         if (departing[s].empty()) return;
         collect_from(static_cast<Slot>(s), departing[s],
-                     harvests_[static_cast<std::size_t>(omp_get_thread_num())]);
+                     by_thread_[static_cast<std::size_t>(omp_get_thread_num())]);
       },
-      static_cast<int>(harvests_.size()));
-  for (Harvest& h : harvests_) merge(h);
+      static_cast<int>(by_thread_.size()));
+  for (ThreadMigration& h : by_thread_) merge(h);
 }
 
 void Migration::deliver(bool claim) {
@@ -160,17 +161,17 @@ void Migration::deliver(bool claim) {
   particles_.clear();
 }
 
-void Migration::tidy() {
+void Migration::sort_and_prune() {
   BrickGrid& grid = *model_.grid;
   for_each_by_threads(0, grid.owned(), 4, [&](int s) {
     Brick& brick = grid.brick(static_cast<Slot>(s));
-    for (Cohort& cohort : brick.cohorts) {
-      sort_by_cell(grid, brick.coord, *model_.bodies[static_cast<std::size_t>(cohort.body)].pool, cohort);
+    for (ParticleTile& tile : brick.tiles) {
+      sort_by_cell(grid, brick.coord, *model_.bodies[static_cast<std::size_t>(tile.body)].pool, tile);
     }
   });
   std::vector<BrickCoord> empty;
   for (const Brick& b : grid.bricks()) {
-    if (b.cohorts.empty()) empty.push_back(b.coord);
+    if (b.tiles.empty()) empty.push_back(b.coord);
   }
   if (communication_.reductions.any(!empty.empty())) communication_.bricks.deactivate(grid, empty);
 }

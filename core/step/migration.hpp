@@ -1,6 +1,6 @@
-// Particles that leave their brick: out of the old cohort, into the new one, on this rank or another.
+// Particles that leave their brick: out of the old tile, into the new one, on this rank or another.
 //
-// The order inside a cohort decides the order of sums, so it must not depend on who carried a particle where:
+// The order inside a tile decides the order of sums, so it must not depend on who carried a particle where:
 // those that leave are taken out in descending order, those that arrive are appended in the order of
 // identities.
 #pragma once
@@ -29,37 +29,37 @@ class Migration {
 
   /// Every now and then: particles in the order of their cells, bricks without particles forgotten.
   /// Collective.
-  void tidy();
+  void sort_and_prune();
 
   /// A problem of the last collect() that ends the run; empty if there is none.
-  const Witness& complaint() const { return complaint_; }
+  const OffendingParticle& fault() const { return fault_; }
   /// Particles that left the grid in the last collect(), and the first few of them.
   std::int64_t left_now() const { return left_now_; }
-  const Witnesses& first_left() const { return first_left_; }
+  const OffendingParticles& first_left() const { return first_left_; }
 
  private:
   /// What one thread finds; threads share the bricks out among themselves.
-  struct Harvest {
+  struct ThreadMigration {
     MigrationBuffer particles;
     std::vector<BrickCoord> wanted;
-    Books books;
+    Ledger ledger;
     std::int64_t left = 0;
-    Witnesses first_left;
-    Witness complaint;
+    OffendingParticles first_left;
+    OffendingParticle fault;
   };
-  void collect_from(Slot slot, std::vector<DepartingParticle>& departing, Harvest& harvest);
-  void dispose(std::size_t body, const double* columns, bool eroded, Harvest& harvest) const;
-  void merge(Harvest& harvest);
+  void collect_from(Slot slot, std::vector<DepartingParticle>& departing, ThreadMigration& mine);
+  void dispose(std::size_t body, const double* columns, bool eroded, ThreadMigration& mine) const;
+  void merge(ThreadMigration& mine);
 
   Model& model_;
   Communication& communication_;
-  std::vector<Harvest> harvests_;  ///< by thread
+  std::vector<ThreadMigration> by_thread_;  ///< by thread
   MigrationBuffer particles_;
   std::vector<BrickCoord> wanted_;
   std::vector<int> columns_of_;
   std::int64_t left_now_ = 0;
-  Witnesses first_left_;
-  Witness complaint_;
+  OffendingParticles first_left_;
+  OffendingParticle fault_;
 };
 
 /// `particle 17 of body "bar" at (1.2, 3, 4)`

@@ -14,7 +14,7 @@
 
 namespace mpm::core {
 
-struct Witness {
+struct OffendingParticle {
   double identity = std::numeric_limits<double>::infinity();
   std::string words;
 
@@ -29,13 +29,13 @@ struct Witness {
 };
 
 /// The first few, in ascending order of identity.
-class Witnesses {
+class OffendingParticles {
  public:
   static constexpr std::size_t most = 20;
 
   bool empty() const { return words_.empty(); }
   const std::map<double, std::string>& words() const { return words_; }
-  /// As Witness::offer.
+  /// As OffendingParticle::offer.
   template <class F>
   void offer(double identity, F words) {
     if (words_.size() == most && identity >= words_.rbegin()->first) return;
@@ -43,7 +43,7 @@ class Witnesses {
     if (is_new) at->second = words();
     if (words_.size() > most) words_.erase(std::prev(words_.end()));
   }
-  void merge(const Witnesses& other) {
+  void merge(const OffendingParticles& other) {
     for (const auto& [identity, words] : other.words_) offer(identity, [&words = words] { return words; });
   }
 
@@ -52,10 +52,10 @@ class Witnesses {
 };
 
 /// The first few over all ranks. Collective.
-inline Witnesses first_of_all(Reductions& ranks, const Witnesses& mine) {
+inline OffendingParticles first_of_all(Reductions& ranks, const OffendingParticles& mine) {
   std::string lines;
   for (const auto& [identity, words] : mine.words()) lines += fmt::format("{:.17g} {}\n", identity, words);
-  Witnesses all;
+  OffendingParticles all;
   for (const std::string& of_rank : ranks.gather(lines)) {
     for (std::size_t at = 0; at < of_rank.size();) {
       const std::size_t space = of_rank.find(' ', at), end = of_rank.find('\n', at);
@@ -68,10 +68,10 @@ inline Witnesses first_of_all(Reductions& ranks, const Witnesses& mine) {
 }
 
 /// The first over all ranks. Collective.
-inline Witness first_of_all(Reductions& ranks, const Witness& mine) {
+inline OffendingParticle first_of_all(Reductions& ranks, const OffendingParticle& mine) {
   double identity[1] = {mine.identity};
   ranks.minimum(identity);
-  Witness first;
+  OffendingParticle first;
   for (const std::string& words : ranks.gather(mine.identity == identity[0] ? mine.words : std::string())) {
     if (!words.empty()) first.offer(identity[0], [&] { return words; });
   }

@@ -68,7 +68,7 @@ void add_work_of_motion(const NodeForces& forces, const ColumnLayout& layout, co
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch,
                      StepStatistics& statistics) {
   const ColumnLayout& layout = *batch.layout;
-  const auto name = [&](std::uint64_t lanes, Witnesses& among) {
+  const auto name = [&](std::uint64_t lanes, OffendingParticles& among) {
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = __builtin_ctzll(lanes);
       const double* values = batch.block[lane / block_lanes] + lane % block_lanes;
@@ -83,12 +83,12 @@ void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch
   if (warn.negative_internal_energy) name(batch.negative, statistics.negative);
 }
 
-void find_departing(int cohort, std::size_t b, const BrickFrame& frame, double erosion_volume,
+void find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
                     const ColumnLayout& layout, const double* block, int used,
                     std::vector<DepartingParticle>& departing) {
   const auto add = [&](int lane, bool eroded) {
     departing.push_back(
-        {cohort, static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(lane), eroded});
+        {tile, static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(lane), eroded});
   };
   unsigned gone = 0;
   if (layout.has(Column::failed) || erosion_volume > 0) {

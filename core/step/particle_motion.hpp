@@ -44,7 +44,7 @@ void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch
 
 /// Adds the particles of a block that are eroded or have moved out of the brick. `erosion_volume`: particles
 /// with less are eroded.
-void find_departing(int cohort, std::size_t b, const BrickFrame& frame, double erosion_volume,
+void find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
                     const ColumnLayout& layout, const double* block, int used,
                     std::vector<DepartingParticle>& departing);
 

@@ -169,27 +169,26 @@ void PassesWith<S, T>::for_bricks(int first, int last, F f) {
       threads);
 }
 
-/// f(cohort's number, block's number, body's number, layout, block, lanes in use) for a brick's blocks.
+/// f(tile's number, block's number, body's number, layout, block, lanes in use) for a brick's blocks.
 /// `columns`: how many of the first ones are read.
 template <ShapePolicy S, TransferPolicy T>
 template <class F>
 [[gnu::always_inline]] inline void PassesWith<S, T>::for_each_block(Slot s, int columns, F f) {
   const Brick& brick = model_.grid->brick(s);
-  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
-    const Cohort& cohort = brick.cohorts[c];
-    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
+  for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+    const ParticleTile& tile = brick.tiles[c];
+    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
     const BlockPrefetch prefetch(model_, s, c);
-    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+    for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       prefetch.request(b, columns);
-      f(static_cast<int>(c), b, cohort.body, pool.layout(), pool.block(cohort.blocks[b]),
-        cohort.used_lanes(b));
+      f(static_cast<int>(c), b, tile.body, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
     }
   }
 }
 
 /// The blocks of a brick in batches: for each block_work(body, block of the batch, lanes in use), then, with
-/// the memory of the following blocks requested in the background, batch_work(cohort's number, first block's
-/// number, cohort). The batch and the places of its particles are in `at`.
+/// the memory of the following blocks requested in the background, batch_work(tile's number, first block's
+/// number, tile). The batch and the places of its particles are in `at`.
 template <ShapePolicy S, TransferPolicy T>
 template <class F, class G>
 [[gnu::always_inline]] inline void PassesWith<S, T>::for_each_batch(Slot s, const BrickFrame& frame,
@@ -199,28 +198,28 @@ template <class F, class G>
   batch.time = model_.clock.time + dt;
   batch.dt = dt;
   batch.cell_size = model_.grid->geometry().smallest_cell();
-  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
-    const Cohort& cohort = brick.cohorts[c];
+  for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+    const ParticleTile& tile = brick.tiles[c];
     const BlockPrefetch prefetch(model_, s, c);
-    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort.body)].pool;
+    BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
     batch.layout = &pool.layout();
     const int lines_before_update = std::max(pool.layout().columns() - parts_of_update, 0);
-    for (std::size_t first = 0; first < cohort.blocks.size(); first += batch_blocks) {
-      batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, cohort.blocks.size() - first));
+    for (std::size_t first = 0; first < tile.blocks.size(); first += batch_blocks) {
+      batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, tile.blocks.size() - first));
       batch.particles =
-          static_cast<int>(std::min<std::size_t>(batch_particles, cohort.count - block_lanes * first));
+          static_cast<int>(std::min<std::size_t>(batch_particles, tile.count - block_lanes * first));
       // All places first: a block's is a long chain of operations, and those of several blocks overlap.
       for (int b = 0; b < batch.blocks; ++b) {
-        batch.block[b] = pool.block(cohort.blocks[first + static_cast<std::size_t>(b)]);
+        batch.block[b] = pool.block(tile.blocks[first + static_cast<std::size_t>(b)]);
         at.places[b].find(frame, pool.layout(), batch.block[b]);
       }
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
         batch.background[b] = prefetch.lines(at_block);
         batch.background[b].request(lines_before_update);
-        block_work(cohort.body, b, cohort.used_lanes(at_block));
+        block_work(tile.body, b, tile.used_lanes(at_block));
       }
-      batch_work(c, first, cohort);
+      batch_work(c, first, tile);
     }
   }
 }
@@ -252,28 +251,28 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
                       width * grid.shape().nodes(), block_count(brick));
   typename S::template Scatter<what> sums;
   sums.clear();
-  for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
-    const Cohort& cohort = brick.cohorts[c];
-    const Body& body = model_.bodies[static_cast<std::size_t>(cohort.body)];
+  for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+    const ParticleTile& tile = brick.tiles[c];
+    const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
     const BlockPrefetch prefetch(model_, s, c);
     const ColumnLayout& layout = body.pool->layout();
-    const bool loaded = maps_force(what) && loads_.act(grid, s, cohort.body);
+    const bool loaded = maps_force(what) && loads_.act(grid, s, tile.body);
     // The next block is located before this one is worked on: what was stored is then there when it is read.
     Place places[2];
-    if (!cohort.blocks.empty()) places[0].find(frame, layout, body.pool->block(cohort.blocks[0]));
-    for (std::size_t b = 0; b < cohort.blocks.size(); ++b) {
+    if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
+    for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       if constexpr (maps_momentum(what))
         prefetch.request(b, maps_force(what) ? columns_to_stress : columns_to_mass);
       room.next();
-      double* block = body.pool->block(cohort.blocks[b]);
-      const int used = cohort.used_lanes(b);
-      if (b + 1 < cohort.blocks.size())
-        places[(b + 1) % 2].find(frame, layout, body.pool->block(cohort.blocks[b + 1]));
+      double* block = body.pool->block(tile.blocks[b]);
+      const int used = tile.used_lanes(b);
+      if (b + 1 < tile.blocks.size())
+        places[(b + 1) % 2].find(frame, layout, body.pool->block(tile.blocks[b + 1]));
       const Place& place = places[b % 2];
-      before(cohort.body, place, block, used);
+      before(tile.body, place, block, used);
       add_block<S, T, what>(frame, place, layout, block, used, sums, contributions);
       if constexpr (maps_force(what)) {
-        if (loaded) add_load_forces<S>(loads_, model_, s, cohort.body, place, block, used, contributions);
+        if (loaded) add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
       }
     }
   }
@@ -413,8 +412,8 @@ template <bool moves, class F>
     strain_batch_block(frame, at.places[b], b, at);
     if constexpr (moves) move(body, at.places[b], batch.block[b], used, at);
   };
-  const auto stress = [&](std::size_t c, std::size_t first, const Cohort& cohort) {
-    update_material(model_.bodies[static_cast<std::size_t>(cohort.body)], at);
+  const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
+    update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
     if (velocities == Velocities::of_next_step)
       at.statistics.fastest = fastest_particle(batch, at.statistics.fastest);
     else
@@ -423,7 +422,7 @@ template <bool moves, class F>
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
         find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, *batch.layout, batch.block[b],
-                       cohort.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
+                       tile.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
       }
     }
   };

@@ -12,55 +12,55 @@
 
 namespace mpm::core {
 
-/// In all of a brick's cohorts.
+/// In all of a brick's tiles.
 inline std::size_t block_count(const Brick& brick) {
   std::size_t n = 0;
-  for (const Cohort& c : brick.cohorts) n += c.blocks.size();
+  for (const ParticleTile& c : brick.tiles) n += c.blocks.size();
   return n;
 }
 
 /// Prefetches what says where the coming bricks' particles lie. One leads to the next: a brick to its
-/// cohorts, these to the numbers of their blocks. So each is requested one brick later than what leads to it.
+/// tiles, these to the numbers of their blocks. So each is requested one brick later than what leads to it.
 inline void prefetch_coming_bricks(const BrickGrid& grid, Slot now) {
   const auto line = [](const void* at, std::size_t n) {
     __builtin_prefetch(static_cast<const char*>(at) + 64 * n, 0, 3);
   };
   const Slot last = grid.owned() - 1;
   for (std::size_t n = 0; n < 3; ++n) line(&grid.brick(std::min(now + 3, last)), n);
-  const std::vector<Cohort>& then = grid.brick(std::min(now + 2, last)).cohorts;
+  const std::vector<ParticleTile>& then = grid.brick(std::min(now + 2, last)).tiles;
   line(then.data(), 0);
-  const std::vector<Cohort>& next = grid.brick(std::min(now + 1, last)).cohorts;
+  const std::vector<ParticleTile>& next = grid.brick(std::min(now + 1, last)).tiles;
   if (next.empty()) return;
   const std::vector<BlockIndex>& blocks = next.front().blocks;
   for (std::size_t b = 0; b < blocks.size(); b += 16) line(blocks.data() + b, 0);
 }
 
-/// Prefetches the blocks that a pass will come to: those of a cohort, then those of the next one, in the
+/// Prefetches the blocks that a pass will come to: those of a tile, then those of the next one, in the
 /// brick or after it. Into the second-level cache: the first has too few lines under way at a time to hide
 /// main memory.
 class BlockPrefetch {
  public:
-  BlockPrefetch(const Model& model, Slot slot, std::size_t cohort) : model_(model) {
+  BlockPrefetch(const Model& model, Slot slot, std::size_t tile) : model_(model) {
     const BrickGrid& grid = *model.grid;
     const Brick& brick = grid.brick(slot);
-    now_ = &brick.cohorts[cohort];
-    if (cohort + 1 < brick.cohorts.size()) {
-      then_ = &brick.cohorts[cohort + 1];
-    } else if (slot + 1 < grid.owned() && !grid.brick(slot + 1).cohorts.empty()) {
-      then_ = &grid.brick(slot + 1).cohorts.front();
+    now_ = &brick.tiles[tile];
+    if (tile + 1 < brick.tiles.size()) {
+      then_ = &brick.tiles[tile + 1];
+    } else if (slot + 1 < grid.owned() && !grid.brick(slot + 1).tiles.empty()) {
+      then_ = &grid.brick(slot + 1).tiles.front();
     }
   }
   /// The lines of the block to fetch while block `b` is worked on; none where there is no such block.
   [[gnu::always_inline]] PrefetchLines lines(std::size_t b) const {
-    const Cohort* cohort = now_;
+    const ParticleTile* tile = now_;
     b += distance;
-    if (b >= cohort->blocks.size()) {
-      b -= cohort->blocks.size();
-      cohort = then_;
-      if (cohort == nullptr || b >= cohort->blocks.size()) return {};
+    if (b >= tile->blocks.size()) {
+      b -= tile->blocks.size();
+      tile = then_;
+      if (tile == nullptr || b >= tile->blocks.size()) return {};
     }
-    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(cohort->body)].pool;
-    const double* block = pool.block(cohort->blocks[b]);
+    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile->body)].pool;
+    const double* block = pool.block(tile->blocks[b]);
     return {block, block + pool.layout().block_doubles()};
   }
   /// The first columns of that block at once.
@@ -69,8 +69,8 @@ class BlockPrefetch {
  private:
   static constexpr std::size_t distance = 8;  // further ahead than main memory is far, and still in the cache
   const Model& model_;
-  const Cohort* now_;
-  const Cohort* then_ = nullptr;
+  const ParticleTile* now_;
+  const ParticleTile* then_ = nullptr;
 };
 
 /// A stretch of memory, requested for writing in as many equal parts as there are calls of next(): what a

@@ -28,11 +28,11 @@ Stepper::Stepper(Model& model, Communication& communication)
 std::vector<Phase> Stepper::make_phases() {
   std::vector<Phase> step{{"choose time step", [this] { choose_time_step(); }}};
   for (Phase& phase : integrator_->phases()) step.push_back(std::move(phase));
-  step.push_back({"collect leavers", [this] { migration_.collect(integrator_->departing()); }});
-  step.push_back({"agree", [this] { agree(); }});
+  step.push_back({"collect departing particles", [this] { migration_.collect(integrator_->departing()); }});
+  step.push_back({"reduce status", [this] { reduce_status(); }});
   step.push_back({"migrate", [this] { migration_.deliver(needs_bricks_); }});
-  step.push_back({"tidy", [this] {
-                    if (model_.clock.step % tidy_interval == 0) migration_.tidy();
+  step.push_back({"sort and prune", [this] {
+                    if (model_.clock.step % sorting_interval == 0) migration_.sort_and_prune();
                   }});
   return step;
 }
@@ -62,31 +62,31 @@ void Stepper::choose_time_step() {
   integrator_->begin_step(dt);
 }
 
-void Stepper::agree() {
+void Stepper::reduce_status() {
   Clock& clock = model_.clock;
-  Books& books = model_.books;
+  Ledger& ledger = model_.ledger;
   const StepStatistics found = integrator_->take_statistics();
-  books.external_work += found.work;
-  books.velocity_limited += found.limited;
-  books.events += found.events;
-  books.failed += found.events.failed;
+  ledger.external_work += found.work;
+  ledger.velocity_limited += found.limited;
+  ledger.events += found.events;
+  ledger.failed += found.events.failed;
   incidents_ = {found.events, found.vanishing, found.negative, migration_.left_now(),
                 migration_.first_left()};
 
-  const bool failed = found.events.not_finite > 0 || !migration_.complaint().empty();
+  const bool failed = found.events.not_finite > 0 || !migration_.fault().empty();
   const StepStatus all = communication_.reductions.combine(
       {integrator_->stable_step(found), migration_.wants_new_bricks(), failed, stop_requested_});
   ++clock.step;
   clock.time += clock.dt;
   clock.critical_dt = all.stable_step;
   needs_bricks_ = all.needs_bricks;
-  stop_agreed_ = all.stop;
+  stopping_ = all.stop;
 
   std::string what;
   if (all.failed) {
-    Witness mine = migration_.complaint();
+    OffendingParticle mine = migration_.fault();
     if (found.events.not_finite > 0) {
-      const Witness lost = first_not_finite(model_);
+      const OffendingParticle lost = first_not_finite(model_);
       if (!lost.empty()) mine.offer(lost.identity, [&] { return lost.words; });
     }
     what = first_of_all(communication_, mine).words;

@@ -33,24 +33,24 @@ class Stepper {
   /// Ask for the run to stop; any rank may, at any time.
   void request_stop() { stop_requested_ = true; }
   /// True, on all ranks after the same step, once some rank has asked.
-  bool stop_agreed() const { return stop_agreed_; }
+  bool stopping() const { return stopping_; }
 
   /// Of the last step, on this rank: for the scene's warnings.
   struct Incidents {
     MaterialEvents events;
-    Witnesses vanishing, negative;
+    OffendingParticles vanishing, negative;
     std::int64_t left_grid = 0;
-    Witnesses first_left;
+    OffendingParticles first_left;
   };
   const Incidents& incidents() const { return incidents_; }
 
   /// Particles are brought into the order of their cells, and empty bricks forgotten, every so many steps.
-  static constexpr std::int64_t tidy_interval = 20;
+  static constexpr std::int64_t sorting_interval = 20;
 
  private:
   std::vector<Phase> make_phases();
   void choose_time_step();
-  void agree();
+  void reduce_status();
 
   Model& model_;
   Communication& communication_;
@@ -61,7 +61,7 @@ class Stepper {
   bool needs_bricks_ = false;
   std::string failure_;  ///< agreed upon; thrown once every particle is home
   bool stop_requested_ = false;
-  bool stop_agreed_ = false;
+  bool stopping_ = false;
 };
 
 }  // namespace mpm::core

@@ -178,14 +178,14 @@ BodySums sums_of_bodies(const Model& model, const std::vector<double>& inverse_d
       add_block(*b.layout, b.data, b.used, inverse_density[body], to[body - bodies.first]);
     }
   });
-  const Books& books = model.books;
+  const Ledger& ledger = model.ledger;
   BodySums all;
   for (std::size_t b = bodies.first; b < bodies.last; ++b) {
     const Partial& mine = local[b - bodies.first];
     all.sum.insert(all.sum.end(), mine.sum.begin(), mine.sum.end());
     all.low.insert(all.low.end(), mine.low.begin(), mine.low.end());
     all.count.insert(all.count.end(),
-                     {mine.particles, mine.failed, entry(books.body_eroded, b), entry(books.body_left, b)});
+                     {mine.particles, mine.failed, entry(ledger.body_eroded, b), entry(ledger.body_left, b)});
   }
   ranks.sum(std::span(all.sum));
   ranks.sum(std::span(all.count));
@@ -221,9 +221,10 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
   }
   static_cast<Quantities&>(totals) = quantities_of(all.data());
 
-  const Books& books = model.books;
-  std::array booked{books.external_work, books.removed_mass, books.removed_kinetic, books.removed_internal};
-  std::array<std::int64_t, 3> count{books.eroded, books.left_grid, books.velocity_limited};
+  const Ledger& ledger = model.ledger;
+  std::array booked{ledger.external_work, ledger.removed_mass, ledger.removed_kinetic,
+                    ledger.removed_internal};
+  std::array<std::int64_t, 3> count{ledger.eroded, ledger.left_grid, ledger.velocity_limited};
   ranks.sum(std::span<ExactSum>(booked));
   ranks.sum(std::span<std::int64_t>(count));
   totals.external_work = booked[0].value();
@@ -272,9 +273,9 @@ Energies compute_energies(const Model& model, Reductions& ranks) {
 
 Totals compute_energy_totals(const Model& model, Reductions& ranks) {
   const EnergySums local = energy_sums(model);
-  const Books& books = model.books;
-  std::array<ExactSum, 5> sum{local.kinetic, local.internal, books.external_work, books.removed_kinetic,
-                              books.removed_internal};
+  const Ledger& ledger = model.ledger;
+  std::array<ExactSum, 5> sum{local.kinetic, local.internal, ledger.external_work, ledger.removed_kinetic,
+                              ledger.removed_internal};
   ranks.sum(std::span<ExactSum>(sum));
   Totals totals;
   totals.kinetic = sum[0].value();

@@ -39,7 +39,7 @@ struct Totals : Quantities {
   std::vector<BodyTotals> bodies;  ///< as Model::bodies
   std::int64_t particles = 0;
   std::int64_t failed = 0;
-  // The books, over all ranks.
+  // The ledger, over all ranks.
   double external_work = 0;
   double removed_mass = 0;
   double removed_kinetic = 0;

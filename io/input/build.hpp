@@ -1,4 +1,4 @@
-// From the checked document to the scene, one function per part. Each adds complaints about what the
+// From the checked document to the scene, one function per part. Each adds faults about what the
 // Specification cannot say: names that do not resolve, bounds in the wrong order, shapes that are none.
 #pragma once
 

@@ -23,17 +23,17 @@ core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) 
   const core::Vec3<double> x = node.reals("a11", "a21", "a31");
   const double lengths = std::sqrt(dot(z, z)) * std::sqrt(dot(x, x));
   if (lengths == 0 || std::isinf(lengths)) {
-    node.complain(context.diagnostics, "the axes (ex, ey, ez) and (a11, a21, a31) must not be zero");
+    node.report(context.diagnostics, "the axes (ex, ey, ez) and (a11, a21, a31) must not be zero");
     return plane;
   }
   constexpr double tolerance = 1e-6;  // of the cosine: axes written with seven digits pass
   const double cosine = dot(z, x) / lengths;
   if (std::abs(cosine) > tolerance) {
     const double degrees = std::acos(std::clamp(cosine, -1., 1.)) * 180 / std::acos(-1.);
-    node.complain(context.diagnostics,
-                  fmt::format("the axes (ex, ey, ez) and (a11, a21, a31) must be orthogonal; the "
-                              "angle between them is {:.6g} degrees",
-                              degrees));
+    node.report(context.diagnostics,
+                fmt::format("the axes (ex, ey, ez) and (a11, a21, a31) must be orthogonal; the "
+                            "angle between them is {:.6g} degrees",
+                            degrees));
   }
   plane.z_axis = (1 / std::sqrt(dot(z, z))) * z;
   plane.y_axis = cross(plane.z_axis, x);  // exactly orthogonal, whatever the tolerance let through
@@ -47,8 +47,8 @@ template <class Point>
 void check_last_time(const std::vector<Point>& points, const Node& node, const BuildContext& context) {
   const std::size_t n = points.size();
   if (n > 1 && points[n - 1].time <= points[n - 2].time)
-    node.complain(context.diagnostics, "time",
-                  fmt::format("the times must increase; the one before is {}", points[n - 2].time));
+    node.report(context.diagnostics, "time",
+                fmt::format("the times must increase; the one before is {}", points[n - 2].time));
 }
 
 core::PrescribedAcceleration build_acceleration(const Node& node, const BuildContext& context) {
@@ -56,7 +56,7 @@ core::PrescribedAcceleration build_acceleration(const Node& node, const BuildCon
   load.linear_amplitude = node.reals("ax", "ay", "az");
   load.angular_amplitude = node.reals("arx", "ary", "arz");
   if (load.angular_amplitude != core::Vec3<double>{})
-    node.complain(
+    node.report(
         context.diagnostics, "arx",
         "angular accelerations turn rigid bodies, which is not implemented yet: set arx, ary, arz to 0");
   for (const Node& point : node.children("Coefficient")) {
@@ -74,16 +74,16 @@ core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& conte
   const bool pulls = load.traction != core::Vec3<double>{};
   if (const auto normal = node.given_integer("normal")) load.normal = static_cast<int>(*normal);
   if (pulls != (load.normal >= 0))
-    node.complain(context.diagnostics, "normal and tx, ty, tz go together: give both or neither");
+    node.report(context.diagnostics, "normal and tx, ty, tz go together: give both or neither");
   if (!pulls && load.pressure == 0)
-    node.complain(context.diagnostics, "needs a pressure, or tx, ty, tz and normal");
+    node.report(context.diagnostics, "needs a pressure, or tx, ty, tz and normal");
   static constexpr std::array<std::array<const char*, 2>, 3> sides{
       {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}}};
   for (std::size_t a = 0; a < 3; ++a) {
     load.lower[a] = node.given_real(sides[a][0]).value_or(load.lower[a]);
     load.upper[a] = node.given_real(sides[a][1]).value_or(load.upper[a]);
     if (!(load.lower[a] < load.upper[a]))
-      node.complain(context.diagnostics, sides[a][1], fmt::format("must be greater than {}", sides[a][0]));
+      node.report(context.diagnostics, sides[a][1], fmt::format("must be greater than {}", sides[a][0]));
   }
   load.ramp = node.given_real("ramp");
   for (const Node& point : node.children("Coefficient")) {
@@ -110,7 +110,7 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
   if (const auto h = node.child("HarmExcit")) {
     body.harmonic_excitation = build_excitation(*h);
     if (body.prescribed_acceleration)
-      h->complain(context.diagnostics, "a body has either PrescribedAcceleration or HarmExcit");
+      h->report(context.diagnostics, "a body has either PrescribedAcceleration or HarmExcit");
   }
   for (const Node& load : node.children("Traction"))
     body.surface_loads.push_back(build_surface_load(load, context));
@@ -125,7 +125,7 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
 /// Where the velocity is given, what would change it has nothing to act on.
 void check_held(const core::BodyInput& body, const Node& node, const BuildContext& context) {
   const auto refuse = [&](std::string_view element, const std::string& why) {
-    for (const Node& load : node.children(element)) load.complain(context.diagnostics, why);
+    for (const Node& load : node.children(element)) load.report(context.diagnostics, why);
   };
   if (body.prescribed_velocity && !body.constrain_rigid_position) {
     for (const char* element : {"PrescribedAcceleration", "HarmExcit"})
@@ -151,9 +151,9 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!takes_part(*bodies[i]) || !rigid(*bodies[i])) continue;
     for (const Node& load : nodes[i].children("Traction"))
-      load.complain(context.diagnostics, "has no effect on a rigid body; use PrescribedAcceleration");
+      load.report(context.diagnostics, "has no effect on a rigid body; use PrescribedAcceleration");
     if (deformable == nullptr || scene.contact.enable) continue;
-    nodes[i].complain(
+    nodes[i].report(
         context.diagnostics, "material",
         fmt::format("a rigid body acts on others through contact, which this version does not have: it would "
                     "pass through '{}' and push nothing. Give the body a material that deforms, with "
@@ -203,8 +203,8 @@ class BodyNames {
     if (suggestions_++ < most_suggestions)
       for (const auto& [known, place] : places_) names.emplace_back(known);
     std::ranges::sort(names);
-    node.complain(context.diagnostics, attribute,
-                  fmt::format("there is no body of this name{}", did_you_mean(name, names)));
+    node.report(context.diagnostics, attribute,
+                fmt::format("there is no body of this name{}", did_you_mean(name, names)));
     return {};
   }
 
@@ -265,9 +265,9 @@ std::vector<core::DetonationItem> build_detonations(const Node& root, const Buil
         item.lower = {node.real("left"), node.real("bottom")};
         item.upper = {node.real("right"), node.real("top")};
         if (item.upper[0] < item.lower[0])
-          node.complain(context.diagnostics, "right", "expected at least left");
+          node.report(context.diagnostics, "right", "expected at least left");
         if (item.upper[1] < item.lower[1])
-          node.complain(context.diagnostics, "top", "expected at least bottom");
+          node.report(context.diagnostics, "top", "expected at least bottom");
       } else if (node.type() == "point") {
         item.position = node.reals("x", "y", "z");
       }

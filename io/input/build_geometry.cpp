@@ -17,7 +17,7 @@ std::string build_file(const Node& node, const BuildContext& context) {
   const std::filesystem::path path = context.folder / given;
   if (context.check_files)
     if (const std::string wrong = why_unreadable(path); !wrong.empty())
-      node.complain(context.diagnostics, "file", fmt::format("{}: {}", path.string(), wrong));
+      node.report(context.diagnostics, "file", fmt::format("{}: {}", path.string(), wrong));
   return path.string();
 }
 

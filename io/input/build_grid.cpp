@@ -35,16 +35,16 @@ void read_segments(core::GridAxis& axis, const Node& cell, char letter, const Bu
         {node.real("end"), static_cast<std::size_t>(node.integer("cells")), node.real("ratio")});
     const core::GridSegment& segment = axis.segments.back();
     if (segment.end <= begin)
-      node.complain(context.diagnostics, "end",
-                    fmt::format("expected more than {}, where the segment begins", begin));
+      node.report(context.diagnostics, "end",
+                  fmt::format("expected more than {}, where the segment begins", begin));
     begin = segment.end;
     cells += segment.cells;
   }
   if (nodes.empty()) return;
   axis.cells = cells;
   if (std::abs(begin - axis.max) > 1e-9 * (axis.max - axis.min))
-    nodes.back().complain(context.diagnostics, "end",
-                          fmt::format("the last segment must end at {}Max, {}", letter, axis.max));
+    nodes.back().report(context.diagnostics, "end",
+                        fmt::format("the last segment must end at {}Max, {}", letter, axis.max));
 }
 
 /// The number of cells between two walls: whole, but for round-off; at a free face the last one may reach
@@ -55,21 +55,21 @@ void count_cells(core::GridAxis& axis, const Node& max, const Node& size, std::s
   if (!(length > 0) || !(axis.cell_size > 0)) return;
   const double cells = length / axis.cell_size;
   if (cells > static_cast<double>(core::most_cells_per_axis))
-    return size.complain(
+    return size.report(
         context.diagnostics, attribute,
         fmt::format("this makes {:.7g} cells along the axis; at most {} are possible: use larger cells",
                     std::ceil(cells), core::most_cells_per_axis));
   constexpr double round_off = 1e-6;  // of a cell
   const double whole = std::round(cells);
   if (whole < 1 || (whole == 1 && cells < 1 - round_off))
-    return size.complain(context.diagnostics, attribute,
-                         fmt::format("a cell is larger than the grid, which is {} long", length));
+    return size.report(context.diagnostics, attribute,
+                       fmt::format("a cell is larger than the grid, which is {} long", length));
   if (std::abs(cells - whole) <= round_off * std::max(1., 1e-6 * whole)) {
     axis.cells = static_cast<std::size_t>(whole);
   } else if (axis.upper == core::Boundary::free) {
     axis.cells = static_cast<std::size_t>(std::ceil(cells));
   } else {
-    max.complain(
+    max.report(
         context.diagnostics, "value",
         fmt::format(
             "a wall must lie on a face of cells: {} cells of {} do not fit between {} and {}; expected "
@@ -93,8 +93,7 @@ core::GridAxis build_axis(const Node& cell, std::size_t direction, const BuildCo
   axis.upper = static_cast<core::Boundary>(max->small_integer("boundary"));
   axis.cell_size = size->real(attribute);
   if (axis.max <= axis.min)
-    max->complain(context.diagnostics, "value",
-                  fmt::format("expected more than {}Min, {}", letter, axis.min));
+    max->report(context.diagnostics, "value", fmt::format("expected more than {}Min, {}", letter, axis.min));
   read_segments(axis, cell, letter, context);
   if (axis.segments.empty()) count_cells(axis, *max, *size, attribute, context);
   return axis;
@@ -110,7 +109,7 @@ core::MovingGridInput build_moving(const Node& node, const BuildContext& context
     moving.min[i] = node.given_real(low).value_or(-moving.infinity);
     moving.max[i] = node.given_real(high).value_or(moving.infinity);
     if (moving.max[i] <= moving.min[i])
-      node.complain(context.diagnostics, high, fmt::format("expected more than {}, {}", low, moving.min[i]));
+      node.report(context.diagnostics, high, fmt::format("expected more than {}, {}", low, moving.min[i]));
   }
   return moving;
 }
@@ -126,7 +125,7 @@ core::GridInput build_grid(const Node& root, const BuildContext& context) {
   grid.shape = shape_function(node->word("shape"));
   if (node->boolean("gimp")) {
     if (node->find("shape") && grid.shape != core::ShapeFunction::uniform_gimp)
-      node->complain(context.diagnostics, "gimp", "contradicts shape; leave one of them out");
+      node->report(context.diagnostics, "gimp", "contradicts shape; leave one of them out");
     grid.shape = core::ShapeFunction::uniform_gimp;
   }
   if (const std::optional<Node> dynamic = node->child("DynamicCell"))
@@ -140,8 +139,8 @@ core::GridInput build_grid(const Node& root, const BuildContext& context) {
     cells *= static_cast<double>(grid.axes[i].cells);
   }
   if (cells > most_cells)
-    cell->complain(context.diagnostics,
-                   fmt::format("{:.3g} cells cannot be numbered; expected fewer than 2^62", cells));
+    cell->report(context.diagnostics,
+                 fmt::format("{:.3g} cells cannot be numbered; expected fewer than 2^62", cells));
   if (const std::optional<Node> moving = cell->child("MovingGrid"))
     grid.moving = build_moving(*moving, context);
   return grid;

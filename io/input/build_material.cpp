@@ -16,8 +16,8 @@ std::optional<std::size_t> resolve(const Node& node, std::string_view attribute,
   if (name.empty()) return {};
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  node.complain(context.diagnostics, attribute,
-                fmt::format("there is no {} of this name{}", kind, did_you_mean(name, names)));
+  node.report(context.diagnostics, attribute,
+              fmt::format("there is no {} of this name{}", kind, did_you_mean(name, names)));
   return {};
 }
 
@@ -28,8 +28,8 @@ void check_unique_names(const std::vector<Node>& nodes, std::string_view kind, c
     if (name.empty()) continue;
     const auto [first, is_first] = lines.emplace(name, node.line());
     if (!is_first)
-      node.complain(context.diagnostics, "name",
-                    fmt::format("another {} has this name already, on line {}", kind, first->second));
+      node.report(context.diagnostics, "name",
+                  fmt::format("another {} has this name already, on line {}", kind, first->second));
   }
 }
 
@@ -70,7 +70,7 @@ std::vector<core::FailureInput> build_failures(const Node& material, const Build
   constexpr std::size_t most = 10;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (i == most)
-      nodes[i].complain(context.diagnostics, fmt::format("a material has at most {} failure models", most));
+      nodes[i].report(context.diagnostics, fmt::format("a material has at most {} failure models", most));
     core::FailureInput failure{build_law(nodes[i], context), nodes[i].boolean("Erosion")};
     failure.values.erase("Erosion");
     if (failure.type != "none") failures.push_back(std::move(failure));
@@ -131,7 +131,7 @@ std::vector<core::FrictionPair> build_frictions(const Node& root,
     const std::size_t low = std::min(*first, *second), high = std::max(*first, *second);
     if (std::ranges::any_of(
             pairs, [&](const auto& p) { return p.first_material == low && p.second_material == high; }))
-      node.complain(context.diagnostics, "the friction of this pair of materials is given twice");
+      node.report(context.diagnostics, "the friction of this pair of materials is given twice");
     pairs.push_back({low, high, node.real("value")});
   }
   return pairs;

@@ -12,7 +12,7 @@ core::FixedLayer build_fixed_layer(const Node& node, const BuildContext& context
   const core::FixedLayer layer{node.small_integer("FixedDirection"), node.small_integer("Normal"),
                                node.real("Min"), node.real("Max")};
   if (layer.max < layer.min)
-    node.complain(context.diagnostics, "Max", fmt::format("expected at least Min, {}", layer.min));
+    node.report(context.diagnostics, "Max", fmt::format("expected at least Min, {}", layer.min));
   return layer;
 }
 
@@ -60,7 +60,7 @@ core::VolumeInput build_volume(const Node& node, const BuildContext& context) {
   volume.min = node.given_real("min");
   volume.max = node.given_real("max");
   if (volume.min && volume.max && *volume.max <= *volume.min)
-    node.complain(context.diagnostics, "max", fmt::format("expected more than min, {}", *volume.min));
+    node.report(context.diagnostics, "max", fmt::format("expected more than min, {}", *volume.min));
   return volume;
 }
 
@@ -84,8 +84,8 @@ core::ImplicitInput build_implicit(const Node& node, const BuildContext& context
   implicit.max_newton = node.small_integer("max_newton");
   implicit.matrix_free = node.word("jacobian") == "matrixfree";
   if (implicit.min_step && implicit.max_step && *implicit.max_step < *implicit.min_step)
-    node.complain(context.diagnostics, "max_step",
-                  fmt::format("expected at least min_step, {}", *implicit.min_step));
+    node.report(context.diagnostics, "max_step",
+                fmt::format("expected at least min_step, {}", *implicit.min_step));
   return implicit;
 }
 
@@ -157,7 +157,7 @@ core::TimeHistoryInput build_history(const Node& node, const BuildContext& conte
   for (const Node& place : node.children("Particle")) history.particles.push_back(place.reals("x", "y", "z"));
   for (const Node& place : node.children("Point")) history.points.push_back(place.reals("x", "y", "z"));
   if (history.particles.empty() && history.points.empty())
-    node.complain(context.diagnostics, "expected at least one <Particle> or <Point>");
+    node.report(context.diagnostics, "expected at least one <Particle> or <Point>");
   return history;
 }
 

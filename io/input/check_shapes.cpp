@@ -34,7 +34,7 @@ class Elements {
 bool states(const Node& node, const std::string& attribute) {
   const XmlAttribute* given = node.find(attribute);
   const AttributeSpec* row = node.spec().attribute(attribute, node.type());
-  return given != nullptr && row != nullptr && complaint(*row, given->value).empty();
+  return given != nullptr && row != nullptr && fault(*row, given->value).empty();
 }
 
 void report(const Node& body, std::vector<core::ShapeFault> faults, const BuildContext& context) {
@@ -44,9 +44,9 @@ void report(const Node& body, std::vector<core::ShapeFault> faults, const BuildC
     const Node* node = elements.find(fault);
     if (node == nullptr) continue;
     if (fault.attribute.empty())
-      node->complain(context.diagnostics, std::move(fault.message));
+      node->report(context.diagnostics, std::move(fault.message));
     else if (states(*node, fault.attribute))
-      node->complain(context.diagnostics, fault.attribute, std::move(fault.message));
+      node->report(context.diagnostics, fault.attribute, std::move(fault.message));
   }
 }
 

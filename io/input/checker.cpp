@@ -39,7 +39,7 @@ class Checker {
  private:
   void element(const Node& node) {
     if (node.spec().later && !accept_later_)
-      node.complain(diagnostics_, "known, but not implemented yet; remove the element");
+      node.report(diagnostics_, "known, but not implemented yet; remove the element");
     misspelt_.clear();
     for (const XmlAttribute& a : document_.attributes(node.element())) attribute(node, a);
     missing_attributes(node);
@@ -48,7 +48,7 @@ class Checker {
   }
 
   void attribute(const Node& node, const XmlAttribute& given) {
-    const auto complain = [&](std::string message) {
+    const auto report = [&](std::string message) {
       diagnostics_.add(given.line, node.name(), given.name, given.value, std::move(message));
     };
     const AttributeSpec* row = node.spec().attribute(given.name, node.type());
@@ -57,16 +57,16 @@ class Checker {
         if (!other.also.empty() && other.also == given.name) row = &other;
         if (!other.instead_of.empty() && other.instead_of == given.name) {
           misspelt_.push_back(other.name);
-          return complain(fmt::format("the right spelling is '{}'", other.name));
+          return report(fmt::format("the right spelling is '{}'", other.name));
         }
       }
       if (!row && hangs_on_wrong_type(node, given.name)) return;
-      if (!row) return complain(unknown_attribute(node, given.name));
+      if (!row) return report(unknown_attribute(node, given.name));
       if (node.find(row->name) != &given)
-        return complain(fmt::format("the same as '{}', which is given too", row->name));
+        return report(fmt::format("the same as '{}', which is given too", row->name));
     }
-    if (std::string wrong = complaint(*row, given.value); !wrong.empty())
-      complain(std::move(wrong));
+    if (std::string wrong = fault(*row, given.value); !wrong.empty())
+      report(std::move(wrong));
     else if (!accept_later_)
       later(node, *row, given);
   }
@@ -125,8 +125,8 @@ class Checker {
     for (const AttributeSpec& row : node.spec().attributes) {
       if (!row.required || !row.applies_to(node.type()) || node.find(row.name)) continue;
       if (std::ranges::find(misspelt_, row.name) != misspelt_.end()) continue;
-      node.complain(diagnostics_, fmt::format("attribute '{}' is missing: {}{}", row.name, expectation(row),
-                                              row.meaning.empty() ? "" : fmt::format(" ({})", row.meaning)));
+      node.report(diagnostics_, fmt::format("attribute '{}' is missing: {}{}", row.name, expectation(row),
+                                            row.meaning.empty() ? "" : fmt::format(" ({})", row.meaning)));
     }
   }
 
@@ -139,8 +139,8 @@ class Checker {
       for (const std::string& name : group.names)
         if (!node.find(name)) missing.push_back(name);
       if (missing.empty() || missing.size() == group.names.size()) continue;
-      node.complain(diagnostics_, fmt::format("{} are given all or none; missing: {}",
-                                              join(group.names, ", "), join(missing, ", ")));
+      node.report(diagnostics_, fmt::format("{} are given all or none; missing: {}", join(group.names, ", "),
+                                            join(missing, ", ")));
     }
   }
 
@@ -166,7 +166,7 @@ class Checker {
     for (const ElementSpec& spec : node.spec().children)
       if (spec.required && !first_line.contains(spec.name) &&
           (spec.for_types.empty() || (!node.type().empty() && spec.applies_to(node.type()))))
-        node.complain(diagnostics_, fmt::format("element <{}> is missing", spec.name));
+        node.report(diagnostics_, fmt::format("element <{}> is missing", spec.name));
   }
 
   std::string unknown_element(const Node& parent, std::string_view name) {

@@ -7,7 +7,7 @@
 
 namespace mpm::io {
 
-/// Adds a complaint for everything that `language` does not allow. With `accept_later`, what is known but not
+/// Adds a fault for everything that `language` does not allow. With `accept_later`, what is known but not
 /// implemented yet passes.
 void check(const Document& document, const ElementSpec& language, bool accept_later,
            Diagnostics& diagnostics);

@@ -1,4 +1,4 @@
-// Collects every complaint about one input, to be thrown together.
+// Collects every fault about one input, to be thrown together.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@
 
 namespace mpm::io {
 
-/// `scene` is what `root` became, without complaint.
+/// `scene` is what `root` became, without fault.
 std::vector<core::Diagnostic> idle_settings(const Node& root, const core::Scene& scene);
 
 }  // namespace mpm::io

@@ -121,7 +121,7 @@ class Filler {
     const auto given = attribute(material, "library");
     const auto units_given = attribute(material, "units");
     if (!given) {
-      if (units_given) complain(*units_given, "has a meaning only with library, whose values it converts");
+      if (units_given) report(*units_given, "has a meaning only with library, whose values it converts");
       return;
     }
     const std::optional<LibraryEntry> entry = find(*given);
@@ -135,7 +135,7 @@ class Filler {
   }
 
  private:
-  void complain(const XmlAttribute& a, std::string message) {
+  void report(const XmlAttribute& a, std::string message) {
     diagnostics_.add(a.line, "Material", a.name, a.value, std::move(message));
   }
 
@@ -151,8 +151,8 @@ class Filler {
     for (const std::string_view name : split(given.value, '|')) {
       const LibraryEntry* entry = library_.find(name);
       if (!entry) {
-        complain(given, fmt::format("the library has no '{}'{}; mpm_check --materials lists what it has",
-                                    name, library_suggestions(library_, name)));
+        report(given, fmt::format("the library has no '{}'{}; mpm_check --materials lists what it has", name,
+                                  library_suggestions(library_, name)));
         found_all = false;
       } else if (!all) {
         all = *entry;
@@ -161,7 +161,7 @@ class Filler {
       }
     }
     if (!all && found_all) {
-      complain(given, "expected a name of the library; mpm_check --materials lists them");
+      report(given, "expected a name of the library; mpm_check --materials lists them");
       return {};
     }
     return found_all ? all : std::nullopt;
@@ -179,19 +179,19 @@ class Filler {
       try {
         units = core::UnitSystem::parse(given->value);
       } catch (const core::UnitError& error) {
-        complain(*given, error.what());
+        report(*given, error.what());
         return {};
       }
       if (header_units_ && *header_units_ != *units) {
-        complain(*given, fmt::format("Header / Unit says {}; one input has one system of units",
-                                     header_units_->name()));
+        report(*given, fmt::format("Header / Unit says {}; one input has one system of units",
+                                   header_units_->name()));
         return {};
       }
     }
     if (units && first_units_ && *first_units_ != *units) {
       if (given)
-        complain(*given, fmt::format("a material before this one has {}; one input has one system of units",
-                                     first_units_->name()));
+        report(*given, fmt::format("a material before this one has {}; one input has one system of units",
+                                   first_units_->name()));
       return {};
     }
     if (units) first_units_ = units;

@@ -67,7 +67,7 @@ class Setter {
 
   void set(const std::string& setting) {
     const std::size_t equals = setting.find('=');
-    if (equals == setting.npos) return complain(setting, "is written NAME=VALUE");
+    if (equals == setting.npos) return report(setting, "is written NAME=VALUE");
     const std::string_view value = trim(std::string_view(setting).substr(equals + 1));
     std::string_view name = trim(std::string_view(setting).substr(0, equals)), element;
     if (name == "ReferenceDensity") name = "ReferenceDensity.value";
@@ -89,14 +89,14 @@ class Setter {
       elements.push_back(fmt::format("{}.{}", spec->name, name));
     }
     if (places.empty())
-      return complain(setting, fmt::format("the material has no '{}'{}", name, did_you_mean(name, known)));
+      return report(setting, fmt::format("the material has no '{}'{}", name, did_you_mean(name, known)));
     if (places.size() > 1)
-      return complain(setting, fmt::format("more than one law has it: say {}", join(elements, " or ")));
+      return report(setting, fmt::format("more than one law has it: say {}", join(elements, " or ")));
     document_.set_attribute(places[0], name, in_units_of_the_input(value, setting), 0);
   }
 
  private:
-  void complain(const std::string& setting, const std::string& message) {
+  void report(const std::string& setting, const std::string& message) {
     diagnostics_.add(0, {}, fmt::format("--set {}: {}", setting, message));
   }
 
@@ -105,8 +105,8 @@ class Setter {
     try {
       const core::Quantity quantity = core::parse_quantity(value);
       if (units_) return fmt::format("{}", units_->value_of(quantity));
-      complain(setting, "the input does not say its units, so a unit cannot be converted");
-    } catch (const core::UnitError& error) { complain(setting, error.what()); }
+      report(setting, "the input does not say its units, so a unit cannot be converted");
+    } catch (const core::UnitError& error) { report(setting, error.what()); }
     return std::string(value.substr(0, value.find(' ')));
   }
 

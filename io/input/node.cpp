@@ -60,7 +60,7 @@ std::string_view canonical_word(const AttributeSpec& a, std::string_view value) 
                                                                   : value;
 }
 
-std::string complaint(const AttributeSpec& a, std::string_view value) {
+std::string fault(const AttributeSpec& a, std::string_view value) {
   if (!a.multiple) return complaint_about_one(a, value);
   const std::vector<std::string_view> parts = split(value, '|');
   if (parts.empty() && a.required) return expected(a, value);
@@ -90,7 +90,7 @@ std::optional<std::string> Node::text(std::string_view attribute, bool with_defa
   const AttributeSpec* row = spec_->attribute(attribute, type_);
   if (!row) return {};
   if (const XmlAttribute* given = find(attribute)) {
-    if (!complaint(*row, given->value).empty()) return {};
+    if (!fault(*row, given->value).empty()) return {};
     return std::string(canonical_word(*row, given->value));
   }
   if (!with_default || !row->default_value || row->default_value->starts_with('@')) return {};
@@ -145,11 +145,11 @@ std::optional<Node> Node::child(std::string_view child_name) const {
   return {};
 }
 
-void Node::complain(Diagnostics& diagnostics, std::string message) const {
+void Node::report(Diagnostics& diagnostics, std::string message) const {
   diagnostics.add(line(), name(), std::move(message));
 }
 
-void Node::complain(Diagnostics& diagnostics, std::string_view attribute, std::string message) const {
+void Node::report(Diagnostics& diagnostics, std::string_view attribute, std::string message) const {
   const XmlAttribute* given = find(attribute);
   if (given)
     diagnostics.add(given->line, name(), given->name, given->value, std::move(message));

@@ -19,7 +19,7 @@
 namespace mpm::io {
 
 /// What is wrong with a value, or an empty text.
-std::string complaint(const AttributeSpec& attribute, std::string_view value);
+std::string fault(const AttributeSpec& attribute, std::string_view value);
 
 /// The word that the attribute's second spelling of a word stands for; otherwise the value, trimmed.
 std::string_view canonical_word(const AttributeSpec& attribute, std::string_view value);
@@ -58,9 +58,9 @@ class Node {
   std::vector<Node> children(std::string_view child) const;
   std::optional<Node> child(std::string_view child) const;  ///< the first
 
-  /// A complaint about this element, or about one of its attributes.
-  void complain(Diagnostics& diagnostics, std::string message) const;
-  void complain(Diagnostics& diagnostics, std::string_view attribute, std::string message) const;
+  /// A fault about this element, or about one of its attributes.
+  void report(Diagnostics& diagnostics, std::string message) const;
+  void report(Diagnostics& diagnostics, std::string_view attribute, std::string message) const;
 
  private:
   /// The valid text of the attribute, its default, or nothing.

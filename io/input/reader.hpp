@@ -1,5 +1,5 @@
 // Reads and checks an input file. Knows no ranks: one rank reads the bytes, all parse the same bytes alike.
-// Wrong input throws core::InputErrors, which holds every complaint about the file.
+// Wrong input throws core::InputErrors, which holds every fault about the file.
 #pragma once
 
 #include <filesystem>

@@ -19,9 +19,9 @@ FileError system_error(const std::string& doing, const std::string& path, int er
   return FileError(text);
 }
 
-void agree(core::Reductions& ranks, const std::string& complaint) {
-  if (!ranks.any(!complaint.empty())) return;
-  for (const std::string& text : ranks.gather(complaint)) {
+void throw_together(core::Reductions& ranks, const std::string& fault) {
+  if (!ranks.any(!fault.empty())) return;
+  for (const std::string& text : ranks.gather(fault)) {
     if (!text.empty()) throw FileError(text);
   }
 }

@@ -122,18 +122,18 @@ bool H5PartWriter::go_on(core::Reductions& ranks) {
       notice_ = fmt::format("'{}' is missing; it had {} time(s): it begins anew", path, mark->times);
     return false;
   }
-  std::string aside = path + ".damaged", complaint;
+  std::string aside = path + ".damaged", fault;
   if (mark) {
-    complaint = restore(path, *mark, ranks);
+    fault = restore(path, *mark, ranks);
   } else {
-    complaint = fmt::format("the restart file says nothing of '{}'", path);
+    fault = fmt::format("the restart file says nothing of '{}'", path);
     aside = path + ".old";
   }
-  if (complaint.empty()) {
+  if (fault.empty()) {
     mark_ = *mark;
     return true;
   }
-  notice_ = fmt::format("{}; it is now '{}', and a new file begins", complaint, aside);
+  notice_ = fmt::format("{}; it is now '{}', and a new file begins", fault, aside);
   together(ranks, [&] {
     if (ranks.rank() == 0) rename_file(path, aside);
   });

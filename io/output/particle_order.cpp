@@ -11,24 +11,23 @@ namespace mpm::io {
 
 namespace {
 
-bool before(const CohortRecord& a, const CohortRecord& b) {
+bool before(const TileRecord& a, const TileRecord& b) {
   return std::tie(a.body, a.brick) < std::tie(b.body, b.brick);
 }
 
 /// Records and places of this rank, in step with each other and in order.
-void collect(const core::Model& model, std::vector<CohortRecord>& records, std::vector<CohortPlace>& places) {
+void collect(const core::Model& model, std::vector<TileRecord>& records, std::vector<TilePlace>& places) {
   struct Entry {
-    CohortRecord record;
-    CohortPlace place;
+    TileRecord record;
+    TilePlace place;
   };
   std::vector<Entry> entries;
   for (core::Slot s = 0; s < model.grid->owned(); ++s) {
     const core::Brick& brick = model.grid->brick(s);
-    for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
-      const core::Cohort& cohort = brick.cohorts[c];
-      if (cohort.count == 0) continue;
-      entries.push_back(
-          {{core::key_of(brick.coord), cohort.body, cohort.count, 0}, {s, static_cast<int>(c), 0}});
+    for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+      const core::ParticleTile& tile = brick.tiles[c];
+      if (tile.count == 0) continue;
+      entries.push_back({{core::key_of(brick.coord), tile.body, tile.count, 0}, {s, static_cast<int>(c), 0}});
     }
   }
   std::sort(entries.begin(), entries.end(),
@@ -39,8 +38,8 @@ void collect(const core::Model& model, std::vector<CohortRecord>& records, std::
   }
 }
 
-void add_hashes(const core::Model& model, const std::vector<CohortPlace>& places,
-                std::vector<CohortRecord>& records) {
+void add_hashes(const core::Model& model, const std::vector<TilePlace>& places,
+                std::vector<TileRecord>& records) {
   core::for_each_by_threads(std::size_t{0}, places.size(), 8, [&](std::size_t i) {
     thread_local std::vector<double> rows;
     rows.clear();
@@ -54,13 +53,13 @@ void add_hashes(const core::Model& model, const std::vector<CohortPlace>& places
   });
 }
 
-std::vector<CohortRecord> all_records(const std::vector<CohortRecord>& mine, core::Reductions& ranks) {
-  std::string bytes(mine.size() * sizeof(CohortRecord), '\0');
+std::vector<TileRecord> all_records(const std::vector<TileRecord>& mine, core::Reductions& ranks) {
+  std::string bytes(mine.size() * sizeof(TileRecord), '\0');
   if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
-  std::vector<CohortRecord> all;
+  std::vector<TileRecord> all;
   for (const std::string& part : ranks.gather(bytes)) {
     const std::size_t old = all.size();
-    all.resize(old + part.size() / sizeof(CohortRecord));
+    all.resize(old + part.size() / sizeof(TileRecord));
     if (!part.empty()) std::memcpy(all.data() + old, part.data(), part.size());
   }
   std::sort(all.begin(), all.end(), before);
@@ -71,13 +70,13 @@ std::vector<CohortRecord> all_records(const std::vector<CohortRecord>& mine, cor
 
 ParticleOrder order_particles(const core::Model& model, core::Reductions& ranks, bool hashes) {
   ParticleOrder order;
-  std::vector<CohortRecord> records;
+  std::vector<TileRecord> records;
   collect(model, records, order.mine);
   if (hashes) add_hashes(model, order.mine, records);
-  order.cohorts = all_records(records, ranks);
+  order.tiles = all_records(records, ranks);
   order.particles.resize(model.bodies.size());
   std::size_t next = 0;  // of mine
-  for (const CohortRecord& r : order.cohorts) {
+  for (const TileRecord& r : order.tiles) {
     std::int64_t& rows = order.particles[static_cast<std::size_t>(r.body)];
     if (next < records.size() && records[next].body == r.body && records[next].brick == r.brick) {
       order.mine[next++].first_row = rows;
@@ -96,10 +95,10 @@ std::string described(const std::string& name, const core::ColumnSet& columns) {
   return text;
 }
 
-std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::vector<std::string>& bodies) {
+std::uint64_t state_hash(const std::vector<TileRecord>& tiles, const std::vector<std::string>& bodies) {
   Hash hash;
   for (const std::string& b : bodies) hash.add(b);
-  for (const CohortRecord& r : cohorts) {
+  for (const TileRecord& r : tiles) {
     hash.add(r.brick);
     hash.add(static_cast<std::uint64_t>(r.body));
     hash.add(r.particles);
@@ -111,10 +110,10 @@ std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::ve
 std::uint64_t state_hash(const core::Model& model, core::Reductions& ranks) {
   std::vector<std::string> bodies;
   for (const core::Body& b : model.bodies) bodies.push_back(described(b.name, b.pool->layout().set()));
-  return state_hash(order_particles(model, ranks, true).cohorts, bodies);
+  return state_hash(order_particles(model, ranks, true).tiles, bodies);
 }
 
-std::uint64_t hash_of(const CohortRecord& record, const double* rows, int columns) {
+std::uint64_t hash_of(const TileRecord& record, const double* rows, int columns) {
   Hash hash;
   hash.add(record.brick);
   hash.add(static_cast<std::uint64_t>(record.body));

@@ -13,24 +13,24 @@
 namespace mpm::io {
 
 /// The particles of one body in one brick.
-struct CohortRecord {
+struct TileRecord {
   core::BrickKey brick = 0;
   std::int64_t body = 0;
   std::uint64_t particles = 0;
   std::uint64_t hash = 0;  ///< of the particles' columns, row by row; 0 unless asked for
-  bool operator==(const CohortRecord&) const = default;
+  bool operator==(const TileRecord&) const = default;
 };
 
-/// Rows of this rank: a cohort and where its first particle stands among all particles of its body.
-struct CohortPlace {
+/// Rows of this rank: a tile and where its first particle stands among all particles of its body.
+struct TilePlace {
   core::Slot slot = 0;
-  int cohort = 0;  ///< index into the brick's cohorts
+  int tile = 0;  ///< index into the brick's tiles
   std::int64_t first_row = 0;
 };
 
 struct ParticleOrder {
-  std::vector<CohortRecord> cohorts;    ///< of all ranks, by body, then brick
-  std::vector<CohortPlace> mine;        ///< of this rank, in the same order
+  std::vector<TileRecord> tiles;        ///< of all ranks, by body, then brick
+  std::vector<TilePlace> mine;          ///< of this rank, in the same order
   std::vector<std::int64_t> particles;  ///< per body, of all ranks
 };
 
@@ -40,20 +40,20 @@ ParticleOrder order_particles(const core::Model& model, core::Reductions& ranks,
 /// Hash of the state of all particles: names of bodies and columns, and every record of the order. The same
 /// for the same bits, on any number of ranks. Collective.
 std::uint64_t state_hash(const core::Model& model, core::Reductions& ranks);
-std::uint64_t state_hash(const std::vector<CohortRecord>& cohorts, const std::vector<std::string>& bodies);
+std::uint64_t state_hash(const std::vector<TileRecord>& tiles, const std::vector<std::string>& bodies);
 /// What state_hash() knows of a body: its name and the names of its columns.
 std::string described(const std::string& name, const core::ColumnSet& columns);
 
-/// The particles of a cohort.
-inline const core::Cohort& cohort_at(const core::Model& model, const CohortPlace& place) {
-  return model.grid->brick(place.slot).cohorts[static_cast<std::size_t>(place.cohort)];
+/// The particles of a tile.
+inline const core::ParticleTile& tile_at(const core::Model& model, const TilePlace& place) {
+  return model.grid->brick(place.slot).tiles[static_cast<std::size_t>(place.tile)];
 }
-inline core::BlockRange<const core::Model> blocks_at(const core::Model& model, const CohortPlace& place) {
-  const int body = cohort_at(model, place).body;
+inline core::BlockRange<const core::Model> blocks_at(const core::Model& model, const TilePlace& place) {
+  const int body = tile_at(model, place).body;
   return blocks_of(model, std::as_const(*model.grid).brick(place.slot), body, body + 1);
 }
 
 /// The hash that a record should have, from all its rows of `columns` doubles.
-std::uint64_t hash_of(const CohortRecord& record, const double* rows, int columns);
+std::uint64_t hash_of(const TileRecord& record, const double* rows, int columns);
 
 }  // namespace mpm::io

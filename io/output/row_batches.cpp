@@ -5,20 +5,20 @@ namespace mpm::io {
 std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleOrder& order,
                                        std::span<const std::int64_t> first_row_of_body, std::size_t most) {
   std::vector<RowBatch> batches;
-  for (const CohortPlace& place : order.mine) {
-    const core::Cohort& cohort = cohort_at(model, place);
-    const std::int64_t base = first_row_of_body[static_cast<std::size_t>(cohort.body)];
+  for (const TilePlace& place : order.mine) {
+    const core::ParticleTile& tile = tile_at(model, place);
+    const std::int64_t base = first_row_of_body[static_cast<std::size_t>(tile.body)];
     if (base == left_out) continue;
-    if (batches.empty() || batches.back().particles + cohort.count > most) batches.emplace_back();
+    if (batches.empty() || batches.back().particles + tile.count > most) batches.emplace_back();
     RowBatch& batch = batches.back();
     const auto first = static_cast<std::uint64_t>(base + place.first_row);
     if (!batch.rows.empty() && batch.rows.back().first + batch.rows.back().count == first) {
-      batch.rows.back().count += cohort.count;
+      batch.rows.back().count += tile.count;
     } else {
-      batch.rows.push_back({first, cohort.count});
+      batch.rows.push_back({first, tile.count});
     }
     batch.parts.push_back({place, batch.particles});
-    batch.particles += cohort.count;
+    batch.particles += tile.count;
   }
   return batches;
 }

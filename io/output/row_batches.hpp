@@ -17,7 +17,7 @@ struct RowBatch {
     std::uint64_t count = 0;
   };
   struct Part {
-    CohortPlace place;
+    TilePlace place;
     std::size_t first = 0;  ///< of its particles in the batch's memory
   };
   std::vector<Stretch> rows;  ///< ascending, neighbours joined; in the memory they follow each other

@@ -24,14 +24,14 @@ void TextFile::add(std::string_view text) noexcept {
 void TextFile::write_out() noexcept {
   if (!file_) return;
   try {
-    if (complaint_.empty()) file_->write(waiting_);
-  } catch (const FileError& e) { complaint_ = e.what(); }
+    if (fault_.empty()) file_->write(waiting_);
+  } catch (const FileError& e) { fault_ = e.what(); }
   waiting_.clear();
 }
 
 void TextFile::flush(core::Reductions& ranks) {
   write_out();
-  agree(ranks, complaint_);
+  throw_together(ranks, fault_);
 }
 
 void TextFile::sync(core::Reductions& ranks) {

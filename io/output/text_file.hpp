@@ -33,7 +33,7 @@ class TextFile {
  private:
   std::unique_ptr<File> file_;
   std::string waiting_;
-  std::string complaint_;
+  std::string fault_;
 };
 
 }  // namespace mpm::io

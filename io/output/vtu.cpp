@@ -50,7 +50,7 @@ std::string element(const char* tag, const Array& a) {
 /// The part of this rank that goes into one file.
 struct Piece {
   const core::Model* model = nullptr;
-  std::vector<CohortPlace> places;
+  std::vector<TilePlace> places;
   std::uint64_t particles = 0;
 };
 
@@ -58,14 +58,14 @@ Piece piece_of(const core::Model& model, const std::vector<std::size_t>& bodies)
   Piece piece{&model, {}, 0};
   std::vector<bool> wanted(model.bodies.size());
   for (const std::size_t b : bodies) wanted[b] = true;
-  std::vector<std::pair<std::pair<std::int64_t, core::BrickKey>, CohortPlace>> order;
+  std::vector<std::pair<std::pair<std::int64_t, core::BrickKey>, TilePlace>> order;
   for (core::Slot s = 0; s < model.grid->owned(); ++s) {
     const core::Brick& brick = model.grid->brick(s);
-    for (std::size_t c = 0; c < brick.cohorts.size(); ++c) {
-      const core::Cohort& cohort = brick.cohorts[c];
-      if (!wanted[static_cast<std::size_t>(cohort.body)]) continue;
-      order.push_back({{cohort.body, core::key_of(brick.coord)}, {s, static_cast<int>(c), 0}});
-      piece.particles += cohort.count;
+    for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+      const core::ParticleTile& tile = brick.tiles[c];
+      if (!wanted[static_cast<std::size_t>(tile.body)]) continue;
+      order.push_back({{tile.body, core::key_of(brick.coord)}, {s, static_cast<int>(c), 0}});
+      piece.particles += tile.count;
     }
   }
   std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -95,7 +95,7 @@ class Appended {
 /// Adds how many values were cut to `cut`.
 template <class T>
 void put_values(const Piece& piece, const Array& array, Appended& out, std::int64_t& cut) {
-  for (const CohortPlace& place : piece.places) {
+  for (const TilePlace& place : piece.places) {
     for (const core::ConstParticleBlock& block : blocks_at(*piece.model, place)) {
       const BodyFacts facts = facts_of(*piece.model, static_cast<std::size_t>(block.body));
       for (const core::ConstParticle p : block) {

@@ -10,27 +10,27 @@
 
 namespace mpm::io {
 
-using core::Books;
+using core::Ledger;
 
 namespace {
 
 struct SumName {
   const char* name;
-  core::ExactSum Books::*sum;
+  core::ExactSum Ledger::*sum;
 };
-constexpr SumName sum_names[] = {{"external_work", &Books::external_work},
-                                 {"removed_mass", &Books::removed_mass},
-                                 {"removed_kinetic", &Books::removed_kinetic},
-                                 {"removed_internal", &Books::removed_internal}};
+constexpr SumName sum_names[] = {{"external_work", &Ledger::external_work},
+                                 {"removed_mass", &Ledger::removed_mass},
+                                 {"removed_kinetic", &Ledger::removed_kinetic},
+                                 {"removed_internal", &Ledger::removed_internal}};
 
 struct CountName {
   const char* name;
-  std::int64_t Books::*count;
+  std::int64_t Ledger::*count;
 };
-constexpr CountName count_names[] = {{"left_grid", &Books::left_grid},
-                                     {"eroded", &Books::eroded},
-                                     {"failed", &Books::failed},
-                                     {"velocity_limited", &Books::velocity_limited}};
+constexpr CountName count_names[] = {{"left_grid", &Ledger::left_grid},
+                                     {"eroded", &Ledger::eroded},
+                                     {"failed", &Ledger::failed},
+                                     {"velocity_limited", &Ledger::velocity_limited}};
 
 struct EventName {
   const char* name;
@@ -86,74 +86,74 @@ std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) {
   return i < values.size() ? values[i] : 0;
 }
 
-Books summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::Reductions& ranks) {
-  Books books = model.books;
+Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::Reductions& ranks) {
+  Ledger ledger = model.ledger;
   std::vector<core::ExactSum> sums;
-  for (const auto& [name, sum] : sum_names) sums.push_back(books.*sum);
+  for (const auto& [name, sum] : sum_names) sums.push_back(ledger.*sum);
   std::vector<std::int64_t> counts;
-  for (const auto& [name, count] : count_names) counts.push_back(books.*count);
-  for (const auto& [name, count] : event_names) counts.push_back(books.events.*count);
+  for (const auto& [name, count] : count_names) counts.push_back(ledger.*count);
+  for (const auto& [name, count] : event_names) counts.push_back(ledger.events.*count);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    counts.push_back(entry(books.body_eroded, b));
-    counts.push_back(entry(books.body_left, b));
+    counts.push_back(entry(ledger.body_eroded, b));
+    counts.push_back(entry(ledger.body_left, b));
   }
   ranks.sum(std::span(sums));
   ranks.sum(std::span(counts));
   std::size_t s = 0, n = 0;
   for (const auto& [name, sum] : sum_names) {
     sums[s].normalise();
-    books.*sum = sums[s++];
+    ledger.*sum = sums[s++];
   }
-  for (const auto& [name, count] : count_names) books.*count = counts[n++];
-  for (const auto& [name, count] : event_names) books.events.*count = static_cast<long>(counts[n++]);
+  for (const auto& [name, count] : count_names) ledger.*count = counts[n++];
+  for (const auto& [name, count] : event_names) ledger.events.*count = static_cast<long>(counts[n++]);
   for (BodyRecord& b : bodies) {
     b.eroded = counts[n++];
     b.left = counts[n++];
   }
-  return books;
+  return ledger;
 }
 
-void write_cohorts(hid_t file, const std::vector<CohortRecord>& cohorts) {
-  const std::array<hsize_t, 2> shape{cohorts.size(), 4};
+void write_tiles(hid_t file, const std::vector<TileRecord>& tiles) {
+  const std::array<hsize_t, 2> shape{tiles.size(), 4};
   const hdf5::Handle table = hdf5::create_dataset(file, "cohorts", H5T_STD_U64LE, shape);
-  if (cohorts.empty()) return;
-  static_assert(sizeof(CohortRecord) == 4 * sizeof(std::uint64_t));
-  hdf5::check(H5Dwrite(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()),
-              "write the cohorts");
+  if (tiles.empty()) return;
+  static_assert(sizeof(TileRecord) == 4 * sizeof(std::uint64_t));
+  hdf5::check(H5Dwrite(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, tiles.data()),
+              "write the tiles");
 }
 
-std::vector<CohortRecord> read_cohorts(hid_t file) {
+std::vector<TileRecord> read_tiles(hid_t file) {
   const hdf5::Handle table = hdf5::open_dataset(file, "cohorts");
   const std::vector<hsize_t> shape = hdf5::shape_of(table);
-  if (shape.size() != 2 || shape[1] != 4) throw FileError("the table of cohorts has another shape");
-  std::vector<CohortRecord> cohorts(shape[0]);
-  if (cohorts.empty()) return cohorts;
-  hdf5::check(H5Dread(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, cohorts.data()),
-              "read the cohorts");
-  return cohorts;
+  if (shape.size() != 2 || shape[1] != 4) throw FileError("the table of tiles has another shape");
+  std::vector<TileRecord> tiles(shape[0]);
+  if (tiles.empty()) return tiles;
+  hdf5::check(H5Dread(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, tiles.data()),
+              "read the tiles");
+  return tiles;
 }
 
-void write_books(hid_t file, const Books& books) {
+void write_ledger(hid_t file, const Ledger& ledger) {
   const hdf5::Handle group = hdf5::create_group(file, "books");
-  for (const auto& [name, sum] : sum_names) hdf5::write_all(group, name, (books.*sum).raw());
-  for (const auto& [name, count] : count_names) hdf5::write_attribute(group, name, books.*count);
+  for (const auto& [name, sum] : sum_names) hdf5::write_all(group, name, (ledger.*sum).raw());
+  for (const auto& [name, count] : count_names) hdf5::write_attribute(group, name, ledger.*count);
   for (const auto& [name, count] : event_names)
-    hdf5::write_attribute(group, name, std::int64_t{books.events.*count});
+    hdf5::write_attribute(group, name, std::int64_t{ledger.events.*count});
 }
 
-Books read_books(hid_t file) {
+Ledger read_ledger(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "books");
-  Books books;
+  Ledger ledger;
   for (const auto& [name, sum] : sum_names) {
     const std::vector<std::int64_t> limbs = hdf5::read_all_int64(group, name);
-    const auto raw = (books.*sum).raw();
+    const auto raw = (ledger.*sum).raw();
     if (limbs.size() != raw.size()) throw FileError("an exact sum has another number of limbs");
     std::copy(limbs.begin(), limbs.end(), raw.begin());
   }
-  for (const auto& [name, count] : count_names) books.*count = hdf5::read_int64(group, name);
+  for (const auto& [name, count] : count_names) ledger.*count = hdf5::read_int64(group, name);
   for (const auto& [name, count] : event_names)
-    books.events.*count = static_cast<long>(hdf5::read_int64(group, name));
-  return books;
+    ledger.events.*count = static_cast<long>(hdf5::read_int64(group, name));
+  return ledger;
 }
 
 void write_body(hid_t group, const BodyRecord& b) {
@@ -254,17 +254,17 @@ RestartExtra read_extra(hid_t file) {
   return extra;
 }
 
-/// The rows that the cohorts promise must be those that the bodies have.
+/// The rows that the tiles promise must be those that the bodies have.
 void check_counts(const RestartContents& c) {
   std::vector<std::int64_t> particles(c.bodies.size());
-  for (const CohortRecord& r : c.cohorts) {
+  for (const TileRecord& r : c.tiles) {
     if (r.body < 0 || static_cast<std::size_t>(r.body) >= c.bodies.size())
-      throw FileError("a cohort has no body");
+      throw FileError("a tile has no body");
     particles[static_cast<std::size_t>(r.body)] += static_cast<std::int64_t>(r.particles);
   }
   for (std::size_t b = 0; b < c.bodies.size(); ++b) {
     if (particles[b] != c.bodies[b].particles)
-      throw FileError("the cohorts of body '" + c.bodies[b].name + "' do not add up");
+      throw FileError("the tiles of body '" + c.bodies[b].name + "' do not add up");
   }
 }
 
@@ -280,7 +280,7 @@ RestartContents contents_of(const core::Model& model, const RestartExtra& extra,
   c.clock = model.clock;
   c.initial_energy = model.initial_energy;
   c.next_identity = model.next_identity;
-  c.cohorts = order.cohorts;
+  c.tiles = order.tiles;
   c.extra = extra;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const core::Body& b = model.bodies[i];
@@ -289,15 +289,15 @@ RestartContents contents_of(const core::Model& model, const RestartExtra& extra,
                         b.model->reference_density(), b.no_output, columns_of(b.pool->layout().set()),
                         order.particles[i], 0, 0});
   }
-  c.books = summed(model, c.bodies, ranks);
+  c.ledger = summed(model, c.bodies, ranks);
   return c;
 }
 
 std::string rows_name(std::size_t body) { return fmt::format("bodies/{}/particles", body); }
 
 std::uint64_t expected_bytes(const RestartContents& c) {
-  std::uint64_t bytes = 262144 + c.extra.scene_text.size() + sizeof(CohortRecord) * c.cohorts.size() +
-                        8 * c.extra.tracked.size();
+  std::uint64_t bytes =
+      262144 + c.extra.scene_text.size() + sizeof(TileRecord) * c.tiles.size() + 8 * c.extra.tracked.size();
   for (const auto& [name, mark] : c.extra.marks) bytes += 2048 + mark.size();
   for (const BodyRecord& b : c.bodies)
     bytes += 16384 + 8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
@@ -318,8 +318,8 @@ std::vector<Extent> write_contents(const std::string& path, const RestartContent
     for (const auto& [name, member] : header_names) hdf5::write_attribute(text, name, c.header.*member);
     hdf5::write_all(text, "text", std::string_view(c.extra.scene_text));
     write_grid(file, c.grid);
-    write_books(file, c.books);
-    write_cohorts(file, c.cohorts);
+    write_ledger(file, c.ledger);
+    write_tiles(file, c.tiles);
     write_extra(file, c.extra);
     const hdf5::Handle bodies = hdf5::create_group(file, "bodies");
     hdf5::write_attribute(bodies, "bodies", static_cast<std::int64_t>(c.bodies.size()));
@@ -346,8 +346,8 @@ RestartContents read_contents(const std::string& path) {
                     hdf5::read_string(text, "hash")};
     for (const auto& [name, member] : header_names) c.header.*member = hdf5::read_string(text, name);
     c.grid = read_grid(file);
-    c.books = read_books(file);
-    c.cohorts = read_cohorts(file);
+    c.ledger = read_ledger(file);
+    c.tiles = read_tiles(file);
     c.extra = read_extra(file);
     c.extra.scene_text = hdf5::read_all_bytes(text, "text");
     const hdf5::Handle bodies = hdf5::open_group(file, "bodies");

@@ -4,7 +4,7 @@
 //   /scene           attributes path, job; dataset `text`: the bytes of the .xmp
 //   /grid            datasets origin, cell, cells
 //   /books           exact sums as limbs (datasets), counts (attributes)
-//   /cohorts         n x 4: brick key, body, particles, checksum of their rows
+//   /cohorts       n x 4: brick key, body, particles, checksum of their rows
 //   /bodies/<n>      attributes; dataset `particles`: particles x columns, in the order of /cohorts
 //   /extra           datasets tracked, names (lines)
 //   /extra/marks     where the run's other files stood: a dataset of bytes for each of the names
@@ -40,15 +40,15 @@ struct RestartContents {
   core::HeaderInput header;
   core::GridGeometry grid;  ///< without boundaries and mass cutoff
   core::Clock clock;
-  core::Books books;  ///< of all ranks; counts per body are in `bodies`
+  core::Ledger ledger;  ///< of all ranks; counts per body are in `bodies`
   double initial_energy = 0;
   std::uint64_t next_identity = 0;
   std::vector<BodyRecord> bodies;
-  std::vector<CohortRecord> cohorts;
+  std::vector<TileRecord> tiles;
   RestartExtra extra;
 };
 
-/// What `model` and the sums of its books over the ranks make up. Collective.
+/// What `model` and the sums of its ledger over the ranks make up. Collective.
 RestartContents contents_of(const core::Model& model, const RestartExtra& extra, const ParticleOrder& order,
                             core::Reductions& ranks);
 

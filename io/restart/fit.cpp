@@ -34,7 +34,7 @@ class Fitting {
   }
 
  private:
-  void complain(const core::SourceLocation& where, const std::string& name, std::string message) {
+  void report(const core::SourceLocation& where, const std::string& name, std::string message) {
     wrong_.add({where.file, where.line, "Body", "name", name, std::move(message)});
   }
 
@@ -59,21 +59,21 @@ class Fitting {
                       "booked as removed",
                       record.name, record.particles));
     } else if (record.particles > 0) {
-      complain({model_.scene->provenance.path, 0}, record.name,
-               "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" if it is "
-               "to be left "
-               "out");
+      report({model_.scene->provenance.path, 0}, record.name,
+             "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" if it is "
+             "to be left "
+             "out");
     }
   }
 
   void check_material(const BodyRecord& record, const core::Body& body, const core::SourceLocation& where) {
     const std::string& material = model_.scene->materials[static_cast<std::size_t>(body.material)].name;
     if (material != record.material) {
-      complain(where, record.name,
-               fmt::format("its material is '{}', but '{}' in the restart file; bodies keep their material",
-                           material, record.material));
+      report(where, record.name,
+             fmt::format("its material is '{}', but '{}' in the restart file; bodies keep their material",
+                         material, record.material));
     } else if (body.model->reference_density() != record.reference_density) {
-      complain(
+      report(
           where, record.name,
           fmt::format("its material '{}' has the reference density {:.17g}, but {:.17g} in the restart file",
                       material, body.model->reference_density(), record.reference_density));
@@ -106,12 +106,11 @@ class Fitting {
       if (!there) list(shown.has(c) && !needed.has(c) ? started : missing, c);
     }
     if (!missing.empty()) {
-      complain(
-          where, record.name,
-          fmt::format(
-              "the scene needs state that the restart file does not have: {}; keep the material laws and "
-              "the volume update of the run that wrote it",
-              missing));
+      report(where, record.name,
+             fmt::format(
+                 "the scene needs state that the restart file does not have: {}; keep the material laws and "
+                 "the volume update of the run that wrote it",
+                 missing));
     }
     if (!started.empty()) {
       notices_.push_back(fmt::format("body '{}': {} start at zero, for the restart file does not have them",
@@ -127,7 +126,7 @@ class Fitting {
   const RestartContents& contents_;
   const core::Model& model_;
   std::vector<std::string>& notices_;
-  core::Complaints wrong_;
+  core::ErrorList wrong_;
   std::unordered_map<std::string_view, std::size_t> numbers_;  ///< of the model's bodies, by name
   /// The scene's own words on each body, whether it takes part or not.
   std::unordered_map<std::string_view, const core::BodyInput*> inputs_;

@@ -20,7 +20,7 @@ struct Fit {
   std::vector<std::optional<Body>> bodies;  ///< of the file; nothing for those that no longer take part
   std::vector<std::size_t> new_bodies;      ///< of the model, that the file does not have
 
-  const Body* of(const CohortRecord& record) const {
+  const Body* of(const TileRecord& record) const {
     const auto& body = bodies[static_cast<std::size_t>(record.body)];
     return body ? &*body : nullptr;
   }

@@ -22,17 +22,17 @@ bool same_grid(const core::GridGeometry& a, const core::GridGeometry& b) {
 /// The share of all records that a rank handles when nobody owns anything yet: about as many particles each.
 std::vector<std::size_t> share_of(const RestartContents& contents, const core::Reductions& ranks) {
   std::uint64_t all = 0;
-  for (const CohortRecord& r : contents.cohorts) all += r.particles;
+  for (const TileRecord& r : contents.tiles) all += r.particles;
   const auto shares = static_cast<std::uint64_t>(ranks.size());
   std::vector<std::size_t> mine;
   std::uint64_t before = 0;
-  for (std::size_t i = 0; i < contents.cohorts.size(); ++i) {
+  for (std::size_t i = 0; i < contents.tiles.size(); ++i) {
     const std::uint64_t rank =
         all == 0 ? 0
                  : static_cast<std::uint64_t>(static_cast<double>(before) / static_cast<double>(all) *
                                               static_cast<double>(shares));
     if (std::min(rank, shares - 1) == static_cast<std::uint64_t>(ranks.rank())) mine.push_back(i);
-    before += contents.cohorts[i].particles;
+    before += contents.tiles[i].particles;
   }
   return mine;
 }
@@ -48,10 +48,10 @@ void book_removed(const RestartContents& contents, const Fit& fit, const std::st
                   core::Model& model, core::Reductions& ranks) {
   std::vector<std::size_t> removed;
   for (const std::size_t i : share_of(contents, ranks)) {
-    if (fit.of(contents.cohorts[i]) == nullptr) removed.push_back(i);
+    if (fit.of(contents.tiles[i]) == nullptr) removed.push_back(i);
   }
   together(ranks, [&] {
-    for_each_record(path, contents, removed, [&](const CohortRecord& record, const double* rows) {
+    for_each_record(path, contents, removed, [&](const TileRecord& record, const double* rows) {
       const BodyRecord& body = contents.bodies[static_cast<std::size_t>(record.body)];
       const auto at = [&](core::Column c) {
         return static_cast<std::size_t>(std::find(body.columns.begin(), body.columns.end(), c) -
@@ -60,10 +60,10 @@ void book_removed(const RestartContents& contents, const Fit& fit, const std::st
       const std::size_t m = at(core::Column::mass), e = at(core::Column::internal_energy);
       const std::size_t v = at(core::Column::velocity_x);
       for (std::uint64_t p = 0; p < record.particles; ++p, rows += body.columns.size()) {
-        model.books.removed_mass.add(rows[m]);
-        model.books.removed_kinetic.add(
+        model.ledger.removed_mass.add(rows[m]);
+        model.ledger.removed_kinetic.add(
             0.5 * rows[m] * (rows[v] * rows[v] + rows[v + 1] * rows[v + 1] + rows[v + 2] * rows[v + 2]));
-        model.books.removed_internal.add(rows[e] * rows[m] / body.reference_density);
+        model.ledger.removed_internal.add(rows[e] * rows[m] / body.reference_density);
       }
     });
   });
@@ -75,36 +75,36 @@ void read_bricks(const std::string& path, const RestartContents& contents, const
   core::Reductions& ranks = communication.reductions;
   std::vector<core::BrickCount> counts;
   for (const std::size_t i : share_of(contents, ranks)) {
-    const CohortRecord& r = contents.cohorts[i];
+    const TileRecord& r = contents.tiles[i];
     if (fit.of(r) != nullptr)
       counts.push_back({core::brick_of_key(r.brick), static_cast<std::int64_t>(r.particles)});
   }
   communication.bricks.partition(*model.grid, counts, model.scene->decomposition);
 
   std::vector<std::size_t> mine;
-  for (std::size_t i = 0; i < contents.cohorts.size(); ++i) {
-    const CohortRecord& r = contents.cohorts[i];
+  for (std::size_t i = 0; i < contents.tiles.size(); ++i) {
+    const TileRecord& r = contents.tiles[i];
     const core::Slot s = model.grid->find(core::brick_of_key(r.brick));
     if (fit.of(r) != nullptr && s != core::no_slot && s < model.grid->owned()) mine.push_back(i);
   }
   together(ranks, [&] {
     std::vector<double> row;
-    for_each_record(path, contents, mine, [&](const CohortRecord& record, const double* rows) {
+    for_each_record(path, contents, mine, [&](const TileRecord& record, const double* rows) {
       const Fit::Body& body = *fit.of(record);
       core::BlockPool& pool = *model.bodies[body.number].pool;
       core::Brick& brick = model.grid->brick(model.grid->find(core::brick_of_key(record.brick)));
-      core::Cohort cohort;
-      cohort.body = static_cast<int>(body.number);
+      core::ParticleTile tile;
+      tile.body = static_cast<int>(body.number);
       for (std::uint64_t p = 0; p < record.particles; ++p, rows += body.file_columns) {
         convert(rows, body.source, row);
-        core::append(pool, cohort, row.data());
+        core::append(pool, tile, row.data());
       }
-      brick.cohorts.push_back(std::move(cohort));
+      brick.tiles.push_back(std::move(tile));
     });
     // The scene may number bodies otherwise than the file.
     for (core::Brick& brick : model.grid->bricks()) {
-      std::sort(brick.cohorts.begin(), brick.cohorts.end(),
-                [](const core::Cohort& a, const core::Cohort& b) { return a.body < b.body; });
+      std::sort(brick.tiles.begin(), brick.tiles.end(),
+                [](const core::ParticleTile& a, const core::ParticleTile& b) { return a.body < b.body; });
     }
   });
 }
@@ -135,10 +135,10 @@ void read_particles(const std::string& path, const RestartContents& contents, co
   std::int64_t outside = 0;
   std::string first_outside;
   std::vector<std::size_t> mine = share_of(contents, ranks);
-  std::erase_if(mine, [&](std::size_t i) { return fit.of(contents.cohorts[i]) == nullptr; });
+  std::erase_if(mine, [&](std::size_t i) { return fit.of(contents.tiles[i]) == nullptr; });
   together(ranks, [&] {
     std::vector<double> row;
-    for_each_record(path, contents, mine, [&](const CohortRecord& record, const double* rows) {
+    for_each_record(path, contents, mine, [&](const TileRecord& record, const double* rows) {
       const Fit::Body& body = *fit.of(record);
       for (std::uint64_t p = 0; p < record.particles; ++p, rows += body.file_columns) {
         convert(rows, body.source, row);
@@ -163,27 +163,27 @@ void read_particles(const std::string& path, const RestartContents& contents, co
   communication.particles.scatter(moving, columns_of);
   core::insert_particles(model, moving);
   for (core::Brick& brick : model.grid->bricks()) {
-    for (core::Cohort& cohort : brick.cohorts) {
-      core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
-      core::sort_by_identity(pool, cohort);
-      core::sort_by_cell(*model.grid, brick.coord, pool, cohort);
+    for (core::ParticleTile& tile : brick.tiles) {
+      core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
+      core::sort_by_identity(pool, tile);
+      core::sort_by_cell(*model.grid, brick.coord, pool, tile);
     }
   }
   core::arrange_blocks(model);
 }
 
-/// The books of all ranks go on at rank 0.
-void restore_books(const RestartContents& contents, const Fit& fit, core::Model& model,
-                   const core::Reductions& ranks) {
+/// The ledger of all ranks go on at rank 0.
+void restore_ledger(const RestartContents& contents, const Fit& fit, core::Model& model,
+                    const core::Reductions& ranks) {
   const bool keeper = ranks.rank() == 0;
-  model.books = keeper ? contents.books : core::Books{};
-  model.books.body_eroded.assign(model.bodies.size(), 0);
-  model.books.body_left.assign(model.bodies.size(), 0);
+  model.ledger = keeper ? contents.ledger : core::Ledger{};
+  model.ledger.body_eroded.assign(model.bodies.size(), 0);
+  model.ledger.body_left.assign(model.bodies.size(), 0);
   if (!keeper) return;
   for (std::size_t b = 0; b < contents.bodies.size(); ++b) {
     if (!fit.bodies[b]) continue;
-    model.books.body_eroded[fit.bodies[b]->number] = contents.bodies[b].eroded;
-    model.books.body_left[fit.bodies[b]->number] = contents.bodies[b].left;
+    model.ledger.body_eroded[fit.bodies[b]->number] = contents.bodies[b].eroded;
+    model.ledger.body_left[fit.bodies[b]->number] = contents.bodies[b].left;
   }
 }
 
@@ -209,7 +209,7 @@ RestartResult read_restart(const std::string& path, core::Model& model, core::Co
   model.clock = contents.clock;
   model.initial_energy = contents.initial_energy;
   model.next_identity = contents.next_identity;
-  restore_books(contents, fit, model, ranks);
+  restore_ledger(contents, fit, model, ranks);
   book_removed(contents, fit, path, model, ranks);
   if (same_grid(contents.grid, model.grid->geometry())) {
     read_bricks(path, contents, fit, model, communication);
@@ -230,7 +230,7 @@ void verify_restart(const std::string& path, core::Reductions& ranks) {
   });
   together(ranks, [&] {
     contents = read_contents(path);
-    for_each_record(path, contents, share_of(contents, ranks), [](const CohortRecord&, const double*) {});
+    for_each_record(path, contents, share_of(contents, ranks), [](const TileRecord&, const double*) {});
   });
 }
 
@@ -243,7 +243,7 @@ std::uint64_t restart_state_hash(const std::string& path) {
     for (const core::Column c : b.columns) set.add(c);
     bodies.push_back(described(b.name, set));
   }
-  return state_hash(contents.cohorts, bodies);
+  return state_hash(contents.tiles, bodies);
 }
 
 }  // namespace mpm::io

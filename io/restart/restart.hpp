@@ -54,7 +54,7 @@ struct RestartResult {
   std::vector<std::string> notices;  ///< what the user should know; the same on all ranks
 };
 
-/// Fill a model whose bodies and grid are prepared, but hold nothing: particles, clock, books. On the grid
+/// Fill a model whose bodies and grid are prepared, but hold nothing: particles, clock, ledger. On the grid
 /// that the file was written with, the state is the same to the last bit; on another, particles are dealt out
 /// anew. A body that is not in the model must be deactivated in its scene: what it held is booked as removed.
 /// Throws FileError for a file that is damaged or cannot be read, InputErrors for a scene that does not fit

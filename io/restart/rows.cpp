@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::size_t bytes_at_once = std::size_t{8} << 20;
 
-std::uint64_t bytes_of(const RestartContents& contents, const CohortRecord& record) {
+std::uint64_t bytes_of(const RestartContents& contents, const TileRecord& record) {
   const BodyRecord& body = contents.bodies[static_cast<std::size_t>(record.body)];
   return sizeof(double) * body.columns.size() * record.particles;
 }
@@ -25,7 +25,7 @@ std::vector<std::uint64_t> begins_of_bodies(const std::string& path, const Resta
 RowReader::RowReader(const std::string& path, const RestartContents& contents)
     : path_(path), contents_(contents), file_(path, File::Mode::read) {
   std::vector<std::uint64_t> next = begins_of_bodies(path, contents);
-  for (const CohortRecord& r : contents.cohorts) {
+  for (const TileRecord& r : contents.tiles) {
     first_byte_.push_back(next[static_cast<std::size_t>(r.body)]);
     next[static_cast<std::size_t>(r.body)] += bytes_of(contents, r);
   }
@@ -39,7 +39,7 @@ std::size_t RowReader::read(const std::vector<std::size_t>& wanted, std::size_t 
   std::uint64_t bytes = 0;
   std::size_t records = 0;
   for (std::size_t i = first; i < wanted.size(); ++i, ++records) {
-    const std::uint64_t at = first_byte_[wanted[i]], size = bytes_of(contents_, contents_.cohorts[wanted[i]]);
+    const std::uint64_t at = first_byte_[wanted[i]], size = bytes_of(contents_, contents_.tiles[wanted[i]]);
     if (records > 0 && bytes + size > bytes_at_once) break;
     if (!stretches.empty() && stretches.back().at + stretches.back().bytes == at) {
       stretches.back().bytes += size;
@@ -57,7 +57,7 @@ std::size_t RowReader::read(const std::vector<std::size_t>& wanted, std::size_t 
   return records;
 }
 
-void RowReader::check(const CohortRecord& record, const double* rows) const {
+void RowReader::check(const TileRecord& record, const double* rows) const {
   const BodyRecord& body = contents_.bodies[static_cast<std::size_t>(record.body)];
   if (hash_of(record, rows, static_cast<int>(body.columns.size())) == record.hash) return;
   const auto [x, y, z, level] = core::brick_of_key(record.brick);

@@ -20,7 +20,7 @@ class RowReader {
   std::size_t read(const std::vector<std::size_t>& wanted, std::size_t first);
   const double* rows() const { return rows_.data(); }
   /// Throws FileError unless the rows are as they were written.
-  void check(const CohortRecord& record, const double* rows) const;
+  void check(const TileRecord& record, const double* rows) const;
 
  private:
   std::string path_;
@@ -40,7 +40,7 @@ void for_each_record(const std::string& path, const RestartContents& contents,
     const std::size_t n = reader.read(wanted, first);
     const double* rows = reader.rows();
     for (std::size_t i = first; i < first + n; ++i) {
-      const CohortRecord& record = contents.cohorts[wanted[i]];
+      const TileRecord& record = contents.tiles[wanted[i]];
       reader.check(record, rows);
       f(record, rows);
       rows += record.particles * contents.bodies[static_cast<std::size_t>(record.body)].columns.size();

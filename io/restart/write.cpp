@@ -34,10 +34,10 @@ void fill(const core::Model& model, const RowBatch& batch, int columns, double* 
 void write_all_rows(const std::string& part, const ParticleOrder& order, const core::Model& model,
                     core::Reductions& ranks) {
   const std::size_t bodies = model.bodies.size();
-  std::vector<ParticleOrder> of_body(bodies);  // so that each body looks at no other's cohorts
-  for (const CohortPlace& place : order.mine) {
+  std::vector<ParticleOrder> of_body(bodies);  // so that each body looks at no other's tiles
+  for (const TilePlace& place : order.mine) {
     const core::Brick& brick = model.grid->brick(place.slot);
-    const int body = brick.cohorts[static_cast<std::size_t>(place.cohort)].body;
+    const int body = brick.tiles[static_cast<std::size_t>(place.tile)].body;
     of_body[static_cast<std::size_t>(body)].mine.push_back(place);
   }
   std::vector<std::int64_t> first_row(bodies, left_out);

@@ -1,4 +1,4 @@
-// What the checks of the laws share: the sample's material and its paths, and the complaints.
+// What the checks of the laws share: the sample's material and its paths, and the failures.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Checker {
   const Registry& registry;
   std::unique_ptr<Material> material;
   StrengthTraits traits;
-  std::vector<std::string> complaints;
+  std::vector<std::string> failures;
 
   std::unique_ptr<Material> make() const { return make_material(sample.input, sample.detonations, registry); }
   RandomPath path(unsigned seed) const { return {seed, sample.strain, sample.duration}; }
@@ -38,16 +38,16 @@ class Checker {
   /// False for bars, whose axis is x, and rigid bodies: not for statements on tensors.
   bool solid() const { return !traits.rigid && !traits.uniaxial; }
 
-  /// Complains unless `found` is at most `allowed`; what is no number never is.
+  /// Fails unless `found` is at most `allowed`; what is no number never is.
   void at_most(double found, double allowed, const std::string& what) {
     if (found <= allowed) return;
     std::ostringstream text;
     text.precision(6);
     text << what << ": " << found << ", allowed is " << allowed;
-    complaints.push_back(text.str());
+    failures.push_back(text.str());
   }
   void require(bool holds, const std::string& what) {
-    if (!holds) complaints.push_back(what);
+    if (!holds) failures.push_back(what);
   }
   /// |a - b| within `relative` of the larger, and `margin`.
   void near(double a, double b, double relative, double margin, const std::string& what) {
@@ -71,21 +71,21 @@ inline double walk(PointDriver& point, const RandomPath& path, int steps) {
   return walk(point, path, steps, [] {});
 }
 
-using Complaints = std::vector<std::string>;
+using Failures = std::vector<std::string>;
 // checks/state.cpp
-Complaints instances_agree(const LawSample& sample, const Registry& registry);
-Complaints rest_stays(const LawSample& sample, const Registry& registry);
-Complaints restarts(const LawSample& sample, const Registry& registry);
-Complaints units_agree(const LawSample& sample, const Registry& registry);
-Complaints neighbours_do_not_matter(const LawSample& sample, const Registry& registry);
-Complaints columns_suffice(const LawSample& sample, const Registry& registry);
-Complaints columns_are_used(const LawSample& sample, const Registry& registry);
+Failures instances_agree(const LawSample& sample, const Registry& registry);
+Failures rest_stays(const LawSample& sample, const Registry& registry);
+Failures restarts(const LawSample& sample, const Registry& registry);
+Failures units_agree(const LawSample& sample, const Registry& registry);
+Failures neighbours_do_not_matter(const LawSample& sample, const Registry& registry);
+Failures columns_suffice(const LawSample& sample, const Registry& registry);
+Failures columns_are_used(const LawSample& sample, const Registry& registry);
 // checks/mechanics.cpp
-Complaints ends_on_yield_surface(const LawSample& sample, const Registry& registry);
-Complaints dissipates(const LawSample& sample, const Registry& registry);
-Complaints converges(const LawSample& sample, const Registry& registry);
-Complaints objective(const LawSample& sample, const Registry& registry);
-Complaints energy_balances(const LawSample& sample, const Registry& registry);
-Complaints wave_speed_bounds_tangent(const LawSample& sample, const Registry& registry);
+Failures ends_on_yield_surface(const LawSample& sample, const Registry& registry);
+Failures dissipates(const LawSample& sample, const Registry& registry);
+Failures converges(const LawSample& sample, const Registry& registry);
+Failures objective(const LawSample& sample, const Registry& registry);
+Failures energy_balances(const LawSample& sample, const Registry& registry);
+Failures wave_speed_bounds_tangent(const LawSample& sample, const Registry& registry);
 
 }  // namespace mpm::physics::checks

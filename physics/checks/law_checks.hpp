@@ -28,7 +28,7 @@ struct LawCheck {
   std::string_view name;       ///< a word
   std::string_view statement;  ///< what holds
   /// What does not hold, a sentence each. Throws core::InputErrors where the sample's numbers are refused.
-  std::vector<std::string> (*complaints)(const LawSample& sample, const Registry& registry);
+  std::vector<std::string> (*failures)(const LawSample& sample, const Registry& registry);
 };
 
 std::span<const LawCheck> law_checks();

@@ -12,7 +12,7 @@ using core::Mat3;
 using core::Sym3;
 using core::Vec3;
 
-Complaints ends_on_yield_surface(const LawSample& sample, const Registry& registry) {
+Failures ends_on_yield_surface(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   // Laws that set the pressure have surfaces of both invariants, and tests of their own for the return.
   if (c.traits.sets_pressure) return {};
@@ -33,10 +33,10 @@ Complaints ends_on_yield_surface(const LawSample& sample, const Registry& regist
   c.require(plastic_steps > 10, "the path hardly flows: it needs a larger strain, or the law has no yield");
   c.at_most(worst, 1e-8, "distance from the yield stress after a plastic step, relative");
   c.at_most(worst_outside, 1e-8, "stress beyond the yield stress, relative");
-  return c.complaints;
+  return c.failures;
 }
 
-Complaints dissipates(const LawSample& sample, const Registry& registry) {
+Failures dissipates(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   if (!c.solid() || !c.traits.linear_elasticity) return {};
   PointDriver point(*c.material, {});
@@ -74,10 +74,10 @@ Complaints dissipates(const LawSample& sample, const Registry& registry) {
       "energy that a step gives back (a law whose elasticity is not linear, of Young and Poisson, says so: "
       "static constexpr bool linear_elasticity = false)");
   c.at_most(-dissipated, 1e-12 * scale, "energy that the path gives back");
-  return c.complaints;
+  return c.failures;
 }
 
-Complaints converges(const LawSample& sample, const Registry& registry) {
+Failures converges(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   if (!c.solid()) return {};
   const RandomPath path = c.path(5);
@@ -98,7 +98,7 @@ Complaints converges(const LawSample& sample, const Registry& registry) {
                wanted = c.sample.input.failures.empty() ? 0.95 : 0.7;
   if (!(last < 1e-9)) c.at_most(wanted - order, 0, "wanted order of convergence, less the one found");
   c.at_most(last, 5e-3, "error of the stress with 1600 steps, relative");
-  return c.complaints;
+  return c.failures;
 }
 
 namespace {
@@ -140,7 +140,7 @@ double error_of_turns(const Checker& c, int steps) {
 
 }  // namespace
 
-Complaints objective(const LawSample& sample, const Registry& registry) {
+Failures objective(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   if (!c.solid()) return {};
   const double coarse = error_of_turns(c, 4000), fine = error_of_turns(c, 8000);
@@ -148,10 +148,10 @@ Complaints objective(const LawSample& sample, const Registry& registry) {
   c.at_most(fine, 1e-3, "error of the stress with 8000 steps, relative");
   if (!(fine < 1e-12))
     c.at_most(1.8 - std::log2(coarse / fine), 0, "wanted order of convergence 1.8, less the one found");
-  return c.complaints;
+  return c.failures;
 }
 
-Complaints energy_balances(const LawSample& sample, const Registry& registry) {
+Failures energy_balances(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   // A failing particle keeps its energy and loses its stress.
   if (!c.solid() || !sample.input.failures.empty()) return {};
@@ -181,7 +181,7 @@ Complaints energy_balances(const LawSample& sample, const Registry& registry) {
   c.at_most(fine, 1e-3, "energy less work with 4000 steps, relative");
   if (!(fine < 1e-9))
     c.at_most(0.9 - std::log2(coarse / fine) / 2, 0, "wanted order of convergence 0.9, less the one found");
-  return c.complaints;
+  return c.failures;
 }
 
 namespace {
@@ -213,7 +213,7 @@ double tangent(PointDriver& point, const Vec3<double>& n, double strain, double 
 
 /// rho c^2 against the slope of the stress for a small, fast uniaxial strain in many directions, found by
 /// differences, at states along a path. Elastic unloading is the stiffest answer, so both signs are tried.
-Complaints wave_speed_bounds_tangent(const LawSample& sample, const Registry& registry) {
+Failures wave_speed_bounds_tangent(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   if (!c.solid() || c.traits.viscous) return {};  // viscous stress is not a modulus
   std::mt19937 random(3);
@@ -250,7 +250,7 @@ Complaints wave_speed_bounds_tangent(const LawSample& sample, const Registry& re
   c.at_most(largest, 1 + 1e-5, "stiffest tangent over rho c^2: the time step is not safe");
   // And it is no idle bound: in some direction the material is as stiff as it says.
   c.at_most(0.98 - stiffest, 0, "rho c^2 is far above every tangent; 0.98 less the stiffest over rho c^2");
-  return c.complaints;
+  return c.failures;
 }
 
 }  // namespace mpm::physics::checks

@@ -26,7 +26,7 @@ void for_each_column(F f) {
 
 }  // namespace
 
-Complaints instances_agree(const LawSample& sample, const Registry& registry) {
+Failures instances_agree(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   PointDriver::Options options = c.with_viscosity();
   options.extra_columns = {Column::yield_stress};
@@ -47,10 +47,10 @@ Complaints instances_agree(const LawSample& sample, const Registry& registry) {
     if (vector.has(column))
       c.near(vector.value(column), scalar.value(column), 1e-11, 1e-14, "difference in " + named(column));
   }
-  return c.complaints;
+  return c.failures;
 }
 
-Complaints rest_stays(const LawSample& sample, const Registry& registry) {
+Failures rest_stays(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   PointDriver point(*c.material, c.with_viscosity());
   const double p = point.value(Column::pressure), e = point.energy();
@@ -60,11 +60,11 @@ Complaints rest_stays(const LawSample& sample, const Registry& registry) {
   c.at_most(std::abs(point.value(Column::pressure) - p), 4e-16 * c.stiffness(), "change of the pressure");
   c.at_most(std::abs(point.energy() - e), 0, "change of the energy");
   c.require(point.events().not_finite == 0, "the state is not a number");
-  return c.complaints;
+  return c.failures;
 }
 
 /// What a restart does: a material made anew, the particles' columns and the time.
-Complaints restarts(const LawSample& sample, const Registry& registry) {
+Failures restarts(const LawSample& sample, const Registry& registry) {
   constexpr int steps = 100;
   Checker c(sample, registry);
   const RandomPath path = c.path(2);
@@ -82,11 +82,11 @@ Complaints restarts(const LawSample& sample, const Registry& registry) {
       std::memcmp(expected.block.data(), found.block.data(), expected.block.size() * sizeof(double)) == 0,
       "the columns differ after a restart: what the law remembers must be in its `state`");
   c.require(after.critical_speed() == through.critical_speed(), "the wave speed differs after a restart");
-  return c.complaints;
+  return c.failures;
 }
 
 /// SI and mm-g-ms where the sample is in SI. An absolute tolerance inside a law shows at once.
-Complaints units_agree(const LawSample& sample, const Registry& registry) {
+Failures units_agree(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   const double length = 1e3, mass = 1e3, time = 1e3, velocity = length / time,
                stress = mass / (length * time * time);
@@ -107,7 +107,7 @@ Complaints units_agree(const LawSample& sample, const Registry& registry) {
     if (a.has(column))
       c.near(a.value(column), b.value(column), 1e-10, 1e-14, "difference in " + named(column));
   }
-  return c.complaints;
+  return c.failures;
 }
 
 namespace {
@@ -150,7 +150,7 @@ double strain_of(int particle, int component, int step) {
 
 }  // namespace
 
-Complaints neighbours_do_not_matter(const LawSample& sample, const Registry& registry) {
+Failures neighbours_do_not_matter(const LawSample& sample, const Registry& registry) {
   constexpr int particles = core::batch_particles, each = 7, lane_alone = 3;
   Checker c(sample, registry);
   Crowd crowd(c, core::batch_blocks);
@@ -180,7 +180,7 @@ Complaints neighbours_do_not_matter(const LawSample& sample, const Registry& reg
           bits(crowd.at(column, static_cast<int>(each * n))) != bits(alone[n].at(column, lane_alone));
     c.at_most(different, 0, "particles whose " + named(column) + " differs");
   });
-  return c.complaints;
+  return c.failures;
 }
 
 namespace {
@@ -219,7 +219,7 @@ std::vector<double> state_after(const Checker& c, const ColumnSet& watched, Colu
 
 /// A layout with every column there is holds a pattern where nothing was declared; the pattern must survive,
 /// and the results must be those of the lean layout.
-Complaints columns_suffice(const LawSample& sample, const Registry& registry) {
+Failures columns_suffice(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   const double pattern = std::nan("0x123456");
   ColumnSet declared = ColumnSet::mechanics();
@@ -240,10 +240,10 @@ Complaints columns_suffice(const LawSample& sample, const Registry& registry) {
     else if (full.has(column) && !is_output(column))
       c.require(bits(full.value(column)) == bits(pattern), named(column) + " is written, not declared");
   });
-  return c.complaints;
+  return c.failures;
 }
 
-Complaints columns_are_used(const LawSample& sample, const Registry& registry) {
+Failures columns_are_used(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   const ColumnSet declared = c.material->columns({});
   ColumnSet watched = ColumnSet::mechanics();
@@ -264,7 +264,7 @@ Complaints columns_are_used(const LawSample& sample, const Registry& registry) {
                              state_after(c, watched, column, other, false),
               named(column) + " is declared, and neither read nor written");
   });
-  return c.complaints;
+  return c.failures;
 }
 
 }  // namespace mpm::physics::checks

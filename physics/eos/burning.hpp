@@ -32,8 +32,8 @@ struct Burning : Eos {
 
   /// Of the products, for the wave speed.
   template <class T>
-  EosLine<T> line(EosPoint<T>& point) const {
-    EosLine<T> products = Eos::line(point);
+  LinearisedPressure<T> linearise(EosPoint<T>& point) const {
+    LinearisedPressure<T> products = Eos::linearise(point);
     const T burning = compression_burn * (point.relative_volume * point.relative_volume);  // dF/dmu
     const T slope = core::select(point.burn_fraction < 1.0, burning, 0.0);
     products.da += slope * products.a;
@@ -42,7 +42,7 @@ struct Burning : Eos {
   }
   /// What presses.
   template <class T>
-  EosLine<T> acting(const EosPoint<T>& point, const EosLine<T>& products) const {
+  LinearisedPressure<T> acting(const EosPoint<T>& point, const LinearisedPressure<T>& products) const {
     const T f = point.burn_fraction;
     return {f * products.a, f * products.b, products.da, products.db};
   }
@@ -50,7 +50,8 @@ struct Burning : Eos {
 
 /// The part of the products' line that presses: all of it, but for an explosive.
 template <class T, class Eos>
-EosLine<T> acting_line(const Eos& eos, const EosPoint<T>& point, const EosLine<T>& line) {
+LinearisedPressure<T> acting_line(const Eos& eos, const EosPoint<T>& point,
+                                  const LinearisedPressure<T>& line) {
   if constexpr (requires { eos.acting(point, line); }) return eos.acting(point, line);
   return line;
 }

@@ -1,6 +1,6 @@
 // The pressure of JH2 (manual 3.2.1.15; Johnson and Holmquist 1994), not a type of the input:
 //   p = K1 mu + K2 mu^2 + K3 mu^3 + dP for mu > 0,   K1 mu + dP for mu < 0
-// dP is the pressure of bulking, which the strength model books. The energy of a body placed at another
+// dP is the pressure of bulking, which the strength model ledger. The energy of a body placed at another
 // density is the work of bringing it there from the reference density. Shown by tests/physics/jh2_test.cpp.
 #pragma once
 
@@ -17,7 +17,7 @@ struct CeramicBulk {
   double k1 = 0, k2 = 0, k3 = 0;  ///< stress
 
   template <class T>
-  EosLine<T> line(const EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(const EosPoint<T>& point) const {
     const T mu = point.compression, c = core::max(mu, 0.0);
     return {k1 * mu + c * c * (k2 + k3 * c) + point.bulking_pressure, 0.0, k1 + c * (2 * k2 + (3 * k3) * c),
             0.0};

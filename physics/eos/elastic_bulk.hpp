@@ -17,7 +17,7 @@ struct ElasticBulk {
   double bulk = 0;  ///< K, stress
 
   template <class T>
-  EosLine<T> line(const EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(const EosPoint<T>& point) const {
     return {point.pressure - bulk * point.volumetric_strain, 0.0, bulk * point.relative_volume, 0.0};
   }
 

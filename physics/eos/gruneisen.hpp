@@ -55,7 +55,7 @@ struct Gruneisen {
   }
 
   template <class T>
-  EosLine<T> line(const EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(const EosPoint<T>& point) const {
     using core::max;
     using core::min;
     const T mu = max(point.compression, 0.0);
@@ -69,7 +69,7 @@ struct Gruneisen {
 
  private:
   template <class T>
-  EosLine<T> cubic(const T& mu, const T& tension, const T& v) const {
+  LinearisedPressure<T> cubic(const T& mu, const T& tension, const T& v) const {
     const double c2 = 2 * s1 - 1, c3 = (s1 - 1) * (3 * s1 - 1);
     const T hugoniot = mu * (1.0 + mu * (c2 + mu * c3));
     const T slope = 1.0 + mu * (2 * c2 + mu * (3 * c3));

@@ -78,7 +78,7 @@ struct HolmquistJohnsonCookBulk {
   }
 
   template <class T>
-  EosLine<T> line(EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(EosPoint<T>& point) const {
     using core::max;
     const T mu = point.compression, top = max(point.max_compression, mu);
     const Branch<T> from = branch(top);

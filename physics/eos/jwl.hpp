@@ -41,7 +41,7 @@ struct Jwl {
   }
 
   template <class T>
-  EosLine<T> line(const EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(const EosPoint<T>& point) const {
     using core::exp;
     const T v = point.relative_volume, density = 1.0 + point.compression;
     const T first = a * exp(-r1 * v), second = b * exp(-r2 * v);

@@ -132,7 +132,7 @@ struct PAlpha : Solid {
   }
 
   template <class T>
-  EosLine<T> line(EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(EosPoint<T>& point) const {
     using core::pow;
     using core::select;
     const double span = p_lock - p_crush, pores = first_distension - 1;
@@ -173,7 +173,7 @@ struct PAlpha : Solid {
     }
     inner.relative_volume = 1.0 / (1.0 + inner.compression);
     inner.energy = point.energy * (1 / density_ratio);
-    const EosLine<T> line = Solid::line(inner);
+    const LinearisedPressure<T> line = Solid::linearise(inner);
     const T share = 1.0 / distension, slope = line.da + line.db * inner.energy;
     const T p = (line.a + line.b * inner.energy) * share;
     return {p, share * (slope * density - p), density_ratio * slope, line.b * share * (1 / density_ratio)};

@@ -43,7 +43,7 @@ struct EosPoint {
 /// The pressure at the volume reached, as a line in the energy: p = a + b E (thesis 2-91). A law that is not
 /// linear gives its tangent at the point's energy. da and db are derivatives with respect to mu at fixed E.
 template <class T>
-struct EosLine {
+struct LinearisedPressure {
   T a, b, da, db;
 };
 

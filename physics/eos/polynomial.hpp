@@ -38,7 +38,7 @@ struct Polynomial {
   }
 
   template <class T>
-  EosLine<T> line(const EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(const EosPoint<T>& point) const {
     const T mu = point.compression, positive = core::max(mu, 0.0);
     return {c0 + mu * (c1 + mu * mu * c3) + c2 * positive * positive, c4 + c5 * mu + c6 * positive * positive,
             c1 + 3 * c3 * mu * mu + 2 * c2 * positive, c5 + 2 * c6 * positive};

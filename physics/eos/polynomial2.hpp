@@ -40,7 +40,7 @@ struct Polynomial2 {
   }
 
   template <class T>
-  EosLine<T> line(const EosPoint<T>& point) const {
+  LinearisedPressure<T> linearise(const EosPoint<T>& point) const {
     const T c = core::max(point.compression, 0.0), t = core::min(point.compression, 0.0);
     const core::MaskOf<T> tension = point.compression < 0.0;
     return {c * (a1 + c * (a2 + c * a3)) + t * (t1 + t * t2), b0 + b1 * c,

@@ -22,12 +22,12 @@ struct StrengthPressure {
   double bulk = 0;  ///< K at rest, stress
 
   template <class T>
-  static EosLine<T> line(const core::Batch& batch, int row, const T& relative_volume) {
-    return line(core::load<T>(batch.law_pressure + row), core::load<T>(batch.bulk_modulus + row),
-                relative_volume);
+  static LinearisedPressure<T> linearise(const core::Batch& batch, int row, const T& relative_volume) {
+    return linearise(core::load<T>(batch.law_pressure + row), core::load<T>(batch.bulk_modulus + row),
+                     relative_volume);
   }
   template <class T>
-  static EosLine<T> line(const T& pressure, const T& modulus, const T& relative_volume) {
+  static LinearisedPressure<T> linearise(const T& pressure, const T& modulus, const T& relative_volume) {
     return {pressure, 0.0, modulus * relative_volume, 0.0};
   }
 

@@ -57,7 +57,7 @@ class EosOf final : public EosLaw {
       EosPoint<double> point{};
       point.compression = mu;
       point.relative_volume = 1 / (1 + mu);
-      if constexpr (!own_pressure) depends = depends || eos_.line(point).b != 0;
+      if constexpr (!own_pressure) depends = depends || eos_.linearise(point).b != 0;
     }
     return depends;
   }
@@ -69,7 +69,7 @@ class EosOf final : public EosLaw {
     } else {
       EosPoint<double> point{};
       point.relative_volume = 1;
-      const EosLine<double> line = start(eos_, point, e0, 0.0);
+      const LinearisedPressure<double> line = start(eos_, point, e0, 0.0);
       return 4.0 / 3.0 * shear + isentropic_modulus(line, 0.0, 1.0, point.pressure, point.energy);
     }
   }

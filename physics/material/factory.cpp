@@ -97,7 +97,7 @@ std::unique_ptr<Material> make_material(const core::MaterialInput& input,
 std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene,
                                                                      const Registry& registry) {
   std::vector<std::unique_ptr<core::ConstitutiveModel>> materials;
-  core::Complaints wrong;
+  core::ErrorList wrong;
   for (const core::MaterialInput& input : scene.materials)
     wrong.collect([&] { materials.push_back(make_material(input, scene.detonations, registry)); });
   wrong.raise_if_any();

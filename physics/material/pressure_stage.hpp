@@ -48,19 +48,19 @@ struct Density {
 
 /// rho dp/drho along an isentrope (2-57).
 template <class T>
-T isentropic_modulus(const EosLine<T>& line, const T& compression, const T& relative_volume,
+T isentropic_modulus(const LinearisedPressure<T>& line, const T& compression, const T& relative_volume,
                      const T& pressure, const T& energy) {
   return (1.0 + compression) * (line.da + line.db * energy) + relative_volume * pressure * line.b;
 }
 
 /// The equation's line at the point, with the compression held below the equation's limit where it has one.
 template <class T, class Eos>
-EosLine<T> limited_line(const Eos& eos, EosPoint<T>& point, core::MaskOf<T>& outside) {
+LinearisedPressure<T> limited_line(const Eos& eos, EosPoint<T>& point, core::MaskOf<T>& outside) {
   if constexpr (requires { eos.compression_limit; }) {
     outside = point.compression > eos.compression_limit;
     point.compression = core::min(point.compression, eos.compression_limit);
   }
-  return eos.line(point);
+  return eos.linearise(point);
 }
 
 /// Q of all that is viscous and counts in the critical step: the artificial viscosity (2-73), from the rate
@@ -152,14 +152,14 @@ template <class T, class Eos>
     EosPoint<T> point{now.compression, now.relative_volume, mechanical, old_p, old_energy};
     history.load(block, point);
     core::MaskOf<T> outside{};
-    const EosLine<T> line = [&] {
+    const LinearisedPressure<T> line = [&] {
       if constexpr (std::is_same_v<Eos, StrengthPressure>)
-        return eos.line(batch, row, now.relative_volume);
+        return eos.linearise(batch, row, now.relative_volume);
       else
         return limited_line(eos, point, outside);
     }();
 
-    const EosLine<T> acting = acting_line(eos, point, line);
+    const LinearisedPressure<T> acting = acting_line(eos, point, line);
 
     const T per_v0 = rho0 * now.inverse_mass;
     const T h = 0.5 * (volume - old_volume) * per_v0;

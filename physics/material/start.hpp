@@ -40,13 +40,13 @@ StrengthPoint<T> rest(const Law& law, StrengthPoint<T> point) {
 /// `heat` is what a body that starts at another temperature than the material's has more, as if heated in
 /// place.
 template <class T, class Eos>
-EosLine<T> start(const Eos& eos, EosPoint<T>& point, double e0, const T& heat) {
+LinearisedPressure<T> start(const Eos& eos, EosPoint<T>& point, double e0, const T& heat) {
   point.energy = e0;
   if constexpr (requires { eos.initialise(point); }) eos.initialise(point);
   point.energy += heat;
   core::MaskOf<T> outside{};
-  const EosLine<T> line = limited_line(eos, point, outside);
-  const EosLine<T> acting = acting_line(eos, point, line);
+  const LinearisedPressure<T> line = limited_line(eos, point, outside);
+  const LinearisedPressure<T> acting = acting_line(eos, point, line);
   point.pressure = acting.a + acting.b * point.energy;
   return line;
 }
@@ -108,11 +108,11 @@ void initialise_eos(core::Batch& batch, const Eos& eos, const StartRules& rules)
                    (initial_temperature<T>(layout, block, rules) - rules.room_temperature);
     EosPoint<T> point{now.compression, now.relative_volume, T(0.0), T(0.0), T(0.0)};
     history.load(block, point);
-    const EosLine<T> line = [&] {
+    const LinearisedPressure<T> line = [&] {
       if constexpr (std::is_same_v<Eos, StrengthPressure>) {
         point.energy = get(Column::internal_energy) + heat;
         point.pressure = core::load<T>(batch.law_pressure + row);
-        return eos.line(batch, row, now.relative_volume);
+        return eos.linearise(batch, row, now.relative_volume);
       } else {
         return start(eos, point, rules.e0, heat);
       }

@@ -32,7 +32,7 @@ struct HolmquistJohnsonCook : BrittlePlasticity {
   double epso = 0;  ///< 1/time
   double tensile_failure = 0, threshold = 0, erosion_by_damage = 0, erosion_by_pressure = 0;
   double tensile_damage = 0, damage_to_fail = 0, failure_damage = 1;
-  bool crushes = false;  ///< the equation of state books plastic volumetric strain
+  bool crushes = false;  ///< the equation of state ledger plastic volumetric strain
 
   static constexpr auto parameters() {
     using P = HolmquistJohnsonCook;

@@ -12,7 +12,7 @@ struct MisesPlasticity : IsotropicElasticity {
   double yield0 = 0;                    ///< initial yield stress
   double plastic_work_coefficient = 0;  ///< part of the plastic work that becomes heat
 
-  /// Books the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112
+  /// Ledger the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112
   /// to 2-120). `before` and `after` are the yield stress at the ends of the plastic part of the step; where
   /// the increment is zero the trial stress stays as it is.
   template <class T>

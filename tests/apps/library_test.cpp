@@ -36,7 +36,7 @@ std::map<std::string, double> values(const std::string& entry) {
   return all;
 }
 
-std::string complaint(const std::function<void()>& f) {
+std::string fault(const std::function<void()>& f) {
   try {
     f();
   } catch (const core::InputErrors& errors) { return errors.what(); }
@@ -51,8 +51,8 @@ core::MaterialInput parsed(std::string_view text) {
   return io::parse_material(materials(text), "case.xmp", physics::catalogue(), {}).material;
 }
 
-std::string complaint_about(std::string_view text) {
-  return complaint([&] { parsed(text); });
+std::string error_about(std::string_view text) {
+  return fault([&] { parsed(text); });
 }
 
 TEST_CASE("every value of the library has a name, a unit and a range that its law knows", "[library]") {
@@ -67,7 +67,7 @@ TEST_CASE("every value of the library has a name, a unit and a range that its la
           row = &a;
       REQUIRE(row);
       const core::Quantity quantity = core::parse_quantity(v.text);
-      CHECK(io::complaint(*row, fmt::format("{}", quantity.value * quantity.unit.in_si)) == "");
+      CHECK(io::fault(*row, fmt::format("{}", quantity.value * quantity.unit.in_si)) == "");
       CHECK(core::to_text(core::parse_dimension(row->unit)) == core::to_text(quantity.unit.dimension));
     }
   }
@@ -141,7 +141,7 @@ TEST_CASE("every entry makes a material or says what is missing", "[library]") {
   const core::Catalogue catalogue = physics::catalogue();
   for (const io::LibraryEntry& entry : io::library().entries) {
     INFO(entry.name);
-    const std::string said = complaint([&] {
+    const std::string said = fault([&] {
       const auto choice = io::library_material(entry.name, "mm g ms", catalogue);
       const auto material = physics::make_material(choice.material);
       CHECK(material->reference_density() == choice.material.reference_density);
@@ -201,40 +201,40 @@ TEST_CASE("values in an input: filled in, overridden, supplemented", "[library]"
   CHECK(set({"Yield0=1e-3", "EquationOfState.S1=1.5", "ReferenceDensity=9"}).eos->at("S1") == 1.5);
 }
 
-TEST_CASE("complaints about the library", "[library]") {
-  CHECK(complaint_about("<Material name='cu' library='OFHC-Cu-J' units='mm g ms'/>") ==
+TEST_CASE("faults about the library", "[library]") {
+  CHECK(error_about("<Material name='cu' library='OFHC-Cu-J' units='mm g ms'/>") ==
         "case.xmp:1: <Material library=\"OFHC-Cu-J\">: the library has no 'OFHC-Cu-J'; did you mean "
         "'OFHC-Cu-JC', 'OFHC-Cu-JC-damage'?; mpm_check --materials lists what it has");
-  CHECK(complaint_about("<Material name='cu' library='copper' units='mm g ms'/>") ==
+  CHECK(error_about("<Material name='cu' library='copper' units='mm g ms'/>") ==
         "case.xmp:1: <Material library=\"copper\">: the library has no 'copper'; did you mean "
         "'OFHC-Cu-linear', 'OFHC-Cu-JC', 'OFHC-Cu-JC-damage', 'Cu-Gruneisen'?; mpm_check --materials lists "
         "what it has");
-  CHECK(complaint_about("<Material name='cu' library='' units='mm g ms'/>") ==
+  CHECK(error_about("<Material name='cu' library='' units='mm g ms'/>") ==
         "case.xmp:1: <Material library=\"\">: expected a name of the library; mpm_check --materials lists "
         "them");
-  CHECK(complaint_about("<Material name='cu' library='OFHC-Cu-JC'/>") ==
+  CHECK(error_about("<Material name='cu' library='OFHC-Cu-JC'/>") ==
         "case.xmp:1: <Material>: attribute 'units' is missing: library values are converted to the units of "
         "this input, as in units=\"mm g ms\" (or give length, mass and time in Header / Unit)");
-  CHECK(complaint_about("<Material name='cu' library='OFHC-Cu-JC' units='mm g msec'/>") ==
+  CHECK(error_about("<Material name='cu' library='OFHC-Cu-JC' units='mm g msec'/>") ==
         "case.xmp:1: <Material units=\"mm g msec\">: 'msec' is no unit of length, mass or time; known are m, "
         "dm, cm, mm, um, nm, km, in, ft, kg, g, mg, ug, t, tonne, lb, s, ms, us, ns, min, h");
-  CHECK(complaint_about("<Header><Unit time='s' length='m' mass='kg'/></Header>"
-                        "<Material name='cu' library='OFHC-Cu-JC' units='mm g ms'/>") ==
+  CHECK(error_about("<Header><Unit time='s' length='m' mass='kg'/></Header>"
+                    "<Material name='cu' library='OFHC-Cu-JC' units='mm g ms'/>") ==
         "case.xmp:1: <Material units=\"mm g ms\">: Header / Unit says m kg s; one input has one system of "
         "units");
-  CHECK(complaint_about("<Material name='a' library='OFHC-Cu-JC' units='mm g ms'/>"
-                        "<Material name='b' library='OFHC-Cu-JC' units='SI'/>") ==
+  CHECK(error_about("<Material name='a' library='OFHC-Cu-JC' units='mm g ms'/>"
+                    "<Material name='b' library='OFHC-Cu-JC' units='SI'/>") ==
         "case.xmp:1: <Material units=\"SI\">: a material before this one has mm g ms; one input has one "
         "system of units");
-  CHECK(complaint_about("<Material name='cu' units='mm g ms'><ReferenceDensity value='1'/>"
-                        "<StrengthModel type='IsoElastic' Young='1' Poisson='0'/></Material>") ==
+  CHECK(error_about("<Material name='cu' units='mm g ms'><ReferenceDensity value='1'/>"
+                    "<StrengthModel type='IsoElastic' Young='1' Poisson='0'/></Material>") ==
         "case.xmp:1: <Material units=\"mm g ms\">: has a meaning only with library, whose values it "
         "converts");
-  CHECK(complaint_about("<Material name='cu' library='OFHC-Cu-JC' units='mm g ms'>\n"
-                        "<StrengthModel Yield0='-1'/></Material>") ==
+  CHECK(error_about("<Material name='cu' library='OFHC-Cu-JC' units='mm g ms'>\n"
+                    "<StrengthModel Yield0='-1'/></Material>") ==
         "case.xmp:2: <StrengthModel Yield0=\"-1\">: expected a number greater than 0");
   const auto set = [](const std::string& setting) {
-    return complaint(
+    return fault(
         [&] { io::library_material("OFHC-Cu-JC|Cu-Gruneisen", "mm g ms", physics::catalogue(), {setting}); });
   };
   CHECK(set("Yeild0=1") == "library: --set Yeild0=1: the material has no 'Yeild0'; did you mean 'Yield0'?");

@@ -22,7 +22,7 @@ std::vector<Leg> path(std::string_view text, int repeat = 1) {
   return apps::parse_path(text, {.rate = 2, .steps = 50, .repeat = repeat});
 }
 
-std::string complaint(std::string_view text) {
+std::string fault(std::string_view text) {
   try {
     path(text);
   } catch (const apps::PathError& error) { return error.what(); }
@@ -84,57 +84,56 @@ TEST_CASE("legs of a path", "[path]") {
   CHECK(mixed[0].controls[0].target == -20);
 }
 
-TEST_CASE("complaints about a path", "[path]") {
+TEST_CASE("faults about a path", "[path]") {
   CHECK(
-      complaint("uniaxal_stress 1") ==
+      fault("uniaxal_stress 1") ==
       "path \"uniaxal_stress 1\": there is no path 'uniaxal_stress'; did you mean 'uniaxial_stress'?; there "
       "are uniaxial_stress, uniaxial_strain, triaxial, biaxial, equibiaxial, simple_shear, hydrostatic, "
       "pressure, mixed, hold, table");
-  CHECK(complaint("uniaxial_stress") ==
+  CHECK(fault("uniaxial_stress") ==
         "path \"uniaxial_stress\": is written: uniaxial_stress E [E...] [rate R | time T] [steps N]");
-  CHECK(complaint("uniaxial_stress 0.1 rat 1") ==
+  CHECK(fault("uniaxial_stress 0.1 rat 1") ==
         "path \"uniaxial_stress 0.1 rat 1\": 'rat' is neither a number nor an option; did you mean 'rate'?");
-  CHECK(complaint("uniaxial_stress 0.1 rate") ==
+  CHECK(fault("uniaxial_stress 0.1 rate") ==
         "path \"uniaxial_stress 0.1 rate\": 'rate' needs a number after it");
-  CHECK(complaint("hydrostatic 0.1; uniaxial_stress 0.1 rate 0") ==
+  CHECK(fault("hydrostatic 0.1; uniaxial_stress 0.1 rate 0") ==
         "path \"uniaxial_stress 0.1 rate 0\": rate 0 must be greater than 0");
-  CHECK(complaint("uniaxial_stress 0.1 rate 1 time 1") ==
+  CHECK(fault("uniaxial_stress 0.1 rate 1 time 1") ==
         "path \"uniaxial_stress 0.1 rate 1 time 1\": has both a rate and a time");
-  CHECK(complaint("uniaxial_stress 0.1 steps 1.5") ==
+  CHECK(fault("uniaxial_stress 0.1 steps 1.5") ==
         "path \"uniaxial_stress 0.1 steps 1.5\": steps 1.5 must be a whole number from 1");
-  CHECK(complaint("uniaxial_stress stress 1") ==
+  CHECK(fault("uniaxial_stress stress 1") ==
         "path \"uniaxial_stress stress 1\": a leg to a stress needs a time (or a rate of the stress)");
-  CHECK(complaint("uniaxial_stress 0.1 stress 1 time 1") ==
+  CHECK(fault("uniaxial_stress 0.1 stress 1 time 1") ==
         "path \"uniaxial_stress 0.1 stress 1 time 1\": ends at a strain or at a stress, not at both");
-  CHECK(complaint("hydrostatic 0.1 confining 1") ==
+  CHECK(fault("hydrostatic 0.1 confining 1") ==
         "path \"hydrostatic 0.1 confining 1\": only triaxial and biaxial have a confining pressure");
   CHECK(
-      complaint("hydrostatic stress 1 time 1") ==
+      fault("hydrostatic stress 1 time 1") ==
       "path \"hydrostatic stress 1 time 1\": only uniaxial_stress and simple_shear end at a stress; 'mixed' "
       "prescribes any other");
-  CHECK(complaint("triaxial 0.1") ==
+  CHECK(fault("triaxial 0.1") ==
         "path \"triaxial 0.1\": needs the lateral pressure, as in: triaxial -0.05 confining 10");
-  CHECK(complaint("pressure 5 rate 1") ==
+  CHECK(fault("pressure 5 rate 1") ==
         "path \"pressure 5 rate 1\": a leg to a pressure has a time, not a rate");
-  CHECK(complaint("mixed e_xx=1") == "path \"mixed e_xx=1\": needs a time");
-  CHECK(complaint("mixed 1 time 1") ==
+  CHECK(fault("mixed e_xx=1") == "path \"mixed e_xx=1\": needs a time");
+  CHECK(fault("mixed 1 time 1") ==
         "path \"mixed 1 time 1\": is written: mixed e_xx=0.01 s_yy=-10 ... time T");
-  CHECK(complaint("mixed e_xx=1 s_xx=2 time 1") ==
-        "path \"mixed e_xx=1 s_xx=2 time 1\": xx is prescribed twice");
-  CHECK(complaint("mixed v_xx=1 time 1") ==
+  CHECK(fault("mixed e_xx=1 s_xx=2 time 1") == "path \"mixed e_xx=1 s_xx=2 time 1\": xx is prescribed twice");
+  CHECK(fault("mixed v_xx=1 time 1") ==
         "path \"mixed v_xx=1 time 1\": 'v_xx' is no component; e_xx is a strain, s_xx a stress, of xx, yy, "
         "zz, xy, "
         "yz, xz");
-  CHECK(complaint("hold 5") == "path \"hold 5\": is written: hold time T");
-  CHECK(complaint("table") == "path \"table\": is written: table FILE");
-  CHECK(complaint("table none.csv") == "table none.csv: cannot be read");
-  CHECK(complaint(" ; ") == "the path is empty; as in: --path \"uniaxial_stress 0.2 rate 1000\"");
+  CHECK(fault("hold 5") == "path \"hold 5\": is written: hold time T");
+  CHECK(fault("table") == "path \"table\": is written: table FILE");
+  CHECK(fault("table none.csv") == "table none.csv: cannot be read");
+  CHECK(fault(" ; ") == "the path is empty; as in: --path \"uniaxial_stress 0.2 rate 1000\"");
 }
 
 TEST_CASE("tables of deformation gradients", "[path]") {
   const auto said = [](std::string_view text) {
     const TemporaryFile file(text);
-    const std::string message = complaint("table " + file.name);
+    const std::string message = fault("table " + file.name);
     const std::size_t at = message.find(file.name);
     return at == message.npos ? message : message.substr(at + file.name.size());
   };

@@ -94,15 +94,15 @@ TEST_CASE("A restart file is the same on any number of ranks, and is read on any
   core::Model by_one = prepared_model(small_scene());
   io::read_restart(path, by_one, solo);
   CHECK(io::state_hash(by_one, solo) == hash);
-  CHECK(by_one.books.external_work.value() == alone.books.external_work.value());
-  CHECK(by_one.books.eroded == 5);
+  CHECK(by_one.ledger.external_work.value() == alone.ledger.external_work.value());
+  CHECK(by_one.ledger.eroded == 5);
 
   core::Model by_all = prepared_model(small_scene());
   const io::RestartResult result = io::read_restart(path, by_all, exchange);
   CHECK(io::state_hash(by_all, exchange) == hash);
   CHECK(result.extra.tracked == std::vector<std::uint64_t>{4, 2});
   CHECK(core::compute_totals(by_all, exchange).eroded == 5);
-  CHECK(core::compute_totals(by_all, exchange).external_work == alone.books.external_work.value());
+  CHECK(core::compute_totals(by_all, exchange).external_work == alone.ledger.external_work.value());
   std::vector<std::string> notices;
   CHECK(io::find_newest_restart(folder.path(), "small", exchange, notices).value_or("") == path);
 }

@@ -68,7 +68,7 @@ double triaxial(const physics::Material& material, double cell_pressure, double 
   return point.stress().xx;
 }
 
-std::string complaint(const core::ParameterValues& values) {
+std::string fault(const core::ParameterValues& values) {
   try {
     make(soil(values));
   } catch (const core::InputErrors& errors) { return errors.what(); }
@@ -229,23 +229,22 @@ TEST_CASE("without friction the cone is von Mises' cylinder", "[physics][drucker
 
 TEST_CASE("what a Drucker-Prager soil may not be is refused by name", "[physics][drucker-prager]") {
   using Catch::Matchers::Contains;
-  CHECK_THAT(complaint({{"qfai", 0.4}, {"kfai", 2e5}, {"qpsi", 0.1}, {"ten_f", 5.1e5}}),
+  CHECK_THAT(fault({{"qfai", 0.4}, {"kfai", 2e5}, {"qpsi", 0.1}, {"ten_f", 5.1e5}}),
              Contains("ten_f must not exceed the apex of the cone, kfai/qfai = 500000"));
-  CHECK_THAT(complaint({{"qfai", 0.4}, {"kfai", 2e5}, {"qpsi", 0.5}, {"ten_f", 0.0}}),
+  CHECK_THAT(fault({{"qfai", 0.4}, {"kfai", 2e5}, {"qpsi", 0.5}, {"ten_f", 0.0}}),
              Contains("qpsi must not exceed qfai"));
-  CHECK_THAT(complaint({{"phi", 20.0}, {"c", 1e4}, {"psi", 21.0}, {"ten_f", 0.0}}),
+  CHECK_THAT(fault({{"phi", 20.0}, {"c", 1e4}, {"psi", 21.0}, {"ten_f", 0.0}}),
              Contains("psi must not exceed phi"));
-  CHECK_THAT(complaint({{"ten_f", 0.0}}), Contains("either qfai, kfai and qpsi or phi, c and psi"));
-  CHECK_THAT(complaint({{"qfai", 0.4},
-                        {"kfai", 2e5},
-                        {"qpsi", 0.1},
-                        {"phi", 20.0},
-                        {"c", 1e4},
-                        {"psi", 0.0},
-                        {"ten_f", 0.0}}),
+  CHECK_THAT(fault({{"ten_f", 0.0}}), Contains("either qfai, kfai and qpsi or phi, c and psi"));
+  CHECK_THAT(fault({{"qfai", 0.4},
+                    {"kfai", 2e5},
+                    {"qpsi", 0.1},
+                    {"phi", 20.0},
+                    {"c", 1e4},
+                    {"psi", 0.0},
+                    {"ten_f", 0.0}}),
              Contains("either qfai, kfai and qpsi or phi, c and psi"));
-  CHECK_THAT(complaint({{"qfai", 0.0}, {"kfai", 0.0}, {"qpsi", 0.0}, {"ten_f", 0.0}}),
-             Contains("no strength"));
+  CHECK_THAT(fault({{"qfai", 0.0}, {"kfai", 0.0}, {"qpsi", 0.0}, {"ten_f", 0.0}}), Contains("no strength"));
   core::MaterialInput input = soil({{"qfai", 0.4}, {"kfai", 2e5}, {"qpsi", 0.1}, {"ten_f", 0.0}});
   input.eos = core::LawInput{"Gruneisen", {{"C0", 2000.0}, {"S1", 1.5}, {"gamma0", 1.0}}, {}};
   CHECK_THROWS_WITH(make(input), Contains("remove the EquationOfState"));

@@ -14,9 +14,9 @@
 namespace mpm::tests {
 
 using core::Column;
-using physics::EosLine;
 using physics::EosPoint;
 using physics::Gruneisen;
+using physics::LinearisedPressure;
 using physics::PathKind;
 using physics::PointDriver;
 
@@ -34,7 +34,7 @@ Gruneisen law(bool simplified = false) {
 EosPoint<double> at(double mu) { return {mu, 1 / (1 + mu), 0, 0, 0}; }
 
 double pressure(const Gruneisen& g, double mu, double energy) {
-  const EosLine<double> line = g.line(at(mu));
+  const LinearisedPressure<double> line = g.linearise(at(mu));
   return line.a + line.b * energy;
 }
 
@@ -69,10 +69,10 @@ TEST_CASE("derivatives of the equation of state", "[physics][gruneisen]") {
     for (const double mu : {-0.1, -1e-3, 1e-3, 0.1, 0.5, 1.0}) {
       INFO("mu " << mu << ", simplified " << simplified);
       const double h = 1e-6;  // error h^2 and 1e-16/h
-      const double slope = (g.line(at(mu + h)).a - g.line(at(mu - h)).a) / (2 * h);
-      CHECK(g.line(at(mu)).da == Approx(slope).epsilon(1e-8));
-      CHECK(g.line(at(mu)).b == gamma0);
-      CHECK(g.line(at(mu)).db == 0);
+      const double slope = (g.linearise(at(mu + h)).a - g.linearise(at(mu - h)).a) / (2 * h);
+      CHECK(g.linearise(at(mu)).da == Approx(slope).epsilon(1e-8));
+      CHECK(g.linearise(at(mu)).b == gamma0);
+      CHECK(g.linearise(at(mu)).db == 0);
     }
   }
 }

@@ -92,7 +92,7 @@ double grown(double f, double strain, double triaxiality) {
   return f;
 }
 
-std::string complaint(const core::ParameterValues& values) {
+std::string fault(const core::ParameterValues& values) {
   try {
     make(porous(values));
   } catch (const core::InputErrors& errors) { return errors.what(); }
@@ -301,13 +301,12 @@ TEST_CASE("initial voids scatter by the particle's identity", "[physics][gurson]
 
 TEST_CASE("what a porous metal may not be is refused by name", "[physics][gurson]") {
   using Catch::Matchers::Contains;
-  CHECK_THAT(complaint({}), Contains("one matrix"));
-  CHECK_THAT(complaint({{"TangMod", 1e9}, {"N_hard", 5.0}}), Contains("one matrix"));
-  CHECK_THAT(complaint({{"TangMod", young}}), Contains("TangMod must be smaller than Young"));
-  CHECK_THAT(complaint({{"TangMod", 1e9}, {"fc", 0.3}}), Contains("fc must be smaller than ff"));
-  CHECK_THAT(complaint({{"TangMod", 1e9}, {"fc", 0.7}, {"ff", 0.9}}),
-             Contains("fc must be smaller than 1/q1"));
-  CHECK_THAT(complaint({{"TangMod", 1e9}, {"f0", 0.26}}), Contains("f0 must be smaller than ff"));
+  CHECK_THAT(fault({}), Contains("one matrix"));
+  CHECK_THAT(fault({{"TangMod", 1e9}, {"N_hard", 5.0}}), Contains("one matrix"));
+  CHECK_THAT(fault({{"TangMod", young}}), Contains("TangMod must be smaller than Young"));
+  CHECK_THAT(fault({{"TangMod", 1e9}, {"fc", 0.3}}), Contains("fc must be smaller than ff"));
+  CHECK_THAT(fault({{"TangMod", 1e9}, {"fc", 0.7}, {"ff", 0.9}}), Contains("fc must be smaller than 1/q1"));
+  CHECK_THAT(fault({{"TangMod", 1e9}, {"f0", 0.26}}), Contains("f0 must be smaller than ff"));
 }
 
 }  // namespace mpm::tests

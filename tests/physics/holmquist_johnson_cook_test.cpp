@@ -16,10 +16,10 @@
 namespace mpm::tests {
 
 using core::Column;
-using physics::EosLine;
 using physics::EosPoint;
 using physics::HolmquistJohnsonCook;
 using physics::HolmquistJohnsonCookBulk;
+using physics::LinearisedPressure;
 using physics::PointDriver;
 
 namespace {
@@ -47,13 +47,13 @@ struct Pores {
   explicit Pores(const HolmquistJohnsonCookBulk& bulk) : law(bulk) {}
   double operator()(double mu) {
     point.compression = mu, point.relative_volume = 1 / (1 + mu);
-    line = law.line(point);
+    line = law.linearise(point);
     CHECK(line.b == 0);
     return line.a;
   }
   HolmquistJohnsonCookBulk law;
   EosPoint<double> point{};
-  EosLine<double> line{};
+  LinearisedPressure<double> line{};
 };
 
 /// The sample in SI with other switches.
@@ -172,7 +172,7 @@ TEST_CASE("HJC stiffness is that of unloading, or of loading where that is more"
   }
 }
 
-TEST_CASE("HJC books the compression that unloading would leave", "[physics][hjc]") {
+TEST_CASE("HJC ledger the compression that unloading would leave", "[physics][hjc]") {
   const HolmquistJohnsonCookBulk law = bulk_law();
   Pores pores(law);
   pores(0.001);

@@ -13,8 +13,8 @@ namespace {
 void holds_for_every_law(std::string_view name) {
   const physics::LawCheck& check = physics::law_check(name);
   for (const Sample& s : samples()) {
-    for (const std::string& complaint : check.complaints(of(s), physics::built_in_laws()))
-      FAIL_CHECK(s.label << ": " << complaint);
+    for (const std::string& fault : check.failures(of(s), physics::built_in_laws()))
+      FAIL_CHECK(s.label << ": " << fault);
   }
   SUCCEED();
 }

@@ -40,7 +40,7 @@ struct Crowd {
   Batch batch{};
 };
 
-std::string complaint(const core::MaterialInput& input) {
+std::string fault(const core::MaterialInput& input) {
   try {
     make(input);
   } catch (const core::InputErrors& errors) { return errors.what(); }
@@ -65,39 +65,39 @@ TEST_CASE("what contradicts itself is refused by name", "[physics][material]") {
   using Catch::Matchers::Equals;
   core::MaterialInput input = copper("IsoHarden");
   input.strength.values["TangMod"] = 124e9;
-  CHECK_THAT(complaint(input), Contains("TangMod must be smaller than Young"));
+  CHECK_THAT(fault(input), Contains("TangMod must be smaller than Young"));
 
   input = copper("JohnsonCook");
   input.strength.values["melt"] = 200;
-  CHECK_THAT(complaint(input), Contains("melt must be greater than roomt"));
+  CHECK_THAT(fault(input), Contains("melt must be greater than roomt"));
 
   input = copper("IsoElastic", true);
   input.strength.type = "CauchyElastic";
-  CHECK_THAT(complaint(input), Contains("remove the EquationOfState"));
+  CHECK_THAT(fault(input), Contains("remove the EquationOfState"));
 
   input = {};
   input.reference_density = 1000;
   input.strength.type = "Null";
-  CHECK_THAT(complaint(input), Contains("add an EquationOfState"));
+  CHECK_THAT(fault(input), Contains("add an EquationOfState"));
 
   input = copper("IsoElastic");
   input.strength.values["TemperatureCoefficient"] = 1e-5;
-  CHECK_THAT(complaint(input), Contains("TemperatureCoefficient needs SpecHeat"));
+  CHECK_THAT(fault(input), Contains("TemperatureCoefficient needs SpecHeat"));
   input.strength.values["SpecHeat"] = 383;
-  CHECK_THAT(complaint(input), Equals(""));
+  CHECK_THAT(fault(input), Equals(""));
   input = copper("IsoHarden heated", true);
   input.strength.values["TemperatureCoefficient"] = 1e-5;
-  CHECK_THAT(complaint(input), Contains("TemperatureCoefficient must be 0 with Gruneisen"));
+  CHECK_THAT(fault(input), Contains("TemperatureCoefficient must be 0 with Gruneisen"));
   input = copper("IsoElastic");
   input.strength.values["CoefficientOfThermalConductivity"] = 400;
-  CHECK_THAT(complaint(input), Contains("CoefficientOfThermalConductivity needs SpecHeat"));
+  CHECK_THAT(fault(input), Contains("CoefficientOfThermalConductivity needs SpecHeat"));
   input = copper("IsoElastic");
   input.random_failure.enable = true;
   input.random_failure.distribution = core::RandomFailureInput::Distribution::gauss;
-  CHECK_THAT(complaint(input), Equals(""));
+  CHECK_THAT(fault(input), Equals(""));
   input = copper("IsoElastic");
   input.strength.type = "Unobtainium";
-  CHECK_THAT(complaint(input), Contains("Unobtainium is not implemented"));
+  CHECK_THAT(fault(input), Contains("Unobtainium is not implemented"));
 }
 
 TEST_CASE("the catalogue names each parameter once, with a meaning and a range that holds its default",

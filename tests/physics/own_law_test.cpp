@@ -40,7 +40,7 @@ struct Compacting {
   static constexpr std::array state{Column::max_compression};
   double loading = 1e9, unloading = 4e9;
   template <class T>
-  physics::EosLine<T> line(physics::EosPoint<T>& point) const {
+  physics::LinearisedPressure<T> linearise(physics::EosPoint<T>& point) const {
     point.max_compression = core::max(point.max_compression, point.compression);
     const T a = loading * point.max_compression + unloading * (point.compression - point.max_compression);
     return {a, 0.0, unloading, 0.0};

@@ -16,9 +16,9 @@
 namespace mpm::tests {
 
 using core::Column;
-using physics::EosLine;
 using physics::EosPoint;
 using physics::Gruneisen;
+using physics::LinearisedPressure;
 using physics::PAlpha;
 using physics::PointDriver;
 using physics::Polynomial;
@@ -68,13 +68,13 @@ struct Pores {
   explicit Pores(const Law& which) : law(which) { law.initialise(point); }
   double operator()(double mu, double energy = 0) {
     point.compression = mu, point.relative_volume = 1 / (1 + mu), point.energy = energy;
-    line = law.line(point);
+    line = law.linearise(point);
     return line.a + line.b * energy;
   }
   double distension() const { return 1 / (1 - point.porosity); }
   Law law;
   EosPoint<double> point{};
-  EosLine<double> line{};
+  LinearisedPressure<double> line{};
 };
 
 /// The compression mu at which the solid under alpha p has the density alpha rho; E per initial volume of the
@@ -86,7 +86,7 @@ double compression(const PAlpha<Solid>& law, double distension, double p, double
   for (int i = 0; i < 100; ++i) {
     const double mu = 0.5 * (low + high);
     const EosPoint<double> point{mu, 1 / (1 + mu), 0, 0, energy * rho0s / rho0};
-    const EosLine<double> line = solid.line(point);
+    const LinearisedPressure<double> line = solid.linearise(point);
     (line.a + line.b * point.energy < distension * p ? low : high) = mu;
   }
   return (1 + low) * rho0s / (rho0 * distension) - 1;
@@ -206,7 +206,7 @@ TEST_CASE("p-alpha derivatives are those of its unloading", "[physics][p-alpha]"
       const double energy = 20e6, h = 1e-6, de = 1e2;
       Pores<decltype(law)> pores(law);
       const double p = pores(mu, energy);
-      const EosLine<double> line = pores.line;
+      const LinearisedPressure<double> line = pores.line;
       auto cooler = pores, unloaded = pores;
       CHECK((p - cooler(mu, energy - de)) / de == Approx(line.b).epsilon(1e-4));
       CHECK((p - unloaded(mu - h, energy)) / h == Approx(line.da + line.db * energy).epsilon(1e-3));

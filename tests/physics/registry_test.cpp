@@ -72,7 +72,7 @@ struct Compacting {
   }
   std::string fault() const { return unloading >= loading ? "" : "Ku must not be smaller than Kl"; }
   template <class T>
-  physics::EosLine<T> line(physics::EosPoint<T>& point) const {
+  physics::LinearisedPressure<T> linearise(physics::EosPoint<T>& point) const {
     point.max_compression = core::max(point.max_compression, point.compression);
     const T a = loading * point.max_compression + unloading * (point.compression - point.max_compression);
     return {a, 0.0, unloading, 0.0};
@@ -192,8 +192,8 @@ TEST_CASE("laws from outside pass the tests that hold for every law", "[physics]
       for (const physics::LawCheck& check : physics::law_checks()) {
         // This equation's wave speed is that of unloading, also while it loads.
         if (with_eos && check.name == "wave") continue;
-        for (const std::string& complaint : check.complaints(sample, registry))
-          FAIL_CHECK("eos " << with_eos << ", failure " << fails << ", " << check.name << ": " << complaint);
+        for (const std::string& fault : check.failures(sample, registry))
+          FAIL_CHECK("eos " << with_eos << ", failure " << fails << ", " << check.name << ": " << fault);
       }
     }
   }
@@ -205,7 +205,7 @@ TEST_CASE("the tests find a law that is wrong", "[physics][registry]") {
   input.strength = {"Bad", {{"Young", 10e9}, {"Poisson", 0.25}}, {}};
   std::vector<std::string_view> failed;
   for (const physics::LawCheck& check : physics::law_checks()) {
-    if (!check.complaints({input, {}}, registry).empty()) failed.push_back(check.name);
+    if (!check.failures({input, {}}, registry).empty()) failed.push_back(check.name);
   }
   const auto found = [&](std::string_view name) { return std::ranges::count(failed, name) == 1; };
   CHECK(found("objectivity"));

@@ -107,7 +107,7 @@ class Leaving(Case):
         return self.run_in("out", [self.folder / "case.xmp"], ranks=ranks)
 
     def test_booked(self):
-        """The whole body leaves stressless, so that the books have to balance to round-off."""
+        """The whole body leaves stressless, so that the ledger have to balance to round-off."""
         for end, gone in [(0.55, lambda n: 0 < n < 512), (1.0, lambda n: n == 512)]:
             outcome = self.fly(end=end)
             found = strict_summary(self.folder / "out")
@@ -318,7 +318,7 @@ class Prescribed(Case):
             self.assertGreater(pushed["velocity"][0], 1)
 
     def test_energy_of_a_prescribed_motion(self):
-        """The books hold the work that the motion takes."""
+        """The ledger hold the work that the motion takes."""
         piston = _mpm.block("piston", (1, 2, 2), (3, 4, 4), more='<PrescribedVelocity vx="1" vy="0" vz="0"/>')
         self.write(scene([piston, _mpm.block("freight", (4, 2, 2), (4, 4, 4))], faces="000000"))
         self.run_in("out", [self.folder / "case.xmp"])

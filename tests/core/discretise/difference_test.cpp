@@ -23,11 +23,11 @@ Scene difference(std::vector<BodyInput> bodies) {
 
 Seeds rest(const Scene& scene) { return all(*make_seed_source(scene, scene.components[1].bodies.back())); }
 
-std::string complaint(const Geometry& geometry) {
+std::string fault(const Geometry& geometry) {
   try {
     source(geometry);
   } catch (const InputErrors& errors) { return errors.what(); }
-  return "no complaint";
+  return "no fault";
 }
 
 }  // namespace
@@ -95,26 +95,26 @@ TEST_CASE("Bool: nothing left, and a body made of itself", "[discretise]") {
 }
 
 TEST_CASE("impossible geometries are refused by their attributes' names", "[discretise]") {
-  CHECK(complaint(block(0, {0, 0, 0}, {1, -1, 1})) ==
+  CHECK(fault(block(0, {0, 0, 0}, {1, -1, 1})) ==
         "case.xmp:7: <Geometry dp=\"0\">: body `bar`: expected a number greater than 0\n"
         "case.xmp:7: <Geometry ly=\"-1\">: body `bar`: expected a number greater than 0");
-  CHECK_THAT(complaint(block(std::nan(""), {0, 0, 0}, {1, 1, 1})), Contains("dp=\"nan\""));
-  CHECK_THAT(complaint(ball(0.1, 1, 1)),
+  CHECK_THAT(fault(block(std::nan(""), {0, 0, 0}, {1, 1, 1})), Contains("dp=\"nan\""));
+  CHECK_THAT(fault(ball(0.1, 1, 1)),
              Contains("Outer_Radius=\"1\"") && Contains("expected more than Inner_Radius, 1"));
   SphereGeometry wide = ball(0.1, 1);
   wide.angle = 361;
-  CHECK_THAT(complaint(wide), Contains("angle=\"361\"") && Contains("expected a number in (0, 360]"));
+  CHECK_THAT(fault(wide), Contains("angle=\"361\"") && Contains("expected a number in (0, 360]"));
   CylinderGeometry tube = cylinder(0.1, 1, 1);
   tube.top_inner_radius = 2;
-  CHECK_THAT(complaint(tube),
+  CHECK_THAT(fault(tube),
              Contains("Top_Outer_Radius=\"1\"") && Contains("expected more than Top_Inner_Radius, 2"));
   OgiveGeometry blunt = ogive(0.1, 0.1);
   blunt.ogive_radius = 1;
-  CHECK_THAT(complaint(blunt), Contains("expected at least End_Radius, 2"));
-  CHECK_THAT(complaint(ball(1, 0.5)), Contains("body `bar`: the body has no particles"));
+  CHECK_THAT(fault(blunt), Contains("expected at least End_Radius, 2"));
+  CHECK_THAT(fault(ball(1, 0.5)), Contains("body `bar`: the body has no particles"));
   BarLinesGeometry bars;
   bars.expand_direction = 1;
-  CHECK_THAT(complaint(bars), Contains("known but not implemented yet"));
-  CHECK_THAT(complaint(HexahedronBlockGeometry{block(1, {0, 0, 0}, {1, 1, 1})}),
+  CHECK_THAT(fault(bars), Contains("known but not implemented yet"));
+  CHECK_THAT(fault(HexahedronBlockGeometry{block(1, {0, 0, 0}, {1, 1, 1})}),
              Contains("known but not implemented yet"));
 }

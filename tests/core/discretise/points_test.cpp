@@ -54,7 +54,7 @@ PointGeometry from_file(const std::string& path) {
   return geometry;
 }
 
-std::string complaint(const std::string& text) {
+std::string fault(const std::string& text) {
   const TemporaryFile file("bad.txt", text);
   try {
     source(from_file(file.path()));
@@ -64,7 +64,7 @@ std::string complaint(const std::string& text) {
       what.replace(at, file.path().size(), "bad.txt");
     return what;
   }
-  return "no complaint";
+  return "no fault";
 }
 
 /// Some 20,000 lines: more than a read of a block, and five units.
@@ -137,7 +137,7 @@ TEST_CASE("point files: what a line may look like", "[discretise]") {
 }
 
 TEST_CASE("point files: every bad line is named", "[discretise]") {
-  CHECK(complaint("1 0 0 0\n1 0 0\n\n-1 0 0 0\n1 0 zero 0\n1 2 3 4 5\nnan 0 0 0\n1 1e999 0 0\n0 0 0 0\n") ==
+  CHECK(fault("1 0 0 0\n1 0 0\n\n-1 0 0 0\n1 0 zero 0\n1 2 3 4 5\nnan 0 0 0\n1 1e999 0 0\n0 0 0 0\n") ==
         "bad.txt:2: expected four numbers, mass x y z, found 3\n"
         "bad.txt:4: mass: expected more than 0, found -1\n"
         "bad.txt:5: y: expected a number, found `zero`\n"
@@ -145,18 +145,18 @@ TEST_CASE("point files: every bad line is named", "[discretise]") {
         "bad.txt:7: mass: expected a number, found `nan`\n"
         "bad.txt:8: x: expected a number, found `1e999`\n"
         "bad.txt:9: mass: expected more than 0, found 0");
-  CHECK_THAT(complaint("1,2,3,4\n"), Contains("bad.txt:1: mass: expected a number, found `1,2,3,4`"));
-  CHECK_THAT(complaint("\x1b[31m 1 1 1\n"), Contains("found `?[31m`"));
+  CHECK_THAT(fault("1,2,3,4\n"), Contains("bad.txt:1: mass: expected a number, found `1,2,3,4`"));
+  CHECK_THAT(fault("\x1b[31m 1 1 1\n"), Contains("found `?[31m`"));
   std::string many;
   for (int i = 0; i < 1000; ++i) many += "wrong\n";
-  CHECK_THAT(complaint(many),
+  CHECK_THAT(fault(many),
              Contains("bad.txt:20: ") && Contains("980 more lines are wrong") && !Contains("bad.txt:21:"));
 }
 
 TEST_CASE("point files: missing, empty, no text, cut off, changed", "[discretise]") {
   const std::string element = "case.xmp:7: <Geometry file=\"bad.txt\">: ";
-  CHECK(complaint("# nothing\n\n") == element + "the file holds no particles: expected lines of mass x y z");
-  CHECK(complaint(std::string(5000000, 'x')) ==
+  CHECK(fault("# nothing\n\n") == element + "the file holds no particles: expected lines of mass x y z");
+  CHECK(fault(std::string(5000000, 'x')) ==
         element + "line 1 is longer than 4096 characters: this is no file of particles");
   CHECK_THROWS_WITH(
       source(from_file("/nowhere/points.txt")),
@@ -167,11 +167,10 @@ TEST_CASE("point files: missing, empty, no text, cut off, changed", "[discretise
   std::vector<PointMass> points;
   const std::string text = many_lines(points);
   const std::string packed = gzipped(text);
-  CHECK_THAT(complaint(packed.substr(0, packed.size() / 2)),
-             Contains(element + "reading stopped after line"));
+  CHECK_THAT(fault(packed.substr(0, packed.size() / 2)), Contains(element + "reading stopped after line"));
   std::string damaged = packed;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] + 1);
-  CHECK_THAT(complaint(damaged), Contains("reading stopped after line") || Contains("expected"));
+  CHECK_THAT(fault(damaged), Contains("reading stopped after line") || Contains("expected"));
 
   const TemporaryFile file("points.txt", text);
   const auto from = source(from_file(file.path()));

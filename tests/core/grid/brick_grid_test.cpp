@@ -83,7 +83,7 @@ TEST_CASE("Bricks that stay keep their particles; new ones and those that were g
   grid.reset({{0, 0, 0}, {1, 0, 0}}, {{2, 0, 0}});
   std::vector<double> columns(18, 1.0);
   Brick& first = grid.brick(grid.find({1, 0, 0}));
-  append(pool, first.cohorts.emplace_back(), columns.data());
+  append(pool, first.tiles.emplace_back(), columns.data());
   grid.reset({{3, 3, 3}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}});
   CHECK(grid.brick(grid.find({1, 0, 0})).particles() == 1);
   CHECK(grid.brick(grid.find({2, 0, 0})).particles() == 0);

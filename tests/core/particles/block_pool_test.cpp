@@ -1,4 +1,4 @@
-// Blocks and cohorts: what goes in comes out, blocks are reused, and unused lanes hold sound numbers.
+// Blocks and tiles: what goes in comes out, blocks are reused, and unused lanes hold sound numbers.
 #include "core/particles/block_pool.hpp"
 
 #include <algorithm>
@@ -25,10 +25,10 @@ std::vector<double> particle(const BlockPool& pool, int n) {
   return columns;
 }
 
-std::vector<double> numbers(const BlockPool& pool, const Cohort& cohort) {
+std::vector<double> numbers(const BlockPool& pool, const ParticleTile& tile) {
   std::vector<double> first, columns(static_cast<std::size_t>(pool.layout().columns()));
-  for (std::uint32_t i = 0; i < cohort.count; ++i) {
-    extract(pool, cohort, i, columns.data());
+  for (std::uint32_t i = 0; i < tile.count; ++i) {
+    extract(pool, tile, i, columns.data());
     first.push_back(columns[0]);
     REQUIRE(columns == particle(pool, static_cast<int>(columns[0])));
   }
@@ -54,24 +54,24 @@ TEST_CASE("A layout has the columns of its set and no others, one cache line eac
   CHECK(offsets.size() == static_cast<std::size_t>(layout.columns()));
 }
 
-TEST_CASE("Particles come out of a cohort as they went in, in blocks full but for the last") {
+TEST_CASE("Particles come out of a tile as they went in, in blocks full but for the last") {
   BlockPool pool(layout_with(Column::damage));
-  Cohort cohort;
+  ParticleTile tile;
   std::vector<double> expected;
   for (int n = 0; n < 37; ++n) {
-    CHECK(append(pool, cohort, particle(pool, n).data()) == static_cast<std::uint32_t>(n));
+    CHECK(append(pool, tile, particle(pool, n).data()) == static_cast<std::uint32_t>(n));
     expected.push_back(n);
-    CHECK(cohort.blocks.size() == static_cast<std::size_t>(n / 8 + 1));
+    CHECK(tile.blocks.size() == static_cast<std::size_t>(n / 8 + 1));
   }
-  CHECK(numbers(pool, cohort) == expected);
+  CHECK(numbers(pool, tile) == expected);
   CHECK(pool.blocks_in_use() == 5);
 }
 
 TEST_CASE("The lanes beyond the last particle of a new block repeat its first") {
   BlockPool pool(layout_with(Column::damage));
-  Cohort cohort;
-  for (int n = 0; n < 10; ++n) append(pool, cohort, particle(pool, n).data());
-  const double* block = pool.block(cohort.blocks[1]);
+  ParticleTile tile;
+  for (int n = 0; n < 10; ++n) append(pool, tile, particle(pool, n).data());
+  const double* block = pool.block(tile.blocks[1]);
   for (int c = 0; c < pool.layout().columns(); ++c) {
     for (int lane = 2; lane < block_lanes; ++lane) CHECK(block[block_lanes * c + lane] == 8 + 0.01 * c);
   }
@@ -79,17 +79,17 @@ TEST_CASE("The lanes beyond the last particle of a new block repeat its first") 
 
 TEST_CASE("Removing puts the last particle into the gap, and gives back empty blocks") {
   BlockPool pool(layout_with(Column::damage));
-  Cohort cohort;
-  for (int n = 0; n < 17; ++n) append(pool, cohort, particle(pool, n).data());
-  remove_swapping(pool, cohort, 3);
-  CHECK(cohort.count == 16);
-  CHECK(cohort.blocks.size() == 2);
+  ParticleTile tile;
+  for (int n = 0; n < 17; ++n) append(pool, tile, particle(pool, n).data());
+  remove_swapping(pool, tile, 3);
+  CHECK(tile.count == 16);
+  CHECK(tile.blocks.size() == 2);
   CHECK(pool.blocks_in_use() == 2);
-  CHECK(numbers(pool, cohort) == std::vector<double>{0, 1, 2, 16, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15});
-  remove_swapping(pool, cohort, 15);
-  CHECK(numbers(pool, cohort).back() == 14);
-  while (cohort.count > 0) remove_swapping(pool, cohort, 0);
-  CHECK(cohort.blocks.empty());
+  CHECK(numbers(pool, tile) == std::vector<double>{0, 1, 2, 16, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15});
+  remove_swapping(pool, tile, 15);
+  CHECK(numbers(pool, tile).back() == 14);
+  while (tile.count > 0) remove_swapping(pool, tile, 0);
+  CHECK(tile.blocks.empty());
   CHECK(pool.blocks_in_use() == 0);
 }
 
@@ -125,30 +125,30 @@ TEST_CASE(
   CHECK(again == first);  // the memory of the released blocks serves again
 }
 
-TEST_CASE("Blocks that were dealt out in any order are arranged one cohort after the other") {
+TEST_CASE("Blocks that were dealt out in any order are arranged one tile after the other") {
   BlockPool pool(layout_with(Column::damage));
-  std::vector<Cohort> cohorts(3);
+  std::vector<ParticleTile> tiles(3);
   for (int n = 0; n < 500; ++n)
-    append(pool, cohorts[static_cast<std::size_t>(n * n % 7 % 3)], particle(pool, n).data());
-  while (cohorts[1].count > 20) remove_swapping(pool, cohorts[1], cohorts[1].count / 2);  // leaves gaps
+    append(pool, tiles[static_cast<std::size_t>(n * n % 7 % 3)], particle(pool, n).data());
+  while (tiles[1].count > 20) remove_swapping(pool, tiles[1], tiles[1].count / 2);  // leaves gaps
   std::vector<std::vector<double>> before;
   std::vector<BlockIndex> in_use;
-  for (Cohort& cohort : cohorts) {
-    before.push_back(numbers(pool, cohort));
-    for (BlockIndex& b : cohort.blocks) {
+  for (ParticleTile& tile : tiles) {
+    before.push_back(numbers(pool, tile));
+    for (BlockIndex& b : tile.blocks) {
       in_use.push_back(b);
       b = static_cast<BlockIndex>(in_use.size() - 1);
     }
   }
   REQUIRE_FALSE(std::is_sorted(in_use.begin(), in_use.end()));
   pool.arrange(in_use);
-  for (std::size_t c = 0; c < cohorts.size(); ++c) CHECK(numbers(pool, cohorts[c]) == before[c]);
+  for (std::size_t c = 0; c < tiles.size(); ++c) CHECK(numbers(pool, tiles[c]) == before[c]);
   CHECK(pool.blocks_in_use() == in_use.size());
   // What comes next takes no block that is in use.
-  Cohort more;
+  ParticleTile more;
   for (int n = 600; n < 900; ++n) append(pool, more, particle(pool, n).data());
   CHECK(more.blocks.front() == in_use.size());
-  for (std::size_t c = 0; c < cohorts.size(); ++c) CHECK(numbers(pool, cohorts[c]) == before[c]);
+  for (std::size_t c = 0; c < tiles.size(); ++c) CHECK(numbers(pool, tiles[c]) == before[c]);
   BlockPool none(layout_with(Column::damage));
   none.arrange({});
   CHECK(none.blocks_in_use() == 0);

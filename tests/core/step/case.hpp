@@ -168,8 +168,8 @@ struct SmallRun {
       body.model = model.materials[0].get();
       body.pool = std::make_shared<core::BlockPool>(core::ColumnLayout(columns));
     }
-    model.books.body_eroded.resize(model.bodies.size());
-    model.books.body_left.resize(model.bodies.size());
+    model.ledger.body_eroded.resize(model.bodies.size());
+    model.ledger.body_left.resize(model.bodies.size());
 
     core::MigrationBuffer moving;
     std::vector<core::BrickCount> counts;
@@ -193,9 +193,9 @@ struct SmallRun {
     solo.bricks.partition(*model.grid, counts, {});
     core::insert_particles(model, moving);
     for (core::Brick& brick : model.grid->bricks()) {
-      for (core::Cohort& cohort : brick.cohorts) {
-        core::sort_by_cell(*model.grid, brick.coord,
-                           *model.bodies[static_cast<std::size_t>(cohort.body)].pool, cohort);
+      for (core::ParticleTile& tile : brick.tiles) {
+        core::sort_by_cell(*model.grid, brick.coord, *model.bodies[static_cast<std::size_t>(tile.body)].pool,
+                           tile);
       }
     }
     model.clock.critical_dt = model.clock.first_critical_dt = core::critical_step(*model.grid, fastest);
@@ -234,12 +234,12 @@ struct SmallRun {
   std::vector<std::int64_t> order() const {
     std::map<core::BrickKey, std::vector<std::int64_t>> bricks;
     for (const core::Brick& brick : model.grid->bricks()) {
-      for (const core::Cohort& cohort : brick.cohorts) {
-        const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(cohort.body)].pool;
+      for (const core::ParticleTile& tile : brick.tiles) {
+        const core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
         const int at = pool.layout().offset(core::Column::identity);
-        for (std::uint32_t i = 0; i < cohort.count; ++i) {
-          bricks[core::key_of(brick.coord)].push_back(static_cast<std::int64_t>(pool.block(
-              cohort.blocks[i / core::block_lanes])[at + static_cast<int>(i % core::block_lanes)]));
+        for (std::uint32_t i = 0; i < tile.count; ++i) {
+          bricks[core::key_of(brick.coord)].push_back(static_cast<std::int64_t>(
+              pool.block(tile.blocks[i / core::block_lanes])[at + static_cast<int>(i % core::block_lanes)]));
         }
       }
     }

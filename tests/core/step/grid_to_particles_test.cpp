@@ -33,8 +33,8 @@ std::vector<double> random_records(const NodeBlockShape& shape, unsigned seed) {
 /// block.
 template <class W, class F>
 void over(TransferCase& c, W work, F f) {
-  for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
-    double* block = c.pool.block(c.cohort.blocks[b]);
+  for (std::size_t b = 0; b < c.tile.blocks.size(); ++b) {
+    double* block = c.pool.block(c.tile.blocks[b]);
     work(block);
     for (std::size_t i = 0; i < block_lanes && block_lanes * b + i < c.particles.size(); ++i) {
       f(c.particles[block_lanes * b + i], block, static_cast<int>(i));
@@ -192,7 +192,7 @@ TEST_CASE("The cell's strain is that of its middle, the same for all its particl
 
 TEST_CASE("Lanes outside the brick are found, lanes out of use are not") {
   TransferCase c({1, 1, 1}, 8, 15);
-  double* block = c.pool.block(c.cohort.blocks[0]);
+  double* block = c.pool.block(c.tile.blocks[0]);
   const auto put = [&](int lane, int axis, double cells) {
     block[block_lanes * axis + lane] = c.geometry.origin[axis] + c.geometry.cell[axis] * cells;
   };

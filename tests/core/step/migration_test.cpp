@@ -1,4 +1,4 @@
-// The order of particles in a cohort: by cell and as they were, by identity, and arrivals in the order of
+// The order of particles in a tile: by cell and as they were, by identity, and arrivals in the order of
 // identities.
 #include "core/step/migration.hpp"
 
@@ -37,28 +37,28 @@ TEST_CASE("Sorting by cell keeps the order within a cell; sorting by identity or
   for (const int count : {1, 8, 9, 500}) {
     const SmallRun run = scattered(count);
     BrickGrid& grid = *run.model.grid;
-    Cohort& cohort = grid.brick(0).cohorts[0];
+    ParticleTile& tile = grid.brick(0).tiles[0];
     BlockPool& pool = *run.model.bodies[0].pool;
     const auto before = run.columns();
-    sort_by_identity(pool, cohort);
+    sort_by_identity(pool, tile);
     std::vector<std::int64_t> order = run.order();
     CHECK(std::is_sorted(order.begin(), order.end()));
     // Some history: the order is no longer that of identities.
     std::vector<double> columns(static_cast<std::size_t>(pool.layout().columns()));
-    for (std::uint32_t i = 0; i < cohort.count / 2; i += 3) {
-      extract(pool, cohort, i, columns.data());
-      remove_swapping(pool, cohort, i);
-      append(pool, cohort, columns.data());
+    for (std::uint32_t i = 0; i < tile.count / 2; i += 3) {
+      extract(pool, tile, i, columns.data());
+      remove_swapping(pool, tile, i);
+      append(pool, tile, columns.data());
     }
     order = run.order();
     const auto particles = run.particles();
     std::stable_sort(order.begin(), order.end(), [&](std::int64_t a, std::int64_t b) {
       return cell_of(grid.geometry(), particles.at(a).x) < cell_of(grid.geometry(), particles.at(b).x);
     });
-    sort_by_cell(grid, grid.brick(0).coord, pool, cohort);
+    sort_by_cell(grid, grid.brick(0).coord, pool, tile);
     CHECK(run.order() == order);
     CHECK(run.columns() == before);  // every particle still has its own columns
-    CHECK(cohort.blocks.size() == static_cast<std::size_t>((count + 7) / 8));
+    CHECK(tile.blocks.size() == static_cast<std::size_t>((count + 7) / 8));
   }
 }
 
@@ -86,8 +86,8 @@ TEST_CASE("Arrivals are appended in the order of identities, in whatever order t
     CHECK(run.order() == first);
     CHECK(run.order().size() == 1440);
     for (const Brick& brick : run.model.grid->bricks()) {
-      CHECK(std::is_sorted(brick.cohorts.begin(), brick.cohorts.end(),
-                           [](const Cohort& a, const Cohort& b) { return a.body < b.body; }));
+      CHECK(std::is_sorted(brick.tiles.begin(), brick.tiles.end(),
+                           [](const ParticleTile& a, const ParticleTile& b) { return a.body < b.body; }));
     }
   }
 }

@@ -22,9 +22,9 @@ std::vector<double> by_kernel(const TransferCase& c) {
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
   Linear::Scatter<what> sums;
   sums.clear();
-  for (std::size_t b = 0; b < c.cohort.blocks.size(); ++b) {
-    const int used = c.cohort.used_lanes(b);
-    const double* block = c.pool.block(c.cohort.blocks[b]);
+  for (std::size_t b = 0; b < c.tile.blocks.size(); ++b) {
+    const int used = c.tile.used_lanes(b);
+    const double* block = c.pool.block(c.tile.blocks[b]);
     add_block<Linear, Flip, what>(c.frame(), c.block_place(block), c.pool.layout(), block, used, sums,
                                   nodes.data());
   }
@@ -103,7 +103,7 @@ TEST_CASE("The nodes get all the mass and momentum there is, and forces that bal
 TEST_CASE("Lanes out of use add nothing, whatever is in them") {
   TransferCase c({1, 0, 1}, 11, 6);
   const std::vector<double> before = by_kernel<mapped::momentum_mass_force>(c);
-  double* block = c.pool.block(c.cohort.blocks[1]);
+  double* block = c.pool.block(c.tile.blocks[1]);
   for (int column = 0; column < c.pool.layout().columns(); ++column) {
     for (int lane = 3; lane < block_lanes; ++lane) block[block_lanes * column + lane] = std::nan("");
   }

@@ -30,7 +30,7 @@ ReferenceCase tumbling(ReferenceScheme scheme) {
 constexpr std::size_t half = 360;  // of the block's particles: two bodies
 
 /// A run that goes on with the particles of another, as a restart file keeps them: in the order of their
-/// cohorts.
+/// tiles.
 std::unique_ptr<SmallRun> continued(const SmallRun& from, ReferenceCase c) {
   c.particles.resize(half + 1);  // two bodies
   auto to = std::make_unique<SmallRun>(c, half);
@@ -39,16 +39,16 @@ std::unique_ptr<SmallRun> continued(const SmallRun& from, ReferenceCase c) {
     if (brick.particles() > 0) counts.push_back({brick.coord, 1});
   }
   for (Body& body : to->model.bodies) body.pool = std::make_shared<BlockPool>(body.pool->layout());
-  for (Brick& brick : to->model.grid->bricks()) brick.cohorts.clear();
+  for (Brick& brick : to->model.grid->bricks()) brick.tiles.clear();
   to->solo.bricks.partition(*to->model.grid, counts, {});
   std::vector<double> columns(column_count);
   for (const Brick& brick : from.model.grid->bricks()) {
-    for (const Cohort& cohort : brick.cohorts) {
-      Cohort& copy = to->model.grid->brick(to->model.grid->find(brick.coord)).cohorts.emplace_back();
-      copy.body = cohort.body;
-      const auto body = static_cast<std::size_t>(cohort.body);
-      for (std::uint32_t i = 0; i < cohort.count; ++i) {
-        extract(*from.model.bodies[body].pool, cohort, i, columns.data());
+    for (const ParticleTile& tile : brick.tiles) {
+      ParticleTile& copy = to->model.grid->brick(to->model.grid->find(brick.coord)).tiles.emplace_back();
+      copy.body = tile.body;
+      const auto body = static_cast<std::size_t>(tile.body);
+      for (std::uint32_t i = 0; i < tile.count; ++i) {
+        extract(*from.model.bodies[body].pool, tile, i, columns.data());
         append(*to->model.bodies[body].pool, copy, columns.data());
       }
     }
@@ -167,7 +167,7 @@ TEST_CASE("A body in free fall falls, unstrained in any scheme") {
     CHECK(worst_v < 1e-13);
     CHECK(worst_stress < 1e-12 * c.material.young);
     const Totals totals = compute_totals(run.model, run.solo);
-    // dt g^2 of a forward Euler step stays out of the books: displacement with the new velocity.
+    // dt g^2 of a forward Euler step stays out of the ledger: displacement with the new velocity.
     CHECK(totals.external_work > totals.kinetic);
     CHECK(totals.external_work < totals.kinetic * 1.06);
   }
@@ -234,7 +234,7 @@ TEST_CASE("A run that cannot go on says which particle is to blame") {
       Contains("particle 17 of body \"body\"") && Contains("internal_energy=nan"));
 }
 
-TEST_CASE("Particles beyond a free face and those below the volume of erosion are gone, and in the books") {
+TEST_CASE("Particles beyond a free face and those below the volume of erosion are gone, and in the ledger") {
   ReferenceCase c = tumbling(ReferenceScheme::musl);
   for (ReferenceParticle& p : c.particles) {
     p.x[0] += 5.9;  // the farthest are 0.35 from the face
@@ -287,7 +287,7 @@ TEST_CASE("A state of numbers whose energy is none is told with its particle") {
   CHECK_NOTHROW(require_finite(run.model, run.solo));
   Brick& brick = run.model.grid->brick(0);
   BlockPool& pool = *run.model.bodies[0].pool;
-  double* block = pool.block(brick.cohorts[0].blocks[0]);
+  double* block = pool.block(brick.tiles[0].blocks[0]);
   block[pool.layout().offset(Column::velocity_y)] = 1e170;
   const auto identity = static_cast<long>(block[pool.layout().offset(Column::identity)]);
   CHECK_THROWS_WITH(require_finite(run.model, run.solo),

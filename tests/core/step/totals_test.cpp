@@ -1,9 +1,10 @@
-#include "core/communication/solo.hpp"
 #include "core/step/totals.hpp"
 
 #include <cmath>
 
 #include <catch2/catch.hpp>
+
+#include "core/communication/solo.hpp"
 
 using namespace mpm::core;
 
@@ -65,13 +66,13 @@ void add(Model& model, const P& p) {
   set(Column::temperature, p.temperature);
   set(Column::failed, p.failed);
   Brick& brick = model.grid->brick(model.grid->find(model.grid->geometry().brick_at(p.x)));
-  for (Cohort& c : brick.cohorts) {
+  for (ParticleTile& c : brick.tiles) {
     if (c.body != p.body) continue;
     append(pool, c, columns.data());
     return;
   }
-  brick.cohorts.emplace_back().body = p.body;
-  append(pool, brick.cohorts.back(), columns.data());
+  brick.tiles.emplace_back().body = p.body;
+  append(pool, brick.tiles.back(), columns.data());
 }
 
 }  // namespace
@@ -82,9 +83,9 @@ TEST_CASE("Totals add up what the particles are and do") {
   add(model, {0, {5, 2, 3}, {0, 4, -2}, 6, 0});
   add(model, {1, {7, 7, 7}, {1, 1, 1}, 1, -4, 0.5, 400, 1});
   add(model, {1, {6, 7, 7}, {1, 1, 1}, 1, 0, 0.25, 300, 0});
-  model.books.body_eroded = {0, 9};
-  model.books.eroded = 9;
-  model.books.external_work.add(3);
+  model.ledger.body_eroded = {0, 9};
+  model.ledger.eroded = 9;
+  model.ledger.external_work.add(3);
   SoloCommunication solo;
   const Totals t = compute_totals(model, solo);
   REQUIRE(t.bodies.size() == 2);
@@ -113,8 +114,8 @@ TEST_CASE("Totals add up what the particles are and do") {
   const Energies e = compute_energies(model, solo);
   CHECK(e.kinetic == t.kinetic);
   CHECK(e.internal == t.internal);
-  model.books.removed_kinetic.add(0.1);
-  model.books.removed_internal.add(0.3);
+  model.ledger.removed_kinetic.add(0.1);
+  model.ledger.removed_internal.add(0.3);
   const EnergyBalance every = energy_balance(compute_energy_totals(model, solo), 7);
   const EnergyBalance reported = energy_balance(compute_totals(model, solo), 7);
   CHECK(every.total == reported.total);
@@ -150,9 +151,9 @@ TEST_CASE("The totals of very many bodies, which are added up some at a time, ar
     add(model, {b, {b % 8 < 4 ? 1.0 : 5.0, 1 + 0.0001 * b, 3}, {0, 1.0 * b, 0}, m, 4});
     mass += m;
   }
-  model.books.body_left.assign(many, 0);
-  model.books.body_left[many - 1] = 3;
-  model.books.left_grid = 3;
+  model.ledger.body_left.assign(many, 0);
+  model.ledger.body_left[many - 1] = 3;
+  model.ledger.left_grid = 3;
   SoloCommunication solo;
   const Totals t = compute_totals(model, solo);
   REQUIRE(t.bodies.size() == many);

@@ -27,7 +27,7 @@ struct TransferCase {
   core::NodeBlockShape shape;
   core::BrickCoord brick;
   core::BlockPool pool{core::ColumnLayout()};
-  core::Cohort cohort;
+  core::ParticleTile tile;
   std::vector<std::vector<double>> particles;  ///< their columns, in the order of ColumnSet::mechanics()
 
   TransferCase(core::BrickCoord b, int count, unsigned seed) : brick(b) {
@@ -49,7 +49,7 @@ struct TransferCase {
       }
       p[6] = 0.5 + unit(random);  // mass
       p[7] = 0.5 + unit(random);  // volume
-      append(pool, cohort, p.data());
+      append(pool, tile, p.data());
     }
   }
 

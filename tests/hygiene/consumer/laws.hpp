@@ -66,7 +66,7 @@ struct Bulk {
     }};
   }
   template <class T>
-  mpm::physics::EosLine<T> line(const mpm::physics::EosPoint<T>& point) const {
+  mpm::physics::LinearisedPressure<T> linearise(const mpm::physics::EosPoint<T>& point) const {
     const T mu = mpm::core::max(point.compression, 0.0), tension = mpm::core::min(point.compression, 0.0);
     return {mu * (a1 + a2 * mu) + tension * a1, T(b0), a1 + (2 * a2) * mu, T(0.0)};
   }

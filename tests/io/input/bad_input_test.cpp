@@ -1,4 +1,4 @@
-// One wrong input per rule, with all the complaints that it must bring.
+// One wrong input per rule, with all the faults that it must bring.
 
 #include <catch2/catch.hpp>
 
@@ -17,12 +17,12 @@ struct Wrong {
 void check_table(const std::vector<Wrong>& table) {
   for (const Wrong& wrong : table) {
     INFO(wrong.from << "  ->  " << wrong.to);
-    CHECK(test::complaints(test::replaced(test::bar, wrong.from, wrong.to)) == wrong.messages);
+    CHECK(test::faults(test::replaced(test::bar, wrong.from, wrong.to)) == wrong.messages);
   }
 }
 
 TEST_CASE("the unchanged input is right") {
-  CHECK(test::complaints(test::bar) == std::vector<std::string>{"ok"});
+  CHECK(test::faults(test::bar) == std::vector<std::string>{"ok"});
 }
 
 TEST_CASE("names and occurrences") {
@@ -81,7 +81,7 @@ TEST_CASE("names and occurrences") {
       {"version=\"1.0\">", "version=\"2.0\">", {"line 2: <PeneBlast version=\"2.0\">: expected '1.0'"}},
       {"<Header>", "<HarmExcit/><Header>", {"line 3: <HarmExcit>: stands in <Body>, not in <PeneBlast>"}},
   });
-  CHECK(test::complaints("<peneblast/>") ==
+  CHECK(test::faults("<peneblast/>") ==
         std::vector<std::string>{"line 1: <peneblast>: the root of an input file is <PeneBlast>"});
 }
 
@@ -447,12 +447,12 @@ TEST_CASE("solution and output") {
   });
 }
 
-TEST_CASE("all complaints come at once, in the order of the lines") {
+TEST_CASE("all faults come at once, in the order of the lines") {
   std::string text = test::replaced(test::bar, "dz=\"0.76\"", "dz=\"-1\"");
   text = test::replaced(text, "value=\"8.93e-3\"", "value=\"0\"");
   text = test::replaced(text, "material=\"cu\"", "material=\"ag\"");
   text = test::replaced(text, "<Solution>", "<Solution speed=\"high\">");
-  CHECK(test::complaints(text) ==
+  CHECK(test::faults(text) ==
         std::vector<std::string>{
             "line 5: <ReferenceDensity value=\"0\">: expected a number greater than 0",
             "line 12: <Body material=\"ag\">: there is no material of this name",
@@ -461,7 +461,7 @@ TEST_CASE("all complaints come at once, in the order of the lines") {
             "Integration, transfer, flip_fraction, xpic_order"});
 }
 
-TEST_CASE("the text of a complaint") {
+TEST_CASE("the text of a fault") {
   const core::Diagnostic full{"a.xmp", 3, "Grid", "gimp", "2", "expected 0 or 1"};
   CHECK(to_text(full) == "a.xmp:3: <Grid gimp=\"2\">: expected 0 or 1");
   CHECK(to_text(core::Diagnostic{"a.xmp", 0, "", "", "", "no such file"}) == "a.xmp: no such file");
@@ -469,10 +469,10 @@ TEST_CASE("the text of a complaint") {
         "a:1: <E b=\"x y" + std::string(117, 'z') + "...\">: m");
 }
 
-TEST_CASE("a flood of complaints is cut, and says so") {
+TEST_CASE("a flood of faults is cut, and says so") {
   std::string flood;
   for (int i = 0; i < 5000; ++i) flood += "<Wrong/>";
-  const auto found = test::complaints(test::replaced(test::bar, "<Solution>", flood + "<Solution>"));
+  const auto found = test::faults(test::replaced(test::bar, "<Solution>", flood + "<Solution>"));
   CHECK(found.size() == 1001);
   CHECK(found.back() == "and 4000 more");
 }

@@ -190,39 +190,38 @@ TEST_CASE("gb2312 is read, also with the characters of its supersets") {
   const core::Scene scene = test::parse(text);
   CHECK(scene.materials[0].name == "\xE9\x93\x9C\xE9\x95\x95");
 
-  const auto found =
-      test::complaints(replaced(text, "material=\"\xCD\xAD\xE9\x46\"", "material=\"\xCD\xAD\""));
+  const auto found = test::faults(replaced(text, "material=\"\xCD\xAD\xE9\x46\"", "material=\"\xCD\xAD\""));
   CHECK(found == std::vector<std::string>{
                      "line 12: <Body material=\"\xE9\x93\x9C\">: there is no material of this name"});
 }
 
 TEST_CASE("other encodings") {
-  CHECK(test::complaints("\xEF\xBB\xBF" + std::string(bar)).front() == "ok");  // byte order mark
+  CHECK(test::faults("\xEF\xBB\xBF" + std::string(bar)).front() == "ok");  // byte order mark
   std::string latin = replaced(bar, "encoding=\"utf-8\"", "encoding=\"ISO-8859-1\"");
   latin = replaced(latin, "<Name value=\"bar\"/>", "<Name value=\"M\xFCller\"/>");
   CHECK(test::parse(latin).header.name == "M\xC3\xBCller");
-  CHECK(test::complaints(replaced(bar, "<Name value=\"bar\"/>", "<Name value=\"M\xFCller\"/>"))
+  CHECK(test::faults(replaced(bar, "<Name value=\"bar\"/>", "<Name value=\"M\xFCller\"/>"))
             .front()
             .starts_with("line 3: not well-formed XML: "));
   std::string wide = "\xFF\xFE";
   for (const char c : replaced(bar, "encoding=\"utf-8\"", "encoding=\"utf-16\"")) wide += {c, '\0'};
-  CHECK(test::complaints(wide).front() == "ok");
+  CHECK(test::faults(wide).front() == "ok");
 }
 
 TEST_CASE("bytes that are not of the encoding") {
   const std::string text = replaced(replaced(bar, "encoding=\"utf-8\"", "encoding=\"gb2312\""),
                                     "<Name value=\"bar\"/>", "<Name value=\"\xFF\xFF\"/>");
-  CHECK(test::complaints(text).front() ==
+  CHECK(test::faults(text).front() ==
         "line 3: not well-formed XML: AttValue: ' expected (some bytes are not of the encoding that the "
         "first line names)");
-  CHECK(test::complaints(replaced(bar, "encoding=\"utf-8\"", "encoding=\"klingon\"")).front() ==
+  CHECK(test::faults(replaced(bar, "encoding=\"utf-8\"", "encoding=\"klingon\"")).front() ==
         "line 1: not well-formed XML: Unsupported encoding klingon");
 }
 
 TEST_CASE("lines of elements and attributes, also beyond 65535") {
   const std::string text =
       replaced(bar, "<Solution>", std::string(100000, '\n') + "<Solution\n\n  algorithm='MUSL'\n speed='1'>");
-  CHECK(test::complaints(text).front().starts_with("line 100028: <Solution speed="));
+  CHECK(test::faults(text).front().starts_with("line 100028: <Solution speed="));
 }
 
 TEST_CASE("the echo is an input that gives the same scene") {
@@ -254,7 +253,7 @@ TEST_CASE("jobs and files") {
 
 TEST_CASE("files that cannot be read") {
   const test::TemporaryFolder folder;
-  const auto complaint = [&](std::string_view name) {
+  const auto fault = [&](std::string_view name) {
     const std::filesystem::path file = folder / name;
     try {
       io::read_scene(file, test::small_catalogue());
@@ -266,12 +265,12 @@ TEST_CASE("files that cannot be read") {
   folder.write("binary.xmp", std::string_view("\x7f"
                                               "ELF\0\0\1",
                                               7));
-  CHECK(complaint("none.xmp") == "FILE: no such file");
-  CHECK(complaint("none").starts_with("FILE: no such file, nor "));
-  CHECK(complaint("sub") == "FILE: this is a folder, not a file");
-  CHECK(complaint("empty.xmp") == "FILE: the file is empty");
-  CHECK(complaint("binary.xmp").starts_with("FILE:1: not well-formed XML: "));
-  CHECK(complaint(std::string(5000, 'x')).starts_with("FILE: no such file"));
+  CHECK(fault("none.xmp") == "FILE: no such file");
+  CHECK(fault("none").starts_with("FILE: no such file, nor "));
+  CHECK(fault("sub") == "FILE: this is a folder, not a file");
+  CHECK(fault("empty.xmp") == "FILE: the file is empty");
+  CHECK(fault("binary.xmp").starts_with("FILE:1: not well-formed XML: "));
+  CHECK(fault(std::string(5000, 'x')).starts_with("FILE: no such file"));
 }
 
 TEST_CASE("particle files are relative to the input") {

@@ -40,7 +40,7 @@ std::string ogive(const std::string& radii) {
          radii + "/></Body>\n";
 }
 
-Lines complaints_about(const std::string& bodies) { return test::complaints(with_bodies(bodies)); }
+Lines complaints_about(const std::string& bodies) { return test::faults(with_bodies(bodies)); }
 
 TEST_CASE("an ogive reaches the scene") {
   const core::Scene scene = test::parse(with_bodies(ogive("Ogive_Radius='3' End_Radius='1' angle='90'")));
@@ -125,7 +125,7 @@ TEST_CASE("wrong Bool bodies") {
       complaints_about(cube + difference("rest", "rest", "cube", " ForBoolBody='1'")) ==
       Lines{"line 13: <Body BoolBodyA=\"rest\">: the body is made of itself: rest -> rest; expected operands "
             "that do without it"});
-  // Two that are made of each other; a third that uses one of them adds no complaint.
+  // Two that are made of each other; a third that uses one of them adds no fault.
   CHECK(
       complaints_about(cube + difference("a", "cube", "b", " ForBoolBody='1'") +
                        difference("b", "a", "cube", " ForBoolBody='1'") + difference("c", "cube", "a")) ==

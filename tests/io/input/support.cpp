@@ -78,7 +78,7 @@ core::Scene parse(std::string_view text, const io::ReadOptions& options) {
   return io::parse_scene(text, "case.xmp", language, options);
 }
 
-std::vector<std::string> complaints(std::string_view text, const io::ReadOptions& options) {
+std::vector<std::string> faults(std::string_view text, const io::ReadOptions& options) {
   try {
     parse(text, options);
   } catch (const core::InputErrors& errors) {

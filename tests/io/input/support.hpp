@@ -48,8 +48,8 @@ std::string replaced(std::string_view text, std::string_view from, std::string_v
 
 core::Scene parse(std::string_view text, const io::ReadOptions& options = {});
 
-/// The complaints about a text without the file's name; one "ok" when there are none.
-std::vector<std::string> complaints(std::string_view text, const io::ReadOptions& options = {});
+/// The faults about a text without the file's name; one "ok" when there are none.
+std::vector<std::string> faults(std::string_view text, const io::ReadOptions& options = {});
 
 /// A folder of its own that is removed again.
 class TemporaryFolder {

@@ -48,7 +48,7 @@ constexpr std::string_view small = R"(<PeneBlast spec="REQUIRED" attribute1="ver
   <Solution spec="REQUIRED"><EndTime spec="REQUIRED" attribute1="value, REQUIRED, DOUBLE, positive"/></Solution>
 </PeneBlast>)";
 
-/// Complaints, or the foreign names after an "ok".
+/// ErrorList, or the foreign names after an "ok".
 std::vector<std::string> checked(std::string_view text, std::string_view specification = small) {
   const io::UserSpecification users{"Specification.xml", io::parse_specification(specification)};
   const io::ElementSpec language = io::with_additions(io::language(physics::catalogue()), users.root);

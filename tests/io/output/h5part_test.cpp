@@ -100,11 +100,11 @@ TEST_CASE("What a 32-bit real does not hold is cut, counted and said once") {
   core::SoloCommunication solo;
   core::Model model = small_model(solo);
   const core::ColumnLayout& layout = model.bodies[0].pool->layout();
-  core::Cohort* cohort = nullptr;
+  core::ParticleTile* tile = nullptr;
   for (core::Brick& brick : model.grid->bricks()) {
-    if (!brick.cohorts.empty() && brick.cohorts[0].body == 0) cohort = &brick.cohorts[0];
+    if (!brick.tiles.empty() && brick.tiles[0].body == 0) tile = &brick.tiles[0];
   }
-  double* block = model.bodies[0].pool->block(cohort->blocks[0]);
+  double* block = model.bodies[0].pool->block(tile->blocks[0]);
   const auto id = static_cast<std::int64_t>(block[layout.offset(core::Column::identity)]);
   block[layout.offset(core::Column::pressure)] = -1e300;
   block[layout.offset(core::Column::s_xx)] = 1e200;  // whose square is beyond all numbers
@@ -257,9 +257,9 @@ TEST_CASE("A file with another history than the restart file's is put aside") {
     // From an earlier restart file on, under other loads: the same times, other values.
     io::H5PartWriter writer({series.path, {}, false, {}}, series.model, series.solo);
     series.write(writer, 0);
-    core::Cohort& cohort = series.model.grid->brick(0).cohorts[0];
-    core::Body& body = series.model.bodies[static_cast<std::size_t>(cohort.body)];
-    body.pool->block(cohort.blocks[0])[body.pool->layout().offset(core::Column::velocity_x)] += 1;
+    core::ParticleTile& tile = series.model.grid->brick(0).tiles[0];
+    core::Body& body = series.model.bodies[static_cast<std::size_t>(tile.body)];
+    body.pool->block(tile.blocks[0])[body.pool->layout().offset(core::Column::velocity_x)] += 1;
     series.write(writer, 1);
     series.write(writer, 2);
   }

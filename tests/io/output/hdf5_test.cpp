@@ -1,7 +1,9 @@
 #include "io/output/hdf5.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <numeric>
+#include <thread>
 
 #include <catch2/catch.hpp>
 
@@ -51,7 +53,15 @@ TEST_CASE("Wherever a write inside HDF5 fails, it is reported with its reason, a
     CHECK(held_open() == 0);
   }
   write_file(folder / "bad.h5");
-  CHECK(io::read_file(folder / "bad.h5") == io::read_file(folder / "good.h5"));
+  CHECK((io::read_file(folder / "bad.h5") == io::read_file(folder / "good.h5")));
+}
+
+TEST_CASE("A file's bytes do not depend on when it was written") {
+  const Folder folder("hdf5_times");
+  write_file(folder / "early.h5");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 counts whole seconds
+  write_file(folder / "late.h5");
+  CHECK((io::read_file(folder / "early.h5") == io::read_file(folder / "late.h5")));
 }
 
 TEST_CASE("After a write has failed, nothing more is written to the file, whatever becomes of others") {

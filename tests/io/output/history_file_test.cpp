@@ -29,7 +29,8 @@ std::vector<std::vector<double>> rows_of(const std::string& path) {
 }
 
 /// Two particles in one cell and one in another, with the pressures 1, 2 and 3.
-core::Model three_particles(core::SoloCommunication& solo, const std::array<core::Vec3<double>, 3>& positions) {
+core::Model three_particles(core::SoloCommunication& solo,
+                            const std::array<core::Vec3<double>, 3>& positions) {
   auto scene = small_scene();
   core::TimeHistoryInput& history = scene->output.histories.emplace_back();
   history.variables = {"pres", "posx"};
@@ -49,9 +50,9 @@ core::Model three_particles(core::SoloCommunication& solo, const std::array<core
     set(Column::mass, static_cast<double>(i + 1));
     set(Column::pressure, static_cast<double>(i + 1));
     set(Column::identity, static_cast<double>(10 - i));
-    auto& cohorts = model.grid->brick(model.grid->find(counts[i].brick)).cohorts;
-    if (cohorts.empty()) cohorts.emplace_back().body = 0;
-    core::append(*model.bodies[0].pool, cohorts.back(), columns.data());
+    auto& tiles = model.grid->brick(model.grid->find(counts[i].brick)).tiles;
+    if (tiles.empty()) tiles.emplace_back().body = 0;
+    core::append(*model.bodies[0].pool, tiles.back(), columns.data());
   }
   return model;
 }
@@ -59,9 +60,9 @@ core::Model three_particles(core::SoloCommunication& solo, const std::array<core
 constexpr std::array<core::Vec3<double>, 3> at_start{{{0.25, 0.5, 0.5}, {0.75, 0.5, 0.5}, {10, 10, 10}}};
 
 void set_position(core::Model& model, std::size_t brick, double x) {
-  core::Cohort& cohort = model.grid->bricks()[brick].cohorts[0];
+  core::ParticleTile& tile = model.grid->bricks()[brick].tiles[0];
   core::BlockPool& pool = *model.bodies[0].pool;
-  pool.block(cohort.blocks[0])[pool.layout().offset(Column::position_x)] = x;
+  pool.block(tile.blocks[0])[pool.layout().offset(Column::position_x)] = x;
 }
 
 }  // namespace
@@ -97,8 +98,8 @@ TEST_CASE("A particle is followed into other bricks, and lost when it is gone") 
   // The particle that was far away jumps to the other end of the grid, and then vanishes.
   core::Model elsewhere = three_particles(solo, {{{0.25, 0.5, 0.5}, {4.5, 0.5, 0.5}, {1, 9, 1}}});
   file.add(elsewhere, solo);
-  core::Cohort& cohort = elsewhere.grid->brick(elsewhere.grid->find({0, 2, 0})).cohorts[0];
-  core::remove_swapping(*elsewhere.bodies[0].pool, cohort, 0);
+  core::ParticleTile& tile = elsewhere.grid->brick(elsewhere.grid->find({0, 2, 0})).tiles[0];
+  core::remove_swapping(*elsewhere.bodies[0].pool, tile, 0);
   file.add(elsewhere, solo);
   file.add(elsewhere, solo);
   file.flush(solo);
@@ -127,8 +128,8 @@ TEST_CASE("A particle that is gone stays so through a restart, and the log learn
     io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
     file.add(model, solo);
     CHECK(file.gone().empty());
-    core::Cohort& cohort = model.grid->bricks()[0].cohorts[0];
-    core::remove_swapping(*model.bodies[0].pool, cohort, 1);  // identity 9
+    core::ParticleTile& tile = model.grid->bricks()[0].tiles[0];
+    core::remove_swapping(*model.bodies[0].pool, tile, 1);  // identity 9
     model.clock.step = 1;
     file.add(model, solo);
     REQUIRE(file.gone().size() == 1);
@@ -162,12 +163,12 @@ TEST_CASE("Without histories the file has the energies, and values beyond all nu
   core::Model model = three_particles(solo, at_start);
   io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
   CHECK(file.each_step());
-  core::Cohort& cohort = model.grid->bricks()[0].cohorts[0];
+  core::ParticleTile& tile = model.grid->bricks()[0].tiles[0];
   core::BlockPool& pool = *model.bodies[0].pool;
   for (int lane = 0; lane < 2; ++lane)
-    pool.block(cohort.blocks[0])[pool.layout().offset(Column::pressure) + lane] = 1.7e308;
+    pool.block(tile.blocks[0])[pool.layout().offset(Column::pressure) + lane] = 1.7e308;
   file.add(model, solo);
-  pool.block(cohort.blocks[0])[pool.layout().offset(Column::velocity_x)] = 1e200;
+  pool.block(tile.blocks[0])[pool.layout().offset(Column::velocity_x)] = 1e200;
   CHECK_THROWS_AS(file.add(model, solo), core::NumericalFailure);
   file.flush(solo);
   const auto rows = rows_of(folder / "a_curv.dat");

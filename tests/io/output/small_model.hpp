@@ -97,8 +97,8 @@ inline core::Model prepared_model(std::shared_ptr<const core::Scene> scene, cons
       body.pool = std::make_shared<core::BlockPool>(core::ColumnLayout(columns));
     }
   }
-  model.books.body_eroded.resize(model.bodies.size());
-  model.books.body_left.resize(model.bodies.size());
+  model.ledger.body_eroded.resize(model.bodies.size());
+  model.ledger.body_left.resize(model.bodies.size());
   model.scene = std::move(scene);
   return model;
 }
@@ -148,27 +148,27 @@ inline void fill(core::Model& model, core::Communication& exchange, const SmallS
   for (const Particle& p : particles) {
     const core::Slot s = model.grid->find(p.brick);
     if (s == core::no_slot || s >= model.grid->owned()) continue;
-    auto& cohorts = model.grid->brick(s).cohorts;
-    if (cohorts.empty() || cohorts.back().body != static_cast<int>(p.body)) {
-      cohorts.emplace_back().body = static_cast<int>(p.body);
+    auto& tiles = model.grid->brick(s).tiles;
+    if (tiles.empty() || tiles.back().body != static_cast<int>(p.body)) {
+      tiles.emplace_back().body = static_cast<int>(p.body);
     }
-    core::append(*model.bodies[p.body].pool, cohorts.back(), p.columns.data());
+    core::append(*model.bodies[p.body].pool, tiles.back(), p.columns.data());
   }
   model.clock = {120, 0.25, 1e-3, 1.25e-3, 1.5e-3};
   model.initial_energy = 1e6;
   model.next_identity = identity;
-  // Every rank has something in its books; their sum is the same on any number of ranks.
+  // Every rank has something in its ledger; their sum is the same on any number of ranks.
   if (exchange.reductions.rank() == 0) {
-    model.books.external_work.add(0.1);
-    model.books.removed_mass.add(1e-30);
-    model.books.left_grid = 3;
-    model.books.body_left[0] = 3;
+    model.ledger.external_work.add(0.1);
+    model.ledger.removed_mass.add(1e-30);
+    model.ledger.left_grid = 3;
+    model.ledger.body_left[0] = 3;
   }
   if (exchange.reductions.rank() == exchange.reductions.size() - 1) {
-    model.books.external_work.add(1e20);
-    model.books.eroded = 5;
-    model.books.body_eroded[1] = 5;
-    model.books.events.failed = 7;
+    model.ledger.external_work.add(1e20);
+    model.ledger.eroded = 5;
+    model.ledger.body_eroded[1] = 5;
+    model.ledger.events.failed = 7;
   }
 }
 

@@ -79,10 +79,10 @@ TEST_CASE("What a 32-bit real does not hold is cut in grids, too") {
   core::SoloCommunication solo;
   core::Model model = small_model(solo);
   for (core::Brick& brick : model.grid->bricks()) {
-    for (core::Cohort& cohort : brick.cohorts) {
-      if (cohort.body != 0) continue;
+    for (core::ParticleTile& tile : brick.tiles) {
+      if (tile.body != 0) continue;
       core::BlockPool& pool = *model.bodies[0].pool;
-      for (const core::BlockIndex b : cohort.blocks)
+      for (const core::BlockIndex b : tile.blocks)
         std::fill_n(pool.block(b) + pool.layout().offset(core::Column::pressure), core::block_lanes, 1e39);
     }
   }

@@ -27,7 +27,7 @@ core::Model at_step(core::Communication& exchange, std::int64_t step, int partic
   return model;
 }
 
-std::string complaint(const std::string& path) {
+std::string fault(const std::string& path) {
   core::SoloCommunication solo;
   core::Model copy = prepared_model(small_scene());
   try {
@@ -56,14 +56,14 @@ TEST_CASE("No byte of a restart file can change unnoticed") {
   const std::string path =
       io::write_restart(folder.path(), "small", at_step(solo, 1), {"<PeneBlast/>", {1}, {{"a", "2"}}}, solo);
   const std::string good = io::read_file(path);
-  REQUIRE(complaint(path).empty());
+  REQUIRE(fault(path).empty());
   REQUIRE(good.size() > 20000);
   int unnoticed = 0, tried = 0;
   for (std::size_t at = 0; at < good.size(); at += at < 600 ? 1 : 23, ++tried) {
     std::string bad = good;
     bad[at] = static_cast<char>(bad[at] ^ (1 << (at % 8)));
     std::ofstream(path, std::ios::binary) << bad;
-    const std::string text = complaint(path);
+    const std::string text = fault(path);
     if (text.find("small_1.pe") == std::string::npos || text.find("damaged") == std::string::npos)
       ++unnoticed;
   }
@@ -77,17 +77,17 @@ TEST_CASE("A restart file that was cut anywhere says so") {
   const std::string path = io::write_restart(folder.path(), "small", at_step(solo, 1), {}, solo);
   const std::uint64_t size = std::filesystem::file_size(path);
   std::filesystem::resize_file(path, size - 1);
-  CHECK_THAT(complaint(path), Catch::Contains("is damaged: it has " + std::to_string(size - 1) +
-                                              " bytes instead of " + std::to_string(size)));
+  CHECK_THAT(fault(path), Catch::Contains("is damaged: it has " + std::to_string(size - 1) +
+                                          " bytes instead of " + std::to_string(size)));
   std::filesystem::resize_file(path, 600);
-  CHECK_THAT(complaint(path), Catch::Contains("has 600 bytes instead of"));
+  CHECK_THAT(fault(path), Catch::Contains("has 600 bytes instead of"));
   std::filesystem::resize_file(path, 100);
-  CHECK_THAT(complaint(path), Catch::Contains("has 100 bytes, too few"));
+  CHECK_THAT(fault(path), Catch::Contains("has 100 bytes, too few"));
   std::filesystem::resize_file(path, 0);
-  CHECK_THAT(complaint(path), Catch::Contains("has 0 bytes, too few"));
+  CHECK_THAT(fault(path), Catch::Contains("has 0 bytes, too few"));
 }
 
-TEST_CASE("Each part of a restart file has a complaint of its own") {
+TEST_CASE("Each part of a restart file has a fault of its own") {
   const Folder folder("restart_parts");
   core::SoloCommunication solo;
   const std::string path =
@@ -97,7 +97,7 @@ TEST_CASE("Each part of a restart file has a complaint of its own") {
     std::string bad = good;
     ++bad[at];
     std::ofstream(path, std::ios::binary) << bad;
-    return complaint(path);
+    return fault(path);
   };
   CHECK_THAT(after_change_at(30), Catch::Contains("its first block fails its checksum"));
   CHECK_THAT(after_change_at(good.find("here is the scene")),
@@ -108,8 +108,8 @@ TEST_CASE("Each part of a restart file has a complaint of its own") {
   CHECK_THAT(after_change_at(row), Catch::Contains("the particles of body 'bar' in brick (") &&
                                        Catch::Contains("fail their checksum"));
   std::ofstream(path, std::ios::binary) << std::string(5000, 'x');
-  CHECK_THAT(complaint(path), Catch::Contains("is not a restart file, or its first block is damaged"));
-  CHECK_THAT(complaint(folder / "nothing.pe"), Catch::Contains("nothing.pe': No such file"));
+  CHECK_THAT(fault(path), Catch::Contains("is not a restart file, or its first block is damaged"));
+  CHECK_THAT(fault(folder / "nothing.pe"), Catch::Contains("nothing.pe': No such file"));
 }
 
 TEST_CASE("The newest two restart files are kept") {
@@ -163,7 +163,7 @@ TEST_CASE("On a full disk the last good restart file stays, and nothing half-wri
   CHECK(files_in(folder) == std::vector<std::string>{"small_10.pe"});
   CHECK(io::restart_state_hash(good) == hash);
   io::write_restart(folder.path(), "small", at_step(solo, 30), {}, solo);
-  CHECK(complaint(folder / "small_30.pe").empty());
+  CHECK(fault(folder / "small_30.pe").empty());
 }
 
 TEST_CASE("A full file system is survived, too") {
@@ -208,7 +208,7 @@ TEST_CASE("A run that is killed while it writes leaves the earlier file") {
     found = io::find_newest_restart(folder.path(), "small", solo, notices);
     REQUIRE(found);
     CHECK(notices.empty());
-    CHECK(complaint(*found).empty());
+    CHECK(fault(*found).empty());
   }
   CHECK(*found == folder / "small_2.pe");  // it was really writing
 }

@@ -64,15 +64,15 @@ TEST_CASE("A restart file gives back the state to the last bit") {
   CHECK(copy.clock.first_critical_dt == 1.5e-3);
   CHECK(copy.initial_energy == 1e6);
   CHECK(copy.next_identity == 601);
-  CHECK(copy.books.external_work.value() == 1e20);
+  CHECK(copy.ledger.external_work.value() == 1e20);
   // The small part is still there under the large one.
-  core::ExactSum rest = copy.books.external_work;
+  core::ExactSum rest = copy.ledger.external_work;
   rest.add(-1e20);
   CHECK(rest.value() == 0.1);
-  CHECK(copy.books.left_grid == 3);
-  CHECK(copy.books.body_left == std::vector<std::int64_t>{3, 0, 0});
-  CHECK(copy.books.body_eroded == std::vector<std::int64_t>{0, 5, 0});
-  CHECK(copy.books.events.failed == 7);
+  CHECK(copy.ledger.left_grid == 3);
+  CHECK(copy.ledger.body_left == std::vector<std::int64_t>{3, 0, 0});
+  CHECK(copy.ledger.body_eroded == std::vector<std::int64_t>{0, 5, 0});
+  CHECK(copy.ledger.events.failed == 7);
   CHECK(result.extra.tracked == an_extra.tracked);
   CHECK(result.extra.marks == an_extra.marks);
   CHECK(result.notices.empty());
@@ -147,7 +147,7 @@ TEST_CASE("A body may be deactivated; what it held is booked") {
   REQUIRE(result.notices.size() == 1);
   CHECK_THAT(result.notices[0], Catch::Contains("body 'bar' is deactivated: its 300 particles are left out"));
   CHECK(copy.local_particles() == 301);
-  CHECK(copy.books.body_eroded == std::vector<std::int64_t>{5, 0});
+  CHECK(copy.ledger.body_eroded == std::vector<std::int64_t>{5, 0});
   const core::Totals before = core::compute_totals(model, solo), after = core::compute_totals(copy, solo);
   CHECK(after.removed_kinetic == Approx(before.bodies[0].kinetic).epsilon(1e-13));
   CHECK(after.removed_internal == Approx(before.bodies[0].internal).epsilon(1e-11));
