@@ -1,5 +1,5 @@
-// What a run needs of the other ranks, in four parts. `parallel` implements them over MPI; SoloCommunication
-// is one rank alone, for which every answer is trivial. Nothing else of the outside world reaches the step.
+// The communication that a run needs, in four parts. `parallel` implements them over MPI; SoloCommunication
+// is the trivial implementation for one rank. The step uses no other external interface.
 #pragma once
 
 #include "core/communication/brick_directory.hpp"
@@ -15,7 +15,7 @@ struct Communication {
   ParticleTransport& particles;
   NodeHalo& halo;
 
-  /// Most functions need no more of it.
+  /// Most functions need only the reductions.
   operator Reductions&() const { return reductions; }
 };
 

@@ -1,4 +1,4 @@
-// Contributions to the nodes that bricks of several ranks share.
+// Exchange of contributions to the nodes that bricks of several ranks share.
 #pragma once
 
 #include "core/grid/brick_grid.hpp"
@@ -9,9 +9,9 @@ class NodeHalo {
  public:
   virtual ~NodeHalo() = default;
 
-  /// Send our boundary bricks' contributions to shared nodes, these fields of them, and receive the ghosts'.
-  /// Between begin and end the boundary bricks' contributions stay untouched. Collective, with the ranks next
-  /// to this one.
+  /// Sends these fields of our boundary bricks' contributions to shared nodes, and receives the ghosts'.
+  /// Between begin and end the boundary bricks' contributions must not change. Collective, with the
+  /// neighbouring ranks.
   virtual void begin(BrickGrid& grid, NodeFields fields) = 0;
   virtual void end(BrickGrid& grid) = 0;
 };

@@ -1,4 +1,4 @@
-// Particles on their way to the rank that owns their brick.
+// Transport of migrating particles to the rank that owns their brick.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace mpm::core {
 
-/// Particles that go to another brick: their columns one after the other, with where they go.
+/// Migrating particles: their columns one after the other, and their destinations.
 struct MigrationBuffer {
   struct Head {
     BrickCoord to;
     std::int32_t body = 0;
-    std::int32_t unused = 0;  ///< heads travel in whole doubles
+    std::int32_t unused = 0;  ///< heads are sent as whole doubles
   };
   std::vector<Head> heads;
   std::vector<std::size_t> offsets;  ///< of each particle in `columns`
@@ -26,8 +26,8 @@ struct MigrationBuffer {
     columns.insert(columns.end(), first, first + n);
   }
   std::size_t size() const { return heads.size(); }
-  /// Keeps the room of a usual step. Where a lattice moves with one velocity, whole layers cross at once: too
-  /// rare to keep room for.
+  /// Keeps the capacity of a typical step. Where a lattice moves with one velocity, whole layers cross at
+  /// once: too rare to keep that capacity.
   void clear() {
     constexpr std::size_t kept = std::size_t{1} << 18;  // doubles
     if (columns.capacity() > kept) *this = {};
@@ -41,13 +41,13 @@ class ParticleTransport {
  public:
   virtual ~ParticleTransport() = default;
 
-  /// Hand over the particles that another rank's bricks await and receive ours; on return `particles` holds
-  /// all that enter our bricks, in no particular order. `columns_of[body]` is the number of columns. Throws
+  /// Sends the particles that enter other ranks' bricks and receives ours; on return `particles` holds all
+  /// that enter our bricks, in no particular order. `columns_of[body]` is the number of columns. Throws
   /// std::logic_error, on this rank alone, where a brick does not exist or is not next to one of ours.
-  /// Collective, with the ranks next to this one.
+  /// Collective, with the neighbouring ranks.
   virtual void migrate(const BrickGrid& grid, MigrationBuffer& particles,
                        std::span<const int> columns_of) = 0;
-  /// The same from anywhere to anywhere. Holds up to twice the particles' memory: give it pieces. Collective.
+  /// The same between any ranks. Needs up to twice the particles' memory: call it in pieces. Collective.
   virtual void scatter(MigrationBuffer& particles, std::span<const int> columns_of) = 0;
 };
 

@@ -1,5 +1,5 @@
-// What all ranks know together: sums, extremes, and the status that ends a step. Every result is the same on
-// every rank and does not depend on how many there are, but for `spread`.
+// Global reductions: sums, extremes, and the status that ends a step. Every result is the same on every rank
+// and, except for `spread`, independent of their number.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace mpm::core {
 
 /// What a rank reports at the end of a step.
 struct StepStatus {
-  double stable_step = 0;     ///< largest stable step of its particles; of all ranks the smallest counts
-  bool needs_bricks = false;  ///< a particle of it enters a brick that it does not know
-  bool failed = false;        ///< the run cannot go on
-  bool stop = false;          ///< it was asked to stop
+  double stable_step = 0;     ///< largest stable step of its particles; the smallest of all ranks counts
+  bool needs_bricks = false;  ///< one of its particles enters a brick that it does not know
+  bool failed = false;        ///< the run cannot continue
+  bool stop = false;          ///< a stop was requested
 };
 
-/// A figure over the ranks that needs no reproducibility: seconds, bytes.
+/// Spread of a measured value over the ranks, such as seconds or bytes; not reproducible.
 struct Spread {
   double min = 0, mean = 0, max = 0;
 };
@@ -37,9 +37,9 @@ class Reductions {
   virtual void minimum(std::span<double> values) = 0;
   /// Sum of every entry over the ranks, in place. Collective.
   virtual void sum(std::span<std::int64_t> values) = 0;
-  /// Leaves the sums normalised: their limbs, too, are the same on any ranks. Collective.
+  /// The sums are normalised, so their limbs are also the same on any ranks. Collective.
   virtual void sum(std::span<ExactSum> values) = 0;
-  /// The smallest step, and what holds on any rank. Collective.
+  /// The smallest step; each flag is true if it is on any rank. Collective.
   virtual StepStatus combine(const StepStatus& mine) = 0;
 
   /// One line per rank to all ranks, in the order of ranks; for messages that name a particle. Collective.
@@ -47,7 +47,7 @@ class Reductions {
   /// Collective.
   virtual Spread spread(double mine) = 0;
 
-  /// Of one figure. Collective.
+  /// Of one value. Collective.
   double smallest(double mine) {
     minimum(std::span(&mine, 1));
     return mine;

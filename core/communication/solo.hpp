@@ -1,4 +1,4 @@
-// One rank alone.
+// Communication of a single rank.
 #pragma once
 
 #include "core/communication/communication.hpp"
@@ -18,7 +18,7 @@ class SoloReductions final : public Reductions {
   Spread spread(double mine) override { return {mine, mine, mine}; }
 };
 
-/// Every brick is ours; the grid itself knows which there are.
+/// Every brick is ours; the grid itself stores which exist.
 class SoloDirectory final : public BrickDirectory {
  public:
   void partition(BrickGrid& grid, std::span<const BrickCount> counts, const DecompositionInput& how) override;

@@ -1,9 +1,8 @@
 // Bricks: blocks of 4 x 4 x 4 cells of the background grid. Only bricks with particles exist.
 //
-// A brick owns a copy of every node that its particles touch: 5 x 5 x 5 with linear shape functions, more by
-// `halo` on each side with wider ones. Nodes on the faces exist in every brick that shares them; all copies
-// are summed from the same contributions in the same order, so they agree to the last bit without being
-// exchanged.
+// A brick owns a copy of every node that its particles touch: 5 x 5 x 5 with linear shape functions, `halo`
+// more on each side with wider ones. Every brick that shares a face node has a copy; all copies are summed
+// from the same contributions in the same order, so they agree bit for bit without being exchanged.
 #pragma once
 
 #include <array>
@@ -18,8 +17,8 @@ namespace mpm::core {
 
 inline constexpr int brick_cells = 4;
 
-/// Brick (x, y, z) of level 0 holds cells 4x .. 4x+3 along x and so on; 0 <= component < 2^21. A brick of
-/// level n > 0 holds cells smaller by 2^n; no run makes such bricks yet.
+/// Brick (x, y, z) of level 0 holds cells 4x .. 4x+3 along x and so on; 0 <= component < 2^21. The cells of a
+/// brick of level n > 0 are smaller by 2^n; no run creates such bricks yet.
 struct BrickCoord {
   std::int32_t x = 0, y = 0, z = 0;
   std::int32_t level = 0;
@@ -32,11 +31,11 @@ struct BrickCoord {
   }
 };
 
-/// One number per brick, ordered by z, then y, then x; coordinates outside the grid have keys of their own.
-/// Level 0 has 21 bits an axis. In finer levels the highest bit is set, the level follows in three bits, and
-/// 20 bits an axis remain.
+/// One number per brick, ordered by z, then y, then x; coordinates outside the grid have distinct keys. Level
+/// 0 has 21 bits per axis. In finer levels the highest bit is set, the level follows in three bits, and 20
+/// bits per axis remain.
 using BrickKey = std::uint64_t;
-inline constexpr int most_brick_levels = 8;  ///< 0 .. 7 are the numbers of levels
+inline constexpr int most_brick_levels = 8;  ///< levels are numbered 0 .. 7
 constexpr BrickKey key_of(BrickCoord b) {
   const int bits = b.level == 0 ? 21 : 20;
   const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
@@ -60,20 +59,20 @@ inline constexpr int neighbourhood = 27;
 inline constexpr int self_index = 13;
 constexpr BrickCoord neighbour_offset(int n) { return {n % 3 - 1, (n / 3) % 3 - 1, n / 9 - 1}; }
 
-/// The regular background grid: where nodes are, and what its faces do.
+/// The regular background grid: position of the nodes and boundary conditions on its faces.
 struct GridGeometry {
   Vec3<double> origin{};  ///< lower corner, length
   Vec3<double> cell{};    ///< cell edges, length
   Vec3<double> inverse_cell{};
-  std::array<std::int64_t, 3> cells{};  ///< along each axis; nodes are one more
+  std::array<std::int64_t, 3> cells{};  ///< along each axis; one node more
   std::array<Boundary, 6> boundary{};   ///< x lower, x upper, y lower, ...
-  double mass_cutoff = 0;               ///< mass below which a node is left out
+  double mass_cutoff = 0;               ///< nodes of smaller mass are ignored
 
   double smallest_cell() const { return std::fmin(cell.x, std::fmin(cell.y, cell.z)); }
   double cell_volume() const { return cell.x * cell.y * cell.z; }
 
   /// Position in cells from the origin. The kernels subtract their brick's first cell from it, which may
-  /// round differently within one ulp of a face: they clamp, and a particle there may live in either brick.
+  /// round differently within one ulp of a face: they clamp, and a particle there may be in either brick.
   template <class T>
   static T scaled(T x, double origin, double inverse_cell) {
     return (x - T(origin)) * T(inverse_cell);
@@ -105,11 +104,11 @@ struct GridGeometry {
   }
 };
 
-/// Widest halo of nodes. With two layers, bricks two apart would hold the same nodes, and the 27 of a
-/// neighbourhood would not be all that a node's sum needs.
+/// Widest halo of nodes. With two layers, bricks two apart would share nodes, and the sum over the 27 bricks
+/// of a neighbourhood would be incomplete.
 inline constexpr int most_halo = 1;
 
-/// Nodes of one brick's array. Node (i, j, k) counts from the brick's lowest node, -halo <= i < side - halo.
+/// Node block of one brick. Node (i, j, k) counts from the brick's lowest node, -halo <= i < side - halo.
 struct NodeBlockShape {
   int halo = 0;
   constexpr int side() const { return brick_cells + 1 + 2 * halo; }

@@ -9,7 +9,7 @@ namespace mpm::core {
 
 void AlignedDoubles::resize(std::size_t n) {
   if (n > capacity_) {
-    const std::size_t wanted = n + n / 8;  // bricks come one by one; do not move for each
+    const std::size_t wanted = n + n / 8;  // bricks are added one by one: avoid reallocation for each
     data_.reset();
     capacity_ = 0;
     data_ = allocate_pages(wanted);
@@ -21,8 +21,8 @@ void AlignedDoubles::resize(std::size_t n) {
 BrickGrid::BrickGrid(const GridGeometry& geometry, NodeBlockShape shape, NodeArraySet arrays)
     : geometry_(geometry), shape_(shape), arrays_(arrays) {
   if (shape.halo < 0 || shape.halo > most_halo)
-    throw std::logic_error("a halo of " + std::to_string(shape.halo) + " layers of nodes, of at most " +
-                           std::to_string(most_halo));
+    throw std::logic_error("a halo of " + std::to_string(shape.halo) +
+                           " layers of nodes exceeds the largest, " + std::to_string(most_halo));
 }
 
 void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts) {
@@ -41,7 +41,7 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
     }
     return false;
   };
-  // Those whose contributions must travel come first, so that the others are worked on meanwhile.
+  // Bricks with contributions to send come first, so that the exchange overlaps with the others.
   const auto interior = std::stable_partition(owned.begin(), owned.end(), touches_ghost);
   boundary_ = static_cast<int>(interior - owned.begin());
 

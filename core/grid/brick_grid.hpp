@@ -1,7 +1,7 @@
-// The bricks of one rank: which exist, who their neighbours are, and what each adds to its nodes.
+// The bricks of one rank: which exist, their neighbours, and their contributions to their nodes.
 //
-// Slots 0 .. owned()-1 are this rank's bricks, those that touch another rank's first; slots from owned() on
-// are ghosts: other ranks' bricks next to ours, of which only the contributions to shared nodes are kept.
+// Slots 0 .. owned()-1 are this rank's bricks, those next to another rank's first; the following slots are
+// ghosts: other ranks' bricks next to ours, of which only the contributions to shared nodes are stored.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace mpm::core {
 using Slot = std::int32_t;
 inline constexpr Slot no_slot = -1;
 
-/// Doubles from the start of a page on that may grow; contents are undefined after a resize.
+/// Resizable, page-aligned array of doubles; contents are undefined after a resize.
 class AlignedDoubles {
  public:
   void resize(std::size_t n);
@@ -37,7 +37,7 @@ class AlignedDoubles {
 struct Brick {
   BrickCoord coord;
   std::array<Slot, neighbourhood> neighbour{};  ///< owned or ghost slots; no_slot where no brick exists
-  std::vector<ParticleTile> tiles;              ///< ascending by body; none is empty after migration
+  std::vector<ParticleTile> tiles;              ///< in ascending order of body; none is empty after migration
   std::size_t particles() const {
     std::size_t n = 0;
     for (const ParticleTile& c : tiles) n += c.count;
@@ -69,25 +69,25 @@ class BrickGrid {
     return it == slot_.end() ? no_slot : it->second;
   }
 
-  /// Make the set of bricks this: `owned` keep their particles if they were there and start empty if not;
-  /// a brick that is dropped must be empty. Slots, neighbours and node arrays are new afterwards.
+  /// Replaces the set of bricks: those of `owned` that exist keep their particles, new ones start empty; a
+  /// brick that is dropped must be empty. Slots, neighbours and node arrays change.
   void reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts);
 
   const NodeArraySet& arrays() const { return arrays_; }
-  /// What the slot's own particles add to its nodes: shape().nodes() records of record_doubles(of). `of` is
-  /// one of arrays().
+  /// Contributions of the slot's particles to its nodes: shape().nodes() records of record_doubles(of). `of`
+  /// is one of arrays().
   double* contributions(NodeArray of, Slot s) {
     return array(of).data() + stride(of) * static_cast<std::size_t>(s);
   }
   const double* contributions(NodeArray of, Slot s) const {
     return array(of).data() + stride(of) * static_cast<std::size_t>(s);
   }
-  /// Of a slot with several velocity fields; field 0 is the one above.
+  /// For a slot with several velocity fields; field 0 is the one above.
   double* contributions(NodeArray of, Slot s, int field) {
     return contributions(of, field == 0 ? s : extra_block(s, field));
   }
 
-  /// Bricks in which components meet keep nodes for every velocity field: fields[slot] >= 1 of each owned and
+  /// Bricks where components meet store nodes for every velocity field: fields[slot] >= 1 of each owned and
   /// ghost slot. After reset() all slots have one. Contents of the extra fields are undefined.
   void set_velocity_fields(std::span<const std::uint8_t> fields);
   int velocity_fields(Slot s) const {
@@ -96,14 +96,14 @@ class BrickGrid {
                                       extra_begin_[static_cast<std::size_t>(s)];
   }
 
-  /// Counts up whenever the set of bricks changes; communication plans are made anew then.
+  /// Incremented whenever the set of bricks changes; communication plans are then rebuilt.
   std::uint64_t revision() const { return revision_; }
 
  private:
   std::size_t stride(NodeArray of) const {
     return static_cast<std::size_t>(shape_.nodes() * record_doubles(of));
   }
-  /// Blocks of nodes beyond the first field's lie behind those of all slots.
+  /// Node blocks of further fields are stored after the first-field blocks of all slots.
   Slot extra_block(Slot s, int field) const {
     return static_cast<Slot>(bricks_.size() + ghosts_.size()) + extra_begin_[static_cast<std::size_t>(s)] +
            field - 1;
@@ -119,7 +119,8 @@ class BrickGrid {
   std::vector<BrickCoord> ghosts_;
   std::unordered_map<BrickKey, Slot> slot_;
   AlignedDoubles first_, second_;
-  std::vector<Slot> extra_begin_;  ///< by slot: of its extra blocks; empty while all have one field
+  std::vector<Slot>
+      extra_begin_;  ///< by slot: index of its first extra block; empty while all have one field
   int boundary_ = 0;
   std::uint64_t revision_ = 0;
 };

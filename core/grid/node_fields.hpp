@@ -1,10 +1,9 @@
-// What a node of the background grid carries, by name.
+// Nodal fields of the background grid, by name.
 //
-// Every brick stores its own contributions to its nodes in one or two arrays of records. A field is a name
-// for consecutive components of an array's record; kernels, sums and the halo exchange speak of fields. A
-// scheme maps to the grid at most twice a step and needs the first sums again after the second map: hence two
-// arrays. Fields of different phases may share memory: those of heat use the arrays while the mechanics does
-// not.
+// Every brick stores its contributions to its nodes in one or two arrays of records. A field names
+// consecutive components of an array's record; kernels, sums and the halo exchange use fields. A scheme maps
+// to the grid at most twice per step and needs the first sums again after the second map: hence two arrays.
+// Fields of different phases may share memory: heat conduction uses the arrays while the mechanics does not.
 //
 // A record of the first array fills a cache line of 64 bytes, one of the second half a line.
 #pragma once
@@ -17,7 +16,7 @@ namespace mpm::core {
 
 enum class NodeArray : int { first, second };
 inline constexpr std::array node_arrays{NodeArray::first, NodeArray::second};
-/// Doubles of a record of summed nodes, and of a record of the first array.
+/// Doubles per record of summed nodes, and per record of the first array.
 inline constexpr int node_doubles = 8;
 constexpr int record_doubles(NodeArray of) {
   return of == NodeArray::first ? node_doubles : node_doubles / 2;
@@ -34,7 +33,7 @@ struct NodeFields {
     return array == other.array && first <= other.first && other.end() <= end();
   }
   constexpr bool operator==(const NodeFields&) const = default;
-  /// Two neighbouring fields as one. Fields that are not neighbours are an error of the compilation.
+  /// Joins two adjacent fields. Fields that are not adjacent are a compile-time error.
   friend constexpr NodeFields operator|(const NodeFields& a, const NodeFields& b) {
     if (a.array != b.array || a.end() != b.first) throw "only neighbouring fields of one array can be joined";
     return {a.array, a.first, a.count + b.count};
@@ -42,7 +41,7 @@ struct NodeFields {
 };
 
 namespace node_field {
-// Mechanics. `second_...`: MUSL maps the momentum a second time; USF maps momentum and mass there at once.
+// Mechanics. `second_...`: MUSL maps the momentum a second time; USF maps momentum and mass there together.
 inline constexpr NodeFields momentum{NodeArray::first, 0, 3};
 inline constexpr NodeFields mass{NodeArray::first, 3, 1};
 inline constexpr NodeFields force{NodeArray::first, 4, 3};
@@ -90,7 +89,7 @@ constexpr bool maps_mass(NodeFields f) {
 }
 constexpr bool maps_force(NodeFields f) { return f.includes(node_field::force); }
 
-/// The arrays that a scene's schemes write to; the others take no memory.
+/// The arrays that a scene's schemes use; the others are not allocated.
 class NodeArraySet {
  public:
   constexpr NodeArraySet(std::initializer_list<NodeArray> arrays) {
@@ -104,9 +103,9 @@ class NodeArraySet {
   unsigned bits_ = 0;
 };
 
-// Records by name: views of the same memory in its different uses. `Double`: double or const double.
+// Named views of records in their different uses. `Double`: double or const double.
 
-/// The sums of what particles map, in a record of the first array.
+/// Summed contributions, in a record of the first array.
 template <class Double>
 struct MappedRecord {
   Double* at;
@@ -123,7 +122,7 @@ struct MotionRecord {
   Double* velocity() const { return at + velocity_at; }  ///< at the end of the step
   Double& mass() const { return at[mass_at]; }
   Double* increment() const { return at + increment_at; }  ///< of the velocity in this step
-  /// The velocity that strains the particles; once they have taken the increment, in its place.
+  /// Strain velocity of the particles; overwrites the increment once they have taken it.
   Double* strain_velocity() const { return at + strain_velocity_at; }
   /// USL: share of the increment that the strain velocity omits.
   Double& omitted_share() const { return at[omitted_at]; }

@@ -23,7 +23,7 @@ double diffusivity(const Body& body, const double* block, int lane) {
          block[layout.offset(Column::volume) + lane] / block[layout.offset(Column::mass) + lane];
 }
 
-/// 1/dt_c of a diffusivity of one.
+/// 1/dt_c for unit diffusivity.
 double sharpest_curvature(const GridGeometry& g) { return 2 * dot(g.inverse_cell, g.inverse_cell); }
 
 template <ShapePolicy S>
@@ -46,7 +46,7 @@ class ConductionWith final : public Conduction {
   Model& model_;
   NodeHalo& halo_;
   SharedNodes shared_;
-  std::vector<AlignedDoubles> heat_, flow_;  ///< of the brick at hand, by thread
+  std::vector<AlignedDoubles> heat_, flow_;  ///< of the current brick, by thread
   bool any_ = false;
 };
 
@@ -154,7 +154,7 @@ void ConductionWith<S>::update_temperatures(double dt) {
     double *nodes = heat_[thread].data(), *flux = flow_[thread].data();
     temperatures(s, nodes);
     sum_contributions<mapped::heat_flow.array>(grid, shared_, s, flux);
-    for (int n = 0; n < shared_.nodes(); ++n) {  // to the nodes' rise, and P T'
+    for (int n = 0; n < shared_.nodes(); ++n) {  // increments dT_i, and P T'
       const double capacity = nodes[node_doubles * n];
       double* at = flux + node_doubles * n;
       at[0] = capacity > 0 ? dt * at[0] / capacity : 0;

@@ -1,18 +1,19 @@
 // Heat conduction on the grid, before the mechanics of a step: rho c dT/dt = div(k grad T).
 //
-// Heat and its capacity go from the particles to the nodes, as momentum and mass do; the flux through each
-// particle, from the nodes' temperatures, changes the nodes' heat; the particles take the nodes' increments:
+// Heat and heat capacity are mapped from the particles to the nodes, as momentum and mass are; the flux
+// through each particle, from the nodal temperatures, changes the nodal heat; the particles take the nodal
+// increments:
 //   T_i = sum m c T S_i / C_i,  C_i = sum m c S_i,  Q_i = -sum V k grad T . grad S_i,  dT_i = dt Q_i / C_i
-// The sum of Q_i is zero, so heat is kept to round-off; it is internal energy, which moves with it. The
-// grid's faces are adiabatic, and so are bodies without conductivity. Stable up to dt_c = 1/(2 a (1/dx^2 +
-// 1/dy^2 + 1/dz^2)) for a = k/(rho c), the bound of the regular grid with lumped capacities; that joins the
-// critical step.
+// The sum of Q_i is zero, so heat, a part of the internal energy, is conserved to round-off. The grid's faces
+// and bodies without conductivity are adiabatic. The update is stable up to dt_c = 1/(2 a (1/dx^2 + 1/dy^2 +
+// 1/dz^2)) with a = k/(rho c), the bound of the regular grid with lumped capacities; the critical step
+// includes this bound.
 //
-// Increments alone never even out what varies within a cell, such as the jump at a contact of hot and cold:
-// the grid does not see it. So the part of T that two passes over the grid do not reproduce,
-// T'' = (1 - P)^2 T with P T = sum S_i T_i, decays at the rate 1/dt_c. On waves that the grid resolves that
-// acts as (k h)^4 only, so the order stays two; and as P keeps the heat, so does the decay.
-// The first node array and the second, idle between steps, carry (Q, C T') and (C, C T), T' = (1 - P) T.
+// The grid does not resolve variations of T within a cell, such as the jump at a contact of hot and cold, and
+// increments alone never smooth them. Therefore the part of T that two passes over the grid do not reproduce,
+// T'' = (1 - P)^2 T with P T = sum S_i T_i, decays at the rate 1/dt_c. On resolved waves this term is only
+// (k h)^4, so the method stays second order; P conserves heat, so the decay does too. The first and second node
+// arrays, idle between steps, hold (Q, C T') and (C, C T), T' = (1 - P) T.
 // Shown by tests/system/physics_heat.py.
 #pragma once
 
@@ -23,14 +24,14 @@
 
 namespace mpm::core {
 
-/// Largest stable step of this rank's particles as they are; infinity where nothing conducts.
+/// Largest stable step for the current state of this rank's particles; infinity where nothing conducts.
 double conduction_step(const Model& model);
 
 class Conduction {
  public:
   virtual ~Conduction() = default;
 
-  /// Whether any body conducts. Without, there are no phases for it.
+  /// Whether any body conducts; if none does, the step has no heat phases.
   virtual bool any() const = 0;
   virtual void map_heat() = 0;
   virtual void map_flux() = 0;
@@ -38,7 +39,7 @@ class Conduction {
   virtual void finish_exchange() = 0;
 };
 
-/// With the scene's shape.
+/// For the scene's shape functions.
 std::unique_ptr<Conduction> make_conduction(Model& model, NodeHalo& halo);
 
 /// Whether any body of the model conducts heat.

@@ -1,5 +1,4 @@
-// The explicit step on one page: each scheme is the list of its phases, in the order in which they run
-// (thesis 2.2.2).
+// The explicit step: each scheme is the list of its phases in order of execution (thesis 2.2.2).
 #include "core/step/explicit_integrator.hpp"
 
 #include <algorithm>

@@ -66,7 +66,7 @@ std::string fastest_in_words(const Model& model, Reductions& ranks) {
       if (speed > most) fastest = {};
       most = speed;
       fastest.offer(p[Column::identity], [&] {
-        return in_words(model, block.body, p) + fmt::format(", at the speed {:.6g}", speed);
+        return in_words(model, block.body, p) + fmt::format(", with speed {:.6g}", speed);
       });
     }
   }
@@ -76,9 +76,9 @@ std::string fastest_in_words(const Model& model, Reductions& ranks) {
 void require_finite(const Model& model, std::span<const double> totals, Reductions& ranks) {
   if (std::ranges::all_of(totals, [](double value) { return std::isfinite(value); })) return;
   const std::string lost = first_of_all(ranks, first_not_finite(model)).words;
-  throw NumericalFailure(fmt::format(
-      "step {}, time {:.9g}: {}", model.clock.step, model.clock.time,
-      lost.empty() ? "the sum of the particles' energies or momenta is beyond the range of numbers" : lost));
+  throw NumericalFailure(
+      fmt::format("step {}, time {:.9g}: {}", model.clock.step, model.clock.time,
+                  lost.empty() ? "the sum of the particles' energies or momenta overflows" : lost));
 }
 
 void require_finite(const Model& model, Reductions& ranks) {

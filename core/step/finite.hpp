@@ -1,4 +1,4 @@
-// What ends a run whose state is no longer made of finite numbers, before anything of it is written.
+// Ends a run whose state is not finite, before any of that state is written.
 #pragma once
 
 #include <span>
@@ -10,17 +10,17 @@
 
 namespace mpm::core {
 
-/// The rank's particle with the smallest identity whose state or energy is not all finite; empty if none. The
-/// words list its columns. `body`, if there is one, becomes the number of its body.
+/// This rank's particle with the smallest identity whose state or energy is not finite; empty if none. The
+/// text lists its columns. `body`, if not null, receives the number of its body.
 OffendingParticle first_not_finite(const Model& model, int* body = nullptr);
 
-/// The fastest particle of all ranks and its speed, in words; empty without particles. Collective.
+/// Text that describes the fastest particle of all ranks and its speed; empty without particles. Collective.
 std::string fastest_in_words(const Model& model, Reductions& ranks);
 
 /// `totals`: sums over all particles, the same on all ranks. Throws NumericalFailure on every rank if one of
 /// them is not finite. Collective.
 void require_finite(const Model& model, std::span<const double> totals, Reductions& ranks);
-/// The same for the energies of the present state. Collective.
+/// The same for the energies of the current state. Collective.
 void require_finite(const Model& model, Reductions& ranks);
 
 }  // namespace mpm::core

@@ -1,5 +1,5 @@
-// Grid to particles: motion of one block with its brick's nodes (thesis 2-28, 2-42, 2-43), and which of its
-// particles have left the brick.
+// Grid to particles: moves one block with the nodes of its brick (thesis 2-28, 2-42, 2-43) and finds the
+// particles that have left the brick.
 #pragma once
 
 #include "core/shape/shape.hpp"
@@ -17,7 +17,7 @@ inline void move_with_grid(const typename S::Place& place, const ColumnLayout& l
   }
 }
 
-/// Bits of the lanes that are no longer in the brick (a NaN counts as outside).
+/// Bit mask of the lanes outside the brick (a NaN counts as outside).
 inline unsigned lanes_outside(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
                               int used) {
   unsigned outside = 0;

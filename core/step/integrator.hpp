@@ -1,6 +1,6 @@
-// A time integration scheme as the stepper sees it: the phases of a step between the choice of its length and
-// the migration of particles, and what a rank has learnt when they are through. The explicit schemes are
-// core/step/explicit_integrator.cpp.
+// Interface of a time integration scheme to the stepper: the phases of a step between the choice of the time
+// step and the migration of particles, and the statistics that a rank collects in them. The explicit schemes
+// are in core/step/explicit_integrator.cpp.
 #pragma once
 
 #include <functional>
@@ -14,27 +14,27 @@
 
 namespace mpm::core {
 
-/// A named part of a step. The names stand in the log's timing table, in the summary and in the benchmarks.
+/// A named part of a step. The log's timing table, the summary and the benchmarks use these names.
 struct Phase {
   std::string name;
   std::function<void()> run;
-  double seconds = 0;  ///< wall clock of this rank since the run began
+  double seconds = 0;  ///< wall-clock time of this rank since the run began
 };
 
 /// A particle that leaves its brick.
 struct DepartingParticle {
   int tile = 0;
   std::uint32_t index = 0;
-  bool eroded = false;  ///< to be deleted; otherwise it has moved out of its brick
+  bool eroded = false;  ///< to be deleted; otherwise it has left its brick
 };
 
-/// What a rank learns in the course of a step, to be combined over the ranks at its end.
+/// What a rank collects during a step, to be combined over the ranks at its end.
 struct StepStatistics {
   double fastest = 0;        ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
-  std::int64_t limited = 0;  ///< velocities held by LimitVelocity
+  std::int64_t limited = 0;  ///< velocities limited by LimitVelocity
   MaterialEvents events;
   OffendingParticles vanishing,
-      negative;   ///< particles of negative volume and energy, where the scene watches them
+      negative;   ///< particles of negative volume and energy, where the scene checks for them
   ExactSum work;  ///< external work
 };
 
@@ -42,20 +42,19 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// In the order in which they run. Every phase is collective.
+  /// In order of execution. Every phase is collective.
   virtual std::vector<Phase> phases() = 0;
 
-  /// Length of the next step as the scheme wants it; the stepper cuts the last one to end on time. The same
-  /// on every rank.
+  /// Length of the next step; the stepper shortens the last one to end at EndTime. The same on every rank.
   virtual double next_step(const Clock& clock) const = 0;
   /// Called before the phases of every step.
   virtual void begin_step(double dt) = 0;
 
-  /// Largest stable step of this rank's particles after the step just done.
+  /// Largest stable step of this rank's particles after the step just completed.
   virtual double stable_step(const StepStatistics& statistics) const = 0;
-  /// What was learnt since the last call, over all threads.
+  /// Statistics since the last call, over all threads.
   virtual StepStatistics take_statistics() = 0;
-  /// The particles of each brick that the step just done has moved out of it or eroded, by slot.
+  /// The particles of each brick that have left it or been eroded in the step just completed, by slot.
   virtual std::vector<std::vector<DepartingParticle>>& departing() = 0;
 };
 

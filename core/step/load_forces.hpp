@@ -1,4 +1,4 @@
-// The forces of loads (loads.hpp) on the particles of a block, mapped with any shape.
+// The forces of loads (loads.hpp) on the particles of a block, mapped with any shape functions.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace mpm::core {
 
 namespace detail {
 
-/// 1 inside, 0 outside, with slopes of width `ramp` about the box's faces; with its gradient.
+/// 1 inside, 0 outside, with ramps of width `ramp` about the box's faces; and its gradient.
 inline double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double>& x,
                          Vec3<double>& gradient) {
   double w[3], slope[3];
@@ -54,7 +54,7 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
         }
       }
     }
-    // Dashpots: one for each face of the grid at which the particle's cell lies; on the face's nodes.
+    // One dashpot per grid face that bounds the particle's cell, acting on the face's nodes.
     Vec3<double> dashpot[3]{};
     int side[3] = {-1, -1, -1};
     if (dashpots) {
@@ -99,8 +99,8 @@ template <ShapePolicy S>
       });
 }
 
-/// Their work over the step, from the nodes' motion: the velocity at its middle counts, as what the nodes
-/// gain in kinetic energy is f (v + v')/2 dt.
+/// Work of these forces over the step. It uses the nodes' velocity at midstep, since the nodes gain the
+/// kinetic energy f (v + v')/2 dt.
 template <ShapePolicy S>
 [[gnu::noinline]] double work_of_loads(const Loads& loads, const Model& model, Slot slot, int body,
                                        const typename S::Place& place, const double* block, int used,

@@ -7,7 +7,7 @@ namespace mpm::core {
 
 namespace {
 
-/// Linear between the points, zero outside them. `value` of a point.
+/// Linear interpolation between the points, zero outside them. `value` is that of a point.
 template <class Point, class F>
 double between(const std::vector<Point>& points, double time, F value) {
   if (points.empty() || time < points.front().time || time > points.back().time) return 0;
@@ -18,7 +18,7 @@ double between(const std::vector<Point>& points, double time, F value) {
   return value(a) + (value(b) - value(a)) * (time - a.time) / (b.time - a.time);
 }
 
-/// Integral of the same from its beginning, or from 0 where that is later, to `time`.
+/// Integral of the same function to `time`, from its first point or from 0, whichever is later.
 template <class Point, class F>
 double integral(const std::vector<Point>& points, double time, F value) {
   double sum = 0;

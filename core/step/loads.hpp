@@ -1,20 +1,20 @@
-// What acts on particles from outside beside gravity: a body's acceleration over time, a pressure or traction
-// on its surface, and what non-reflecting faces of the grid take from the waves that reach them. What they
-// add to the nodes comes after the particles' own share, particle by particle; the same forces over the
-// nodes' way give the work. A body and a brick that none of them concerns pay nothing.
+// External actions on particles other than gravity: a body's prescribed acceleration over time, a pressure or
+// traction on its surface, and the absorption at non-reflecting faces of the grid. Their nodal forces are
+// added after the particles' internal forces, particle by particle; the same forces over the nodal
+// displacements give the work. Bodies and bricks without loads cost nothing.
 //
-// Surface loads need no surface. A traction T n, T constant, times a weight phi(x) over the surface is a
-// volume integral by Gauss's theorem, and particles are its quadrature:
-//   f_i = integral of S_i phi T n dA = integral of grad(S_i phi) . T dV = sum V (phi T grad S_i + S_i T grad
-//   phi)
-// phi is 1 in a box and falls to 0 across its edges, over a ramp; without a box it is 1, and T = -p I is a
-// pressure all around the body. With a normal axis e, T = t e^T puts the traction t on the surfaces in the
-// box that look along +e.
+// Surface loads need no surface representation. By Gauss's theorem a traction T n, T constant, weighted with
+// phi(x), is a volume integral, with particles as quadrature points:
+//   f_i = integral of S_i phi T n dA = integral of grad(S_i phi) . T dV
+//   = sum V (phi T grad S_i + S_i T grad phi)
+// phi is 1 in a box and falls linearly to 0 across its edges; without a box it is 1, and T = -p I is a
+// pressure on the whole surface of the body. With a normal axis e, T = t e^T applies the traction t to the
+// surfaces in the box whose normal is +e.
 //
 // Non-reflecting face: dashpots on its nodes (Lysmer and Kuhlemeyer 1969), rho c_p against the normal
 // velocity, rho c_s against the tangential. The mass of a face's nodes is rho A h/2 for cells of depth h, so
-// a particle adds 2 m/h S_i c v. On a node with half a cell's mass that is stable up to 0.73 of the critical
-// step; where three such faces meet, up to 0.5, and so far go the steps of a scene with one.
+// a particle adds 2 m/h S_i c v. A node with half a cell's mass is stable up to 0.73 of the critical step,
+// one where three such faces meet up to 0.5; scenes with non-reflecting faces are limited to 0.5.
 // Shown by tests/core/step/loads_test.cpp.
 #pragma once
 
@@ -25,12 +25,12 @@
 
 namespace mpm::core {
 
-/// Body force per mass at a time: PrescribedAcceleration or HarmExcit; zero where a body has neither.
+/// Body force per mass at a time, from PrescribedAcceleration or HarmExcit; zero without either.
 Vec3<double> acceleration_of(const BodyInput& input, double time);
 /// Its integral from time zero.
 Vec3<double> velocity_gained(const BodyInput& input, double time);
 
-/// What decides the velocities of a body's particles: the grid; nothing but gravity and loads (a rigid body);
+/// What determines the velocities of a body's particles: the grid; only gravity and loads (a rigid body); or
 /// the input.
 struct BodyMotion {
   enum class Kind { free, rigid, prescribed };
@@ -45,25 +45,25 @@ class Loads {
   /// Largest part of the critical step with non-reflecting faces.
   static constexpr double nonreflecting_factor = 0.5;
 
-  /// Before a step from `time` to `time + dt`: loads take their value at its middle, held velocities
-  /// (ConstrainRigidPosition) that at its end.
+  /// Called before a step from `time` to `time + dt`: loads are evaluated at its middle, prescribed
+  /// velocities (ConstrainRigidPosition) at its end.
   void begin_step(double time, double dt);
 
   bool any() const { return !bodies_.empty(); }
-  /// Per mass, at this step.
+  /// Per mass, in this step.
   Vec3<double> acceleration(int body) const {
     return any() ? bodies_[static_cast<std::size_t>(body)].acceleration : Vec3<double>{};
   }
   /// How the body's velocities evolve in this step.
   const BodyMotion& motion(int body) const { return motions_[static_cast<std::size_t>(body)]; }
   bool nonreflecting() const { return nonreflecting_; }
-  /// Whether add_load_forces has anything to do for this body in this brick.
+  /// Whether add_load_forces has any effect on this body in this brick.
   bool act(const BrickGrid& grid, Slot slot, int body) const {
     return any() && (bodies_[static_cast<std::size_t>(body)].loaded ||
                      (nonreflecting_ && touches_nonreflecting(grid, slot)));
   }
 
-  /// A surface load of a body as it acts in this step.
+  /// A surface load of a body in this step.
   struct Surface {
     Vec3<double> column[3]{};  ///< of T
     const SurfaceLoad* input = nullptr;
@@ -81,7 +81,7 @@ class Loads {
   bool touches_nonreflecting(const BrickGrid& grid, Slot slot) const;
 
  private:
-  std::vector<OfBody> bodies_;  ///< empty where nothing at all acts
+  std::vector<OfBody> bodies_;  ///< empty without any load
   std::vector<BodyMotion> motions_;
   bool nonreflecting_ = false;
   double dt_ = 0;

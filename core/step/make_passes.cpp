@@ -1,4 +1,4 @@
-// The one place where a run's shape and transfer are chosen.
+// The only place where a run's shape functions and transfer are chosen.
 #include "core/shape/linear.hpp"
 #include "core/step/passes_with.hpp"
 #include "core/transfer/flip.hpp"

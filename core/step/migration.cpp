@@ -70,7 +70,7 @@ void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departin
     mine.fault.offer(columns[body.pool->layout().index(Column::identity)],
                      [&] { return describe_particle(body, columns) + what; });
   };
-  // From the last to the first: the particle that fills a gap is then never one that has yet to leave.
+  // In descending order: the particle moved into a gap is then never one that is still to leave.
   std::sort(departing.begin(), departing.end(), [](const DepartingParticle& a, const DepartingParticle& b) {
     return a.tile != b.tile ? a.tile > b.tile : a.index > b.index;
   });
@@ -81,15 +81,15 @@ void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departin
     const Vec3<double> x = position_of(body.pool->layout(), columns);
     if (l.eroded || !grid.geometry().contains(x)) {
       if (!l.eroded && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
-        report(body, " is nowhere (not a number)");
+        report(body, " has a position that is not finite");
         continue;
       }
       dispose(static_cast<std::size_t>(tile.body), columns, l.eroded, mine);
     } else {
       const BrickCoord to = grid.geometry().brick_at(x);
-      if (to == brick.coord) continue;  // on the grid's upper face, or within round-off of the brick's own
+      if (to == brick.coord) continue;  // on the grid's upper face, or within round-off of its own brick
       if (!adjacent(to, brick.coord)) {
-        report(body, " moved over more than a brick in one step");
+        report(body, " moved by more than one brick in one step");
         continue;
       }
       if (grid.find(to) == no_slot) mine.wanted.push_back(to);
@@ -103,7 +103,7 @@ void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departin
 
 void Migration::merge(ThreadMigration& h) {
   Ledger& ledger = model_.ledger;
-  if (particles_.size() == 0) std::swap(particles_, h.particles);  // mostly all there are
+  if (particles_.size() == 0) std::swap(particles_, h.particles);  // usually nearly all of them
   for (std::size_t i = 0; i < h.particles.size(); ++i) {
     const MigrationBuffer::Head& head = h.particles.heads[i];
     particles_.add(head.to, head.body, &h.particles.columns[h.particles.offsets[i]],

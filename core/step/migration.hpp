@@ -1,8 +1,8 @@
-// Particles that leave their brick: out of the old tile, into the new one, on this rank or another.
+// Migration: moves particles that leave their brick from the old tile to the new one, on this rank or
+// another.
 //
-// The order inside a tile decides the order of sums, so it must not depend on who carried a particle where:
-// those that leave are taken out in descending order, those that arrive are appended in the order of
-// identities.
+// The order inside a tile decides the order of sums, so it must not depend on ranks or threads: departing
+// particles are removed in descending order, arriving ones are appended in order of identity.
 #pragma once
 
 #include <string>
@@ -19,26 +19,26 @@ class Migration {
  public:
   Migration(Model& model, Communication& communication);
 
-  /// Take the departing particles out of every brick; those that leave the grid or are eroded are booked and
-  /// gone.
+  /// Removes the departing particles from every brick; those that leave the grid or are eroded are recorded
+  /// in the ledger and deleted.
   void collect(std::vector<std::vector<DepartingParticle>>& departing);
-  /// True if some of what was collected goes to a brick that this rank has never heard of.
+  /// True if a collected particle enters a brick that does not exist or that this rank does not know.
   bool wants_new_bricks() const { return !wanted_.empty(); }
-  /// Bring everybody home. `claim`: some rank wants new bricks. Collective.
+  /// Sends all collected particles to the owners of their bricks. `claim`: some rank needs new bricks.
+  /// Collective.
   void deliver(bool claim);
 
-  /// Every now and then: particles in the order of their cells, bricks without particles forgotten.
-  /// Collective.
+  /// At regular intervals: sorts particles by cell and removes empty bricks. Collective.
   void sort_and_prune();
 
-  /// A problem of the last collect() that ends the run; empty if there is none.
+  /// An error in the last collect() that ends the run; empty if there is none.
   const OffendingParticle& fault() const { return fault_; }
   /// Particles that left the grid in the last collect(), and the first few of them.
   std::int64_t left_now() const { return left_now_; }
   const OffendingParticles& first_left() const { return first_left_; }
 
  private:
-  /// What one thread finds; threads share the bricks out among themselves.
+  /// Results of one thread; the bricks are distributed over the threads.
   struct ThreadMigration {
     MigrationBuffer particles;
     std::vector<BrickCoord> wanted;

@@ -25,7 +25,7 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape) : nodes_(shape.nodes()) {
       for (int i = low; i <= high; ++i) {
         std::vector<Share> shares;
         for (int n = 0; n < neighbourhood; ++n) {
-          // The same node, counted from the neighbour's lowest.
+          // The same node, relative to the neighbour's lowest.
           const BrickCoord d = neighbour_offset(n);
           const int a = i - brick_cells * d.x, b = j - brick_cells * d.y, c = k - brick_cells * d.z;
           if (within(a) && within(b) && within(c)) shares.push_back({n, shape.index(a, b, c)});
@@ -103,9 +103,9 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   }
   // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel
   // them through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the
-  // grid, and what stops it acts on the particles too: only so do they come to rest there, can they leave
-  // again, and does a wall that lets go give no energy. With USF some is left, in proportion to the step: its
-  // strain has used the node's velocity before it is known to be stopped.
+  // grid, and its reaction acts on the particles too: only then do particles come to rest at the wall, can
+  // leave it again, and gain no energy when it releases them. With USF an error proportional to the step
+  // remains: its strain uses the node's velocity before the wall has stopped it.
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     double *v = Motion{at}.velocity(), *dv = Motion{at}.increment();
     if (boundary == Boundary::fixed) {
@@ -127,8 +127,8 @@ void recall_motion(int nodes, const double* motion, double* record) {
 }
 
 namespace {
-/// The strain velocities obey the walls. A node that a rigid wall has stopped (its velocity is zero) does not
-/// strain particles either: moving for the strain alone, it would do work on them out of nothing.
+/// Applies the walls to the strain velocities. A node stopped by a rigid wall (zero velocity) must not strain
+/// particles either: its strain velocity would do work on them that has no source.
 void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     double* u = Motion{at}.strain_velocity();

@@ -1,16 +1,15 @@
-// Nodes of one brick: summing the contributions of all bricks that share them, and the equation of motion on
-// them with its boundary conditions (thesis 2-26, 2-33, 2-41).
+// Nodal sums and update of one brick: sums the contributions of all bricks that share a node, and solves the
+// equation of motion with its boundary conditions (thesis 2-26, 2-33, 2-41).
 //
-// Every brick works on its own copy of shared nodes. The copies are summed in one order, that of the
-// neighbours' coordinates, and updated by the same instructions, so they stay equal to the last bit on any
-// rank.
+// Every brick has its own copy of shared nodes. All copies are summed in the order of the neighbours'
+// coordinates and updated by the same instructions, so they agree bit for bit on any rank.
 #pragma once
 
 #include "core/grid/brick_grid.hpp"
 
 namespace mpm::core {
 
-/// Which bricks share each node of a brick, in the order of summation: made once for a shape of node block.
+/// Which bricks share each node of a brick, in summation order; built once per node block shape.
 class SharedNodes {
  public:
   /// Throws std::logic_error for a halo beyond most_halo.
@@ -21,9 +20,9 @@ class SharedNodes {
     int node;       ///< its number in that brick
   };
   int nodes() const { return nodes_; }
-  /// Node after node, those shared by one brick first, then those by two, four and eight.
+  /// Node by node: those of one brick first, then those shared by two, four and eight.
   std::span<const Share> all() const { return shares_; }
-  /// f(node, shares), nodes in the same order; the number of shares is a constant in f.
+  /// f(node, shares), nodes in the same order; the number of shares is a compile-time constant in f.
   template <class F>
   void for_each_node(F f) const {
     const Share* s = shares_.data();
@@ -45,16 +44,16 @@ class SharedNodes {
 };
 
 /// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
-/// node_doubles for the second array, all of them for the first. A brick that does not exist counts as zeros,
-/// so every copy of a node adds up the same numbers.
+/// node_doubles for the second array, all components for the first. A brick that does not exist contributes
+/// zeros, so every copy of a node adds the same numbers.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
 
-/// What acts on nodes beside the particles' stress.
+/// Forces on nodes other than the particles' internal forces.
 struct NodeForces {
   Vec3<double> gravity{};  ///< acceleration
   double damping = 0;      ///< 1/time: force per mass and velocity, against the velocity
-  /// USL: nodes lighter than this take only the share m / floor of their velocity increment into the strain
+  /// USL: for nodes lighter than this, only the share m / floor of the velocity increment enters the strain
   /// rate.
   double strain_mass_floor = 0;
 };
@@ -82,18 +81,18 @@ class BoundaryFaces {
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
                   int nodes, double* record);
 
-/// A node's motion as MUSL keeps it from one pass to the next: velocity and mass of its MotionRecord.
+/// A node's motion as stored between MUSL's passes: velocity and mass of its MotionRecord.
 inline constexpr int motion_width = 4;
 void keep_motion(int nodes, const double* record, double* motion);
 void recall_motion(int nodes, const double* motion, double* record);
 
-/// The strain velocity becomes `momenta` (0..2 of each record) over the masses of `record`: USF's velocity at
-/// the start of the step (momenta = record), MUSL's re-mapped one.
+/// Sets the strain velocity to `momenta` (0..2 of each record) over the masses of `record`: USF's velocity at
+/// the start of the step (momenta = record), or MUSL's re-mapped one.
 void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
                        double* record);
 
-/// The strain velocity becomes USL's: the velocity at the end of the step less the omitted share of the
-/// increment, gravity's part `fall` apart. After the particles have taken their increment.
+/// Sets USL's strain velocity: the velocity at the end of the step less the omitted share of the increment,
+/// excluding gravity's part `fall`. Called after the particles have taken their increment.
 void regularised_velocities(const Vec3<double>& fall, const BoundaryFaces& faces, int nodes, double* record);
 
 template <class F>

@@ -1,5 +1,5 @@
-// The particle that a message names: of several, the one with the smallest identity, so that the message is
-// the same on any ranks and threads.
+// The particle that a message names: the candidate with the smallest identity, so that the message does not
+// depend on ranks and threads.
 #pragma once
 
 #include <cstdlib>
@@ -19,7 +19,7 @@ struct OffendingParticle {
   std::string words;
 
   bool empty() const { return words.empty(); }
-  /// Keep the one with the smaller identity; `words` is called only if that is the new one.
+  /// Keeps the candidate with the smaller identity; `words` is called only if that is the new one.
   template <class F>
   void offer(double other, F other_words) {
     if (!empty() && identity <= other) return;

@@ -1,5 +1,5 @@
-// Particles to grid (thesis 2-31, 2-32, 2-38): what one block of particles adds to its brick's nodes. Oracle:
-// tests/support/reference_stepper.
+// Particles to grid (thesis 2-31, 2-32, 2-38): the contribution of one block to its brick's nodes. Reference
+// version: tests/support/reference_stepper.
 #pragma once
 
 #include "core/transfer/transfer.hpp"
@@ -20,13 +20,13 @@ namespace mpm::core {
   }
 }
 
-/// Add the first `used` particles of a block.
+/// Adds the first `used` particles of a block.
 template <ShapePolicy S, TransferPolicy T, NodeFields what>
 [[gnu::always_inline]] inline void add_block(const BrickFrame& frame, const typename S::Place& place,
                                              const ColumnLayout& layout, const double* block, int used,
                                              typename S::template Scatter<what>& running,
                                              double* contributions) {
-  typename S::template Scatter<what> sums = running;  // a local of its own stays in registers
+  typename S::template Scatter<what> sums = running;  // a local copy stays in registers
   MappedRows rows;
   if constexpr (maps_momentum(what)) T::momentum(layout, block, rows);
   if constexpr (maps_force(what)) stress_rows(layout, block, rows);

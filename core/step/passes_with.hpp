@@ -1,5 +1,5 @@
-// The passes (passes.hpp) with a shape S and a transfer T. What is done to a brick, a block or a batch stands
-// in functions of its own; for_bricks and for_each_block say which comes when, and what is fetched meanwhile.
+// The passes (passes.hpp) with shape functions S and transfer T. Operations on a brick, a block or a batch
+// are functions of their own; for_bricks and for_each_block define the order and the prefetching.
 // Instantiated once per pair (make_passes.cpp).
 #pragma once
 
@@ -49,11 +49,11 @@ class PassesWith final : public Passes {
     Place places[batch_blocks];
   };
 
-  /// The first columns that passes read: up to the stress, and up to the mass.
+  /// The number of leading columns that passes read up to the stress; up to the mass below.
   static constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
   static constexpr int columns_to_mass = static_cast<int>(Column::mass) + 1;
 
-  // Which brick and which block comes when.
+  // Order of bricks and blocks.
   template <class F>
   void for_bricks(int first, int last, F f);
   template <class F>
@@ -63,7 +63,7 @@ class PassesWith final : public Passes {
   template <NodeFields what, class F>
   void map_bricks(F work);
 
-  // What is done to a brick.
+  // Operations on a brick.
   template <NodeFields what>
   void map_to_grid();
   template <NodeFields what, class F>
@@ -71,12 +71,12 @@ class PassesWith final : public Passes {
   void update_nodes_of_brick(Slot s, Scratch& at);
   void velocities_of_brick(Slot s, Scratch& at);
   double velocities_and_motion_of_brick(Slot s, Scratch& at);
-  /// Whether the particles' velocities are already those with which the next step begins.
+  /// Whether the particles' velocities are already those at the start of the next step.
   enum class Velocities { of_last_step, of_next_step };
   template <bool moves, class F>
   void stress_of_brick(Slot s, Velocities velocities, Scratch& at, F prefetch_nodes);
 
-  // What is done to a block or a batch.
+  // Operations on a block or a batch.
   void update_velocities(Slot s, int body, const Place& place, double* block, int used, Scratch& at);
   void move(int body, const Place& place, double* block, int used, Scratch& at);
   void strain_batch_block(const BrickFrame& frame, const Place& place, int b, Scratch& at);
@@ -90,7 +90,7 @@ class PassesWith final : public Passes {
     const BrickGrid& grid = *model_.grid;
     return {grid.geometry(), grid.shape(), grid.brick(s).coord};
   }
-  /// What the next brick's nodes are made of, fetched while this brick's blocks are worked on.
+  /// Prefetches the contributions to the next brick's nodes while this brick's blocks are processed.
   template <NodeArray of>
   [[gnu::always_inline]] ContributionPrefetch<of> prefetch_nodes(Slot s) const {
     const BrickGrid& grid = *model_.grid;
@@ -100,7 +100,7 @@ class PassesWith final : public Passes {
   double* motion(Slot s) {
     return motion_.data() + static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(s);
   }
-  /// Likewise what is kept of their motion.
+  /// Prefetches the next brick's stored nodal motion.
   SpreadPrefetch prefetch_motion(Slot s) {
     const BrickGrid& grid = *model_.grid;
     return {s + 1 < grid.owned() ? motion(s + 1) : nullptr, motion_doubles(), block_count(grid.brick(s))};
@@ -111,20 +111,20 @@ class PassesWith final : public Passes {
   SharedNodes shared_;
   NodeForces forces_;
   Loads loads_;
-  double dt = 0;           ///< of the step under way
+  double dt = 0;           ///< of the current step
   double velocity_limit_;  ///< infinite without LimitVelocity
   double erosion_volume_;
   std::vector<Scratch> scratch_;                           ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
-  /// By slot; MUSL: the nodes' motion, kept between the passes that move them and the particles on them.
+  /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
   std::vector<double> critical_;  ///< by slot; USF: largest critical speed of the stress pass
 };
 
 /// Share of a full cell's mass below which a node's increment is scaled down in USL's strain rate. The nodal
-/// acceleration f/m grows without bound as a particle enters a cell (thesis 2-49); what reaches the
-/// particle's own velocity stays bounded, what reaches its strain does not. Below 0.05 the Taylor bar still
-/// diverges; at 1 the scaling feeds oscillations instead; 0.2 is good for time step factors up to 0.7.
+/// acceleration f/m grows without bound as a particle enters a cell (thesis 2-49); its effect on the
+/// particle's velocity stays bounded, that on its strain does not. Below 0.05 the Taylor bar still diverges;
+/// at 1 the scaling excites oscillations; 0.2 works for time step factors up to 0.7.
 inline constexpr double usl_mass_floor = 0.2;
 
 template <ShapePolicy S, TransferPolicy T>
@@ -134,8 +134,8 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
   forces_.gravity = solution.gravity;
   forces_.damping = solution.damping;
   if (solution.scheme == Scheme::usl) {
-    // The lightest material's: a floor above what a light body's full nodes weigh would freeze it beside a
-    // heavy one.
+    // The lightest material's density: a floor above the mass of a light body's full nodes would freeze that
+    // body beside a heavy one.
     double density = std::numeric_limits<double>::infinity();
     for (const Body& b : model.bodies) density = std::min(density, b.model->reference_density());
     forces_.strain_mass_floor = usl_mass_floor * density * model.grid->geometry().cell_volume();
@@ -151,14 +151,14 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
   }
 }
 
-// --- which brick and which block comes when ---------------------------------------------------------------
+// --- order of bricks and blocks ----------------------------------------------------------------------------
 
 /// f(slot, scratch) for the bricks first .. last - 1, by all threads.
 template <ShapePolicy S, TransferPolicy T>
 template <class F>
 void PassesWith<S, T>::for_bricks(int first, int last, F f) {
-  // Long runs of neighbours for each thread: what it fetches is then its own, and few of the sums come from
-  // the other's cache. Four runs a thread even out what bricks differ in.
+  // Long runs of neighbours per thread: most prefetched data and sums then stay in that thread's cache. Four
+  // runs per thread balance differences between bricks.
   const auto threads = static_cast<int>(scratch_.size());
   for_each_by_threads(
       first, last, std::max((last - first) / (4 * threads), 1),
@@ -169,8 +169,8 @@ void PassesWith<S, T>::for_bricks(int first, int last, F f) {
       threads);
 }
 
-/// f(tile's number, block's number, body's number, layout, block, lanes in use) for a brick's blocks.
-/// `columns`: how many of the first ones are read.
+/// f(tile index, block index, body number, layout, block, lanes in use) for a brick's blocks. `columns`:
+/// number of leading columns that are read.
 template <ShapePolicy S, TransferPolicy T>
 template <class F>
 [[gnu::always_inline]] inline void PassesWith<S, T>::for_each_block(Slot s, int columns, F f) {
@@ -186,9 +186,9 @@ template <class F>
   }
 }
 
-/// The blocks of a brick in batches: for each block_work(body, block of the batch, lanes in use), then, with
-/// the memory of the following blocks requested in the background, batch_work(tile's number, first block's
-/// number, tile). The batch and the places of its particles are in `at`.
+/// Processes the blocks of a brick in batches: for each block block_work(body, block of the batch, lanes in
+/// use), then, with the next blocks prefetched, batch_work(tile index, first block index, tile). `at` holds
+/// the batch and its particles' places.
 template <ShapePolicy S, TransferPolicy T>
 template <class F, class G>
 [[gnu::always_inline]] inline void PassesWith<S, T>::for_each_batch(Slot s, const BrickFrame& frame,
@@ -208,7 +208,8 @@ template <class F, class G>
       batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, tile.blocks.size() - first));
       batch.particles =
           static_cast<int>(std::min<std::size_t>(batch_particles, tile.count - block_lanes * first));
-      // All places first: a block's is a long chain of operations, and those of several blocks overlap.
+      // All places first: locating a block is a long chain of operations, and the chains of several blocks
+      // overlap.
       for (int b = 0; b < batch.blocks; ++b) {
         batch.block[b] = pool.block(tile.blocks[first + static_cast<std::size_t>(b)]);
         at.places[b].find(frame, pool.layout(), batch.block[b]);
@@ -224,8 +225,8 @@ template <class F, class G>
   }
 }
 
-/// work(slot, scratch) for all bricks, which maps what they are to send; the sums of the boundary bricks
-/// travel meanwhile.
+/// work(slot, scratch) for all bricks, which maps the fields to be exchanged; the exchange of the boundary
+/// bricks overlaps with the interior ones.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what, class F>
 void PassesWith<S, T>::map_bricks(F work) {
@@ -237,7 +238,7 @@ void PassesWith<S, T>::map_bricks(F work) {
 
 // --- particles to grid ------------------------------------------------------------------------------------
 
-/// before(body, place, block, used) for every block, then its share of the nodes.
+/// before(body, place, block, used) for every block, then its contribution to the nodes.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what, class F>
 void PassesWith<S, T>::map_brick(Slot s, F before) {
@@ -257,7 +258,7 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
     const BlockPrefetch prefetch(model_, s, c);
     const ColumnLayout& layout = body.pool->layout();
     const bool loaded = maps_force(what) && loads_.act(grid, s, tile.body);
-    // The next block is located before this one is worked on: what was stored is then there when it is read.
+    // Locates the next block before this one is processed, so that its stores complete before they are read.
     Place places[2];
     if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
@@ -287,7 +288,7 @@ void PassesWith<S, T>::map_to_grid() {
 
 // --- nodes ------------------------------------------------------------------------------------------------
 
-/// Sum the first array and update the nodes: at.nodes as MotionRecord describes.
+/// Sums the first array and updates the nodes; the result in at.nodes follows MotionRecord.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
@@ -297,7 +298,7 @@ void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
 
 // --- particles --------------------------------------------------------------------------------------------
 
-/// v += dv; the work of loads belongs to the velocities from before it.
+/// v += dv; the work of loads uses the velocities before the update.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities(Slot s, int body, const Place& place, double* block, int used,
                                          Scratch& at) {
@@ -318,7 +319,8 @@ void PassesWith<S, T>::update_velocities(Slot s, int body, const Place& place, d
     limit_velocities(layout, velocity_limit_, block, used, at);
 }
 
-/// x += dt v, of the grid or, where a body keeps its velocity, its own; and the work of gravity and damping.
+/// x += dt v, with the grid's velocity or, for a body that keeps its own velocities, with those; and the work
+/// of gravity and damping.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::move(int body, const Place& place, double* block, int used, Scratch& at) {
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
@@ -377,7 +379,7 @@ template <ShapePolicy S, TransferPolicy T>
   S::gradient(frame, place, velocities, at.batch.gradient, block_lanes * b);
 }
 
-/// For outputs that show it; no law reads it back.
+/// For outputs only; no law reads it.
 inline void store_sound_speed(Batch& batch) {
   if (!batch.layout->has(Column::sound_speed)) return;
   for (int b = 0; b < batch.blocks; ++b) {
@@ -385,7 +387,7 @@ inline void store_sound_speed(Batch& batch) {
   }
 }
 
-/// The material's update of a batch whose kinematics are known, and what it found.
+/// Updates the material of a batch with known kinematics and records the events.
 template <ShapePolicy S, TransferPolicy T>
 [[gnu::always_inline]] inline void PassesWith<S, T>::update_material(const Body& body, Scratch& at) {
   Batch& batch = at.batch;
@@ -398,8 +400,8 @@ template <ShapePolicy S, TransferPolicy T>
   store_sound_speed(batch);
 }
 
-/// Velocity gradient, with `moves` the motion, and the material's update, batch by batch.
-/// prefetch_nodes() is called once per block.
+/// Velocity gradient, with `moves` the motion, then the material update, batch by batch. prefetch_nodes() is
+/// called once per block.
 template <ShapePolicy S, TransferPolicy T>
 template <bool moves, class F>
 [[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, Velocities velocities, Scratch& at,
@@ -486,11 +488,12 @@ void PassesWith<S, T>::update_velocities_and_move() {
   const BrickGrid& grid = *model_.grid;
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    // Forces; momenta and masses are zero there, and come with the second array.
+    // Sums forces; momentum and mass are zero here, the second array holds them.
     sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
     sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
     update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
-    // The wave speeds are of the stress pass; each brick's largest stands for all of its particles.
+    // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
+    // particles.
     at.statistics.fastest = std::max(at.statistics.fastest, critical_[static_cast<std::size_t>(s)] +
                                                                 velocities_and_motion_of_brick(s, at));
   });

@@ -1,6 +1,6 @@
-// What a pass fetches before it comes to it. The hardware does not guess which columns of the next blocks are
-// wanted, where the next brick's blocks lie, nor the neighbours' nodes; without help a pass takes twice as
-// long. Requested a few lines at a time while other data is worked on, all of it is there in time.
+// Software prefetching for the passes. The hardware cannot predict which columns of the next blocks are
+// needed, where the next brick's blocks are stored, or where the neighbours' nodes are; without prefetching a
+// pass takes twice as long. A few lines at a time are requested while other data is processed.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +12,16 @@
 
 namespace mpm::core {
 
-/// In all of a brick's tiles.
+/// Over all of a brick's tiles.
 inline std::size_t block_count(const Brick& brick) {
   std::size_t n = 0;
   for (const ParticleTile& c : brick.tiles) n += c.blocks.size();
   return n;
 }
 
-/// Prefetches what says where the coming bricks' particles lie. One leads to the next: a brick to its
-/// tiles, these to the numbers of their blocks. So each is requested one brick later than what leads to it.
+/// Prefetches the data that locate the next bricks' particles. Each level points to the next: a brick to its
+/// tiles, a tile to its block indices. So each level is requested one brick later than the one that points to
+/// it.
 inline void prefetch_coming_bricks(const BrickGrid& grid, Slot now) {
   const auto line = [](const void* at, std::size_t n) {
     __builtin_prefetch(static_cast<const char*>(at) + 64 * n, 0, 3);
@@ -35,9 +36,9 @@ inline void prefetch_coming_bricks(const BrickGrid& grid, Slot now) {
   for (std::size_t b = 0; b < blocks.size(); b += 16) line(blocks.data() + b, 0);
 }
 
-/// Prefetches the blocks that a pass will come to: those of a tile, then those of the next one, in the
-/// brick or after it. Into the second-level cache: the first has too few lines under way at a time to hide
-/// main memory.
+/// Prefetches the blocks that a pass processes next: the rest of the tile, then the next tile, in this brick
+/// or the following one. Into the second-level cache: the first has too few outstanding requests to hide the
+/// latency of main memory.
 class BlockPrefetch {
  public:
   BlockPrefetch(const Model& model, Slot slot, std::size_t tile) : model_(model) {
@@ -50,7 +51,7 @@ class BlockPrefetch {
       then_ = &grid.brick(slot + 1).tiles.front();
     }
   }
-  /// The lines of the block to fetch while block `b` is worked on; none where there is no such block.
+  /// The lines of the block to fetch while block `b` is processed; none where there is no such block.
   [[gnu::always_inline]] PrefetchLines lines(std::size_t b) const {
     const ParticleTile* tile = now_;
     b += distance;
@@ -63,18 +64,18 @@ class BlockPrefetch {
     const double* block = pool.block(tile->blocks[b]);
     return {block, block + pool.layout().block_doubles()};
   }
-  /// The first columns of that block at once.
+  /// Requests the first columns of that block at once.
   [[gnu::always_inline]] void request(std::size_t b, int columns) const { lines(b).request(columns); }
 
  private:
-  static constexpr std::size_t distance = 8;  // further ahead than main memory is far, and still in the cache
+  static constexpr std::size_t distance = 8;  // hides main memory latency and still fits in the cache
   const Model& model_;
   const ParticleTile* now_;
   const ParticleTile* then_ = nullptr;
 };
 
-/// A stretch of memory, requested for writing in as many equal parts as there are calls of next(): what a
-/// pass keeps of the next brick's nodes.
+/// A memory range, requested for writing in as many equal parts as there are calls of next(): what a pass
+/// stores for the next brick's nodes.
 class SpreadPrefetch {
  public:
   SpreadPrefetch(const double* room, int doubles, std::size_t calls)
@@ -88,7 +89,7 @@ class SpreadPrefetch {
 };
 
 /// Prefetches what sum_contributions will read for a brick, a few records at a time, while another brick is
-/// worked on: neighbours lie far apart in memory, and the hardware does not guess them.
+/// processed: neighbours are far apart in memory, and the hardware cannot predict them.
 template <NodeArray of>
 class ContributionPrefetch {
  public:

@@ -1,4 +1,4 @@
-// The largest speeds of a batch or block, and the time step that they bound.
+// The largest speeds of a batch or block, and the resulting time step limit.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 namespace mpm::core {
 
 /// Largest stable step without the scene's factor (thesis 2-51, 2-74): the smallest cell edge over the
-/// largest of (Q + sqrt(Q^2 + c^2)) + |v|.
+/// largest (Q + sqrt(Q^2 + c^2)) + |v|.
 inline double critical_step(const BrickGrid& grid, double fastest) {
   return fastest > 0 ? grid.geometry().smallest_cell() / fastest : std::numeric_limits<double>::infinity();
 }
 
-/// Largest of `most` and the first `used` lanes.
+/// Maximum of `most` and the first `used` lanes.
 inline double largest_lane(Real value, int used, double most) {
   double each[real_width];
   store(each, value);
@@ -24,7 +24,7 @@ inline double largest_lane(Real value, int used, double most) {
   return most;
 }
 
-/// The squares of a block's speeds, from a lane on.
+/// Squared speeds of a block's particles from a lane on.
 inline Real squared_speed(const ColumnLayout& layout, const double* block, int lane) {
   const double* v = block + layout.offset(Column::velocity_x) + lane;
   const Real x = load<Real>(v), y = load<Real>(v + block_lanes), z = load<Real>(v + 2 * block_lanes);
@@ -39,8 +39,8 @@ inline double fastest_wave(const Batch& batch) {
   return most;
 }
 
-/// The largest of `most` and of the particles' wave speeds plus their own. A root is taken only where the sum
-/// may exceed what has been found: the square of the difference tells, with room for its rounding.
+/// Maximum of `most` and of the particles' wave speed plus speed. The square root is taken only where the sum
+/// may exceed `most`, which a comparison of squares with a margin for rounding decides.
 inline double fastest_particle(const Batch& batch, double most) {
   for (int i = 0; i < batch.particles; i += real_width) {
     const Real wave = load<Real>(batch.critical_speed + i), room = Real(most) - wave;

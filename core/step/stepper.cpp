@@ -13,7 +13,7 @@ namespace mpm::core {
 
 namespace {
 
-/// A step this much shorter than the first one leads nowhere: the run would not end.
+/// A run whose step falls below this fraction of the first one would not finish.
 constexpr double smallest_step_ratio = 1e-7;
 
 }  // namespace
@@ -51,7 +51,7 @@ void Stepper::step() {
 
 void Stepper::choose_time_step() {
   Clock& clock = model_.clock;
-  // The last step ends on time.
+  // The last step ends at EndTime.
   const double dt = std::min(integrator_->next_step(clock), model_.scene->solution.end_time - clock.time);
   if (!(clock.time + dt > clock.time)) {
     throw NumericalFailure(fmt::format(
@@ -90,7 +90,7 @@ void Stepper::reduce_status() {
       if (!lost.empty()) mine.offer(lost.identity, [&] { return lost.words; });
     }
     what = first_of_all(communication_, mine).words;
-    if (what.empty()) what = "a particle on its way between bricks is no number";
+    if (what.empty()) what = "a particle in migration has a state that is not finite";
   } else if (std::isfinite(clock.first_critical_dt) &&
              clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
     what = fmt::format("the critical time step has fallen to {:.3g}, {:.1g} of the first one",

@@ -1,5 +1,5 @@
 // One time step: the choice of its length, the phases of the scene's integrator, and the migration of
-// particles. The names of all phases stand in the log's timing table, in the summary and in the benchmarks.
+// particles. The log's timing table, the summary and the benchmarks use the names of the phases.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace mpm::core {
 
-/// The run cannot go on: what happened, to which particle, where and when. The same on every rank.
+/// The run cannot continue: what happened, to which particle, where and when. The same on every rank.
 class NumericalFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -20,22 +20,22 @@ class NumericalFailure : public std::runtime_error {
 
 class Stepper {
  public:
-  /// From here on denormal numbers count as zero in the calling thread and its OpenMP threads.
+  /// Flushes denormal numbers to zero from here on, in the calling thread and its OpenMP threads.
   Stepper(Model& model, Communication& communication);
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
-  /// Advance the model by one step. Throws NumericalFailure on every rank together. Collective.
+  /// Advances the model by one step. Throws NumericalFailure on every rank together. Collective.
   void step();
 
   const std::vector<Phase>& phases() const { return phases_; }
 
-  /// Ask for the run to stop; any rank may, at any time.
+  /// Requests that the run stops; any rank may, at any time.
   void request_stop() { stop_requested_ = true; }
-  /// True, on all ranks after the same step, once some rank has asked.
+  /// True, on all ranks after the same step, once any rank has requested a stop.
   bool stopping() const { return stopping_; }
 
-  /// Of the last step, on this rank: for the scene's warnings.
+  /// Incidents of the last step on this rank, for the scene's warnings.
   struct Incidents {
     MaterialEvents events;
     OffendingParticles vanishing, negative;
@@ -44,7 +44,7 @@ class Stepper {
   };
   const Incidents& incidents() const { return incidents_; }
 
-  /// Particles are brought into the order of their cells, and empty bricks forgotten, every so many steps.
+  /// Interval, in steps, at which particles are sorted by cell and empty bricks removed.
   static constexpr std::int64_t sorting_interval = 20;
 
  private:
@@ -59,7 +59,7 @@ class Stepper {
   std::vector<Phase> phases_;
   Incidents incidents_;
   bool needs_bricks_ = false;
-  std::string failure_;  ///< agreed upon; thrown once every particle is home
+  std::string failure_;  ///< agreed by all ranks; thrown after the migration is complete
   bool stop_requested_ = false;
   bool stopping_ = false;
 };

@@ -24,7 +24,7 @@ enum Sum : std::size_t {
 };
 enum Low : std::size_t { lower, upper = lower + 3, plastic_strain = upper + 3, temperature, lows };
 
-/// One body's share of one thread. Maxima are kept as minima of the negative.
+/// Partial sums of one body by one thread. Maxima are stored as minima of the negative.
 struct Partial {
   std::array<ExactSum, sums> sum;
   std::array<double, lows> low{};
@@ -43,7 +43,7 @@ struct Partial {
 struct BlockEnergies {
   double kinetic = 0, internal = 0;
 };
-/// Kept from being inlined: both callers are to get the same bits, whatever the compiler contracts.
+/// Not inlined: both callers must get the same bits, whichever operations the compiler contracts.
 [[gnu::noinline]] BlockEnergies energies_of(const ColumnLayout& layout, const double* block, int used,
                                             double inverse_density) {
   const double* m = block + layout.offset(Column::mass);
@@ -102,8 +102,8 @@ void add_block(const ColumnLayout& layout, const double* block, int used, double
   to.particles += used;
 }
 
-/// f(brick, own partial result) over this rank's bricks by all threads; partial results are merged into
-/// `out`, which begins without any.
+/// f(brick, own partial result) over this rank's bricks by all threads; merges the partial results into
+/// `out`, which is empty at first.
 template <class P, class F>
 void over_bricks(const Model& model, P& out, F f) {
   std::vector<P> partial(static_cast<std::size_t>(omp_get_max_threads()), out);
@@ -161,7 +161,7 @@ std::int64_t entry(const std::vector<std::int64_t>& values, std::size_t i) {
 
 namespace {
 
-/// What is known of some bodies once all ranks have given their share. Collective.
+/// Sums of some bodies over all ranks. Collective.
 struct BodySums {
   std::vector<ExactSum> sum;
   std::vector<double> low;
@@ -196,8 +196,8 @@ BodySums sums_of_bodies(const Model& model, const std::vector<double>& inverse_d
 }  // namespace
 
 Totals compute_totals(const Model& model, Reductions& ranks) {
-  // An exact sum is half a kilobyte, a body has a dozen and each thread its own: of very many bodies, some at
-  // a time; as many on every rank.
+  // An exact sum takes half a kilobyte, each body has a dozen per thread: bodies are therefore processed in
+  // groups of the same size on every rank.
   constexpr std::size_t at_once = 256;
   const std::size_t bodies = model.bodies.size();
   const std::vector<double> inverse_density = inverse_densities(model);
