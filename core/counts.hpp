@@ -1,4 +1,4 @@
-// Products of counts that a user gives.
+// Products of counts from the input.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace mpm::core {
 
-/// The product, or nothing where it does not fit in 64 bits: computed modulo 2^64 it may happen to be the
-/// number that is asked for.
+/// The product, or nothing where it does not fit in 64 bits: computed modulo 2^64 it might equal the expected
+/// number by accident.
 constexpr std::optional<std::int64_t> product_of(std::initializer_list<std::int64_t> counts) {
   std::int64_t product = 1;
   for (const std::int64_t n : counts) {

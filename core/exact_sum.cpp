@@ -61,7 +61,7 @@ double ExactSum::value() const {
   std::size_t top = limbs;
   while (top > 0 && n.limb_[top - 1] == 0) --top;
   if (top == 0) return 0;
-  // The leading 96 bits hold the whole mantissa; what lies below can only break a tie.
+  // The leading 96 bits contain the whole mantissa; the lower ones can only break a tie.
   unsigned __int128 head = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     head <<= 32;

@@ -1,7 +1,8 @@
-// What one rank holds of a run: the grid's bricks with their particles, the bodies, the clock and the ledger.
+// The state of a run on one rank: the grid's bricks with their particles, the bodies, the clock and the
+// ledger.
 //
-// Particles are found as grid -> brick -> tile (one per body) -> blocks of eight. Everything that a restart
-// file must carry is reachable from here, and nothing else is.
+// Particles are reached as grid -> brick -> tile (one per body) -> blocks of eight. The model contains
+// everything that a restart file must store, and nothing else.
 #pragma once
 
 #include <algorithm>
@@ -18,29 +19,29 @@
 
 namespace mpm::core {
 
-/// A body that takes part in the run. Bodies are numbered in the order of the input.
+/// A body of the run. Bodies are numbered in the order of the input.
 struct Body {
   std::string name;
   int component = 0;  ///< index into the scene's components
   int material = 0;   ///< index into the scene's materials
   const ConstitutiveModel* model = nullptr;
   std::optional<Vec3<double>> prescribed_velocity;
-  bool rigid = false;  ///< flies straight on under gravity where no velocity is prescribed
+  bool rigid = false;  ///< moves freely under gravity where no velocity is prescribed
   bool no_output = false;
   /// Memory of this rank's particles; bodies with the same columns share one.
   std::shared_ptr<BlockPool> pool;
 };
 
 struct Clock {
-  std::int64_t step = 0;  ///< steps done
-  double time = 0;        ///< of the state that the particles hold
+  std::int64_t step = 0;  ///< steps completed
+  double time = 0;        ///< of the particles' current state
   double dt = 0;          ///< of the last step
-  /// Largest stable step for the state reached, factor not included; 0 before the first estimate.
+  /// Largest stable step for the current state, factor not included; 0 before the first estimate.
   double critical_dt = 0;
   double first_critical_dt = 0;  ///< for TimeStep const="1"
 };
 
-/// What has come in and gone out since time zero. Exact sums: the same on any ranks.
+/// Energy and mass added and removed since time zero. Exact sums: the same on any ranks.
 struct Ledger {
   ExactSum external_work;  ///< by gravity, prescribed velocities and damping; energy
   ExactSum removed_mass;   ///< of particles that left the grid or were eroded

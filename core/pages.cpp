@@ -13,8 +13,7 @@ Pages allocate_pages(std::size_t doubles) {
   const std::size_t bytes = (wanted + alignment - 1) / alignment * alignment;
   Pages pages(static_cast<double*>(std::aligned_alloc(alignment, bytes)));
   if (!pages) throw std::bad_alloc();
-  if (alignment == huge_page)
-    madvise(pages.get(), bytes, MADV_HUGEPAGE);  // a wish; where it is refused, all works as well
+  if (alignment == huge_page) madvise(pages.get(), bytes, MADV_HUGEPAGE);  // a hint; small pages work too
   return pages;
 }
 

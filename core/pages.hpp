@@ -1,4 +1,4 @@
-// Memory of whole pages.
+// Page-aligned memory.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ struct FreePages {
 };
 using Pages = std::unique_ptr<double[], FreePages>;
 
-/// Room for at least so many. Huge pages where it fills one: the passes over bricks touch more memory than
-/// small pages' addresses are kept for. Not initialised. Throws std::bad_alloc.
+/// Memory for at least this many doubles, not initialised. Huge pages where it fills one: the passes over
+/// bricks touch more memory than the TLB covers with small pages. Throws std::bad_alloc.
 Pages allocate_pages(std::size_t doubles);
 
 }  // namespace mpm::core

@@ -1,7 +1,6 @@
 // This rank's particles as ranges: for (ParticleBlock b : blocks_of(model)), of one brick, or of one tile;
 // and for (Particle p : b), each particle of a block. Blocks come in storage order: brick by brick, a brick's
-// tiles by body. The kernels of the step have a walk of their own (core/step/passes_with.hpp), which requests
-// memory ahead.
+// tiles by body. The kernels of the step have their own loops with prefetching (core/step/passes_with.hpp).
 #pragma once
 
 #include <algorithm>
@@ -47,7 +46,7 @@ class BlockRange {
       const auto at = std::ranges::lower_bound(brick_->tiles, of_->first_body_, {}, &ParticleTile::body);
       return static_cast<std::size_t>(at - brick_->tiles.begin());
     }
-    /// The next tile of the bodies with particles, from this one of the brick on.
+    /// Finds the next non-empty tile of these bodies, starting with this tile of the brick.
     void find_tile(std::size_t tile) {
       block_ = 0;
       while (brick_ != of_->bricks_.end()) {
@@ -82,12 +81,12 @@ template <class M>
 BlockRange<M> blocks_of(M& model) {
   return {model, model.grid->bricks(), 0, static_cast<int>(model.bodies.size())};
 }
-/// Of a brick's.
+/// Of a brick's particles.
 template <class M>
 BlockRange<M> blocks_of(M& model, const Brick& brick) {
   return {model, {&brick, 1}, 0, static_cast<int>(model.bodies.size())};
 }
-/// Of a brick's particles of one body, or of bodies that follow each other.
+/// Of a brick's particles of one body, or of consecutive bodies.
 template <class M>
 BlockRange<M> blocks_of(M& model, const Brick& brick, int first_body, int last_body) {
   return {model, {&brick, 1}, first_body, last_body};

@@ -1,6 +1,5 @@
-// Loops over the threads of a rank. An exception may not leave an OpenMP region; here the first one is kept
-// and thrown again when all threads are through, so that running out of memory is reported as it is anywhere
-// else.
+// Loops over the threads of a rank. An exception must not leave an OpenMP region; the first one is kept and
+// rethrown after all threads have finished, so that running out of memory is reported as usual.
 #pragma once
 
 #include <exception>
@@ -29,7 +28,8 @@ class FirstException {
   std::exception_ptr first_;
 };
 
-/// f(i) for first <= i < last by `threads` threads, `chunk` neighbours by one; in no particular order.
+/// f(i) for first <= i < last by `threads` threads, in chunks of `chunk` consecutive i; in no particular
+/// order.
 template <class Index, class F>
 void for_each_by_threads(Index first, Index last, int chunk, F f, int threads = omp_get_max_threads()) {
   FirstException failure;

@@ -9,7 +9,7 @@ constexpr std::size_t max_slabs = std::size_t{1} << 17;  // 2^32 blocks
 }
 
 BlockPool::BlockPool(const ColumnLayout& layout) : layout_(layout) {
-  // Pointers only: 128 Ki slabs of 32768 blocks cover every 32-bit number; pages come when they are touched.
+  // Pointers only: 128 Ki slabs of 32768 blocks cover every 32-bit number; pages are allocated on first use.
   slabs_.reserve(max_slabs);
 }
 
@@ -35,7 +35,7 @@ void BlockPool::release(BlockIndex i) {
 }
 
 void BlockPool::arrange(std::span<const BlockIndex> in_use) {
-  // from[i]: where is now what is to become block i; a permutation of all blocks ever given out.
+  // from[i]: current location of the block that becomes block i; a permutation of all blocks ever allocated.
   std::vector<BlockIndex> from(in_use.begin(), in_use.end());
   std::vector<bool> used(next_);
   for (const BlockIndex i : in_use) used[i] = true;
@@ -73,8 +73,8 @@ std::uint32_t append(BlockPool& pool, ParticleTile& tile, const double* columns)
   const std::uint32_t lane = tile.count % block_lanes;
   if (lane == 0) tile.blocks.push_back(pool.allocate());
   double* block = pool.block(tile.blocks.back());
-  // The first particle of a block fills its unused lanes too: they go through the same arithmetic as the
-  // others, and a copy of a sound particle raises no alarm. What becomes of them is never read.
+  // The first particle of a block also fills its unused lanes: the kernels process them like the others, and
+  // a copy of a valid particle raises no error. Their results are never read.
   const int lanes = lane == 0 ? block_lanes : 1;
   for (int c = 0; c < pool.layout().columns(); ++c) {
     for (int i = 0; i < lanes; ++i) block[block_lanes * c + static_cast<int>(lane) + i] = columns[c];

@@ -1,6 +1,6 @@
-// The columns that a particle may carry. A scene's body carries those that somebody asks for, and no others.
+// The columns that a particle may carry. Each body carries only those that its laws, scheme or outputs need.
 //
-// To add one: a name here and a row in `column_table`. Nothing else in the code counts columns.
+// To add one: a name here and a row in `column_table`. No other code depends on their number.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ enum class Column : int {
   viscous_pressure,
   internal_energy,
   identity,
-  // What follows exists only where a law, a scheme or an output asks for it.
+  // The following exist only where a law, a scheme or an output needs them.
   effective_plastic_strain,
   yield_stress,
   damage,
@@ -77,7 +77,7 @@ inline constexpr int column_count = static_cast<int>(Column::count);
 
 struct ColumnInfo {
   std::string_view name;
-  std::string_view dimension;  ///< in the words of ParameterInfo: "length", "stress", "1", ...
+  std::string_view dimension;  ///< as in ParameterInfo: "length", "stress", "1", ...
 };
 
 /// Indexed by Column.
@@ -126,7 +126,7 @@ inline constexpr std::array<ColumnInfo, column_count> column_table{{
     {"f_zx", "1"},
     {"f_zy", "1"},
     {"f_zz", "1"},
-    {"thermal_strain", "1"},  // volumetric; what the pressure already knows of
+    {"thermal_strain", "1"},  // volumetric; the part already included in the pressure
     {"bulking_pressure", "stress"},
     {"sound_speed", "velocity"},
     {"history_0", "1"},
@@ -155,7 +155,7 @@ class ColumnSet {
   }
   void add(Column c) { bits_.set(static_cast<std::size_t>(c)); }
   void add(const ColumnSet& other) { bits_ |= other.bits_; }
-  /// `n` columns from `first` on, for the components of a vector or tensor.
+  /// `n` columns from `first` on, such as the components of a vector or tensor.
   void add_range(Column first, int n) {
     for (int i = 0; i < n; ++i) add(next(first, i));
   }
@@ -163,7 +163,7 @@ class ColumnSet {
   int size() const { return static_cast<int>(bits_.count()); }
   bool operator==(const ColumnSet&) const = default;
 
-  /// Position to identity: what every particle carries.
+  /// Position to identity: the columns of every particle.
   static ColumnSet mechanics() {
     ColumnSet set;
     set.add_range(Column::position_x, static_cast<int>(Column::identity) + 1);
@@ -174,7 +174,7 @@ class ColumnSet {
   std::bitset<column_count> bits_;
 };
 
-/// Where each column of a set lies within a block: offset in doubles, or absent.
+/// Position of each column of a set within a block: offset in doubles, or absent.
 class ColumnLayout {
  public:
   ColumnLayout() : ColumnLayout(ColumnSet::mechanics()) {}
@@ -187,7 +187,7 @@ class ColumnLayout {
   }
   /// Doubles from the start of a block to the column's eight values; -1 if absent.
   int offset(Column c) const { return offset_[static_cast<std::size_t>(c)]; }
-  /// Place among a particle's columns where they stand one after the other.
+  /// Index among a particle's columns when stored consecutively.
   std::size_t index(Column c) const { return static_cast<std::size_t>(offset(c) / block_lanes); }
   bool has(Column c) const { return offset(c) >= 0; }
   int columns() const { return columns_; }

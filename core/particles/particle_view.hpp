@@ -1,4 +1,4 @@
-// One particle, and one block of up to eight, where they lie in memory: columns by name.
+// Views of one particle and of one block of up to eight: columns by name.
 #pragma once
 
 #include "core/particles/columns.hpp"
@@ -6,13 +6,13 @@
 
 namespace mpm::core {
 
-/// One particle where it lies. Value: double, or const double.
+/// View of one particle. Value: double, or const double.
 template <class Value>
 class ParticleOf {
  public:
   ParticleOf(const ColumnLayout& layout, Value* at) : layout_(&layout), at_(at) {}
   Value& operator[](Column c) const { return at_[layout_->offset(c)]; }
-  /// Of three columns that follow each other.
+  /// Of three consecutive columns.
   Vec3<double> vector(Column first) const {
     Value* x = at_ + layout_->offset(first);
     return {x[0], x[block_lanes], x[2 * block_lanes]};
@@ -26,13 +26,13 @@ class ParticleOf {
   Value* at_;
 };
 
-/// Up to eight particles of one body in one brick, column after column.
+/// Up to eight particles of one body in one brick, column by column.
 template <class Value>
 struct ParticleBlockOf {
   int body = 0;
   const ColumnLayout* layout = nullptr;
   Value* data = nullptr;
-  int used = 0;  ///< lanes
+  int used = 0;  ///< lanes in use
 
   Value* column(Column c) const { return data + layout->offset(c); }
   ParticleOf<Value> particle(int lane) const { return {*layout, data + lane}; }

@@ -25,7 +25,7 @@ void reorder(BlockPool& pool, ParticleTile& tile, const std::vector<std::uint32_
   const auto block_doubles = static_cast<std::size_t>(layout.block_doubles());
   sorted.resize(tile.blocks.size() * block_doubles);
   for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-    const double* from[block_lanes];  // lanes out of use hold what the first lane holds
+    const double* from[block_lanes];  // unused lanes copy the first lane
     const int used = tile.used_lanes(b);
     for (int l = 0; l < block_lanes; ++l) {
       const std::uint32_t p = order[block_lanes * b + static_cast<std::size_t>(l < used ? l : 0)];
@@ -36,7 +36,7 @@ void reorder(BlockPool& pool, ParticleTile& tile, const std::vector<std::uint32_
       for (int l = 0; l < block_lanes; ++l) to[block_lanes * c + l] = from[l][block_lanes * c];
     }
   }
-  std::sort(tile.blocks.begin(), tile.blocks.end());  // what is read next lies next in memory
+  std::sort(tile.blocks.begin(), tile.blocks.end());  // blocks read in succession are adjacent in memory
   for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
     std::copy_n(sorted.data() + b * block_doubles, block_doubles, pool.block(tile.blocks[b]));
   }
@@ -45,7 +45,7 @@ void reorder(BlockPool& pool, ParticleTile& tile, const std::vector<std::uint32_
 }  // namespace
 
 void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile) {
-  constexpr NodeBlockShape shape{};  // of the least halo: the lowest nodes of cells are in the order of cells
+  constexpr NodeBlockShape shape{};  // smallest halo: the lowest nodes of cells are in the order of cells
   const BrickFrame frame(grid.geometry(), shape, brick);
   thread_local std::vector<std::uint8_t> cell;
   cell.resize(block_lanes * tile.blocks.size());
@@ -97,7 +97,7 @@ void insert_particles(Model& model, const MigrationBuffer& particles) {
     if (a.slot != b.slot) return a.slot < b.slot;
     return a.body != b.body ? a.body < b.body : a.identity < b.identity;
   });
-  // Each brick's arrivals are one thread's work.
+  // Each brick's arrivals are processed by one thread.
   std::vector<std::size_t> groups;
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
     if (i == 0 || arrivals[i].slot != arrivals[i - 1].slot) groups.push_back(i);

@@ -1,8 +1,7 @@
-// Particles within their bricks' tiles: inserted, sorted, and their blocks laid one after the other in
-// memory.
+// Order of particles within tiles and of blocks in memory: insertion and sorting.
 //
-// The order inside a tile decides the order of sums, so it depends on the particles' history alone: never on
-// which rank or thread carried a particle where.
+// The order inside a tile decides the order of sums, so it depends only on the particles' history, never on
+// ranks or threads.
 #pragma once
 
 #include "core/communication/particle_transport.hpp"
@@ -10,17 +9,17 @@
 
 namespace mpm::core {
 
-/// Append particles to their bricks, which must be ours: each tile's in ascending order of identity.
+/// Appends particles to their bricks, which must be ours, in ascending order of identity per tile.
 void insert_particles(Model& model, const MigrationBuffer& particles);
 
-/// Particles of a tile in ascending order of their cells, otherwise as they were.
+/// Sorts the particles of a tile by cell; the sort is stable.
 void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile);
 
-/// Particles of a tile in ascending order of identity.
+/// Sorts the particles of a tile by identity.
 void sort_by_identity(BlockPool& pool, ParticleTile& tile);
 
-/// Every brick's blocks one after the other in memory. Particles that came in pieces, and by several threads,
-/// lie all over the place: the passes of two threads were a tenth slower.
+/// Stores every brick's blocks consecutively. Without it, particles that arrived in pieces and by several
+/// threads are scattered in memory: the passes of two threads were a tenth slower.
 void arrange_blocks(Model& model);
 
 }  // namespace mpm::core

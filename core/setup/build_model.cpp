@@ -15,8 +15,8 @@ namespace mpm::core {
 
 namespace {
 
-/// Throws InputErrors on every rank if one of them needs more bytes than it can have. `reserved`: of these,
-/// what has its addresses already and is not filled yet.
+/// Throws InputErrors on every rank if one of them needs more bytes than are available. `reserved`: the part
+/// that has addresses but is not filled yet.
 void refuse_above(double needed, double reserved, const ModelPlan& plan, const Model& model,
                   Reductions& ranks) {
   char host[256] = {};
@@ -35,15 +35,15 @@ void refuse_above(double needed, double reserved, const ModelPlan& plan, const M
 }
 
 void refuse_too_large(const Model& model, const ModelPlan& plan, Reductions& ranks) {
-  // Particles, and half as much again for nodes and what is on its way.
+  // Particles, and half as much again for nodes and buffers.
   refuse_above(1.5 * plan.state_bytes / ranks.size(), 0, plan, model, ranks);
 }
 
-/// Once it is known which bricks are whose: with what the nodes need, too.
+/// After the partition, with the memory of the nodes.
 void refuse_too_large(const Model& model, const ModelPlan& plan, const SeedCount& count, Reductions& ranks) {
   std::int64_t bytes[1] = {count.block_bytes};
   ranks.sum(std::span<std::int64_t>(bytes));
-  // Of the particles, some are on their way to their bricks; of what bodies take, the input is there already.
+  // Some of the particles are still in send buffers; of the bodies' memory, the input is already allocated.
   const auto particles = static_cast<double>(bytes[0]);
   const double under_way = std::min(16.0 * (1 << 20), particles);
   const MemoryNeed need = memory_need(model);

@@ -13,9 +13,10 @@ namespace mpm::core {
 
 namespace {
 
-constexpr std::uint64_t most_units = 1 << 16;  // of a body, that may be empty before the first with particles
+constexpr std::uint64_t most_units =
+    1 << 16;  // units of a body that may be empty before the first with particles
 
-/// A few particles of a body, whose first state is like that of all others.
+/// A few particles of a body, whose initial state is like that of all others.
 std::vector<Seed> sample_of(const SeedSource& source) {
   constexpr std::size_t few = 8;
   std::vector<Seed> seeds;
@@ -25,7 +26,7 @@ std::vector<Seed> sample_of(const SeedSource& source) {
   return seeds;
 }
 
-/// Starts a model of the samples alone, which throws what the start of a run would.
+/// Initialises a model of the samples alone, which throws the errors of a run's start.
 void check_start(Model model, const std::vector<const BodyInput*>& inputs,
                  const std::vector<std::vector<Seed>>& samples) {
   const GridGeometry& geometry = model.grid->geometry();

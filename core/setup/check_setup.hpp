@@ -1,4 +1,4 @@
-// What a run would refuse at its start, without a run.
+// Checks of a run's set-up without running it.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace mpm::core {
 
-/// What the set-up refuses for reasons that stand in the input, found without making the particles but a few
-/// of each body: bodies outside the grid, more particles than can be numbered, materials for bars, too many
-/// cells, a first state that no run can start from. Memory and the number of ranks are a machine's matter.
-/// The number of particles, an estimate. Throws InputErrors.
+/// Finds the set-up errors that follow from the input alone, creating only a few particles of each body:
+/// bodies outside the grid, more particles than can be numbered, one-dimensional materials in other bodies,
+/// too many cells, an invalid initial state. Memory and the number of ranks depend on the machine and are not
+/// checked. Returns the estimated number of particles. Throws InputErrors.
 double check_setup(std::shared_ptr<const Scene> scene,
                    std::vector<std::unique_ptr<ConstitutiveModel>> materials,
                    const ColumnSet& output_columns);

@@ -16,7 +16,8 @@ namespace mpm::core {
 
 namespace {
 
-/// Measured: the input, its part of the model, its columns in the .sta file's row, its part of the summary.
+/// Measured: the input, its part of the model, its columns in a row of the .sta file, its part of the
+/// summary.
 constexpr double bytes_per_body = 5000;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -31,8 +32,8 @@ std::optional<double> number_in(const std::string& path, const std::string& word
   return {};
 }
 
-/// What the control group and those above it leave free. What they count as theirs includes files that the
-/// system keeps in memory as long as nobody needs it.
+/// Memory that the control group and its parents leave free. Their usage includes the page cache, which the
+/// system releases on demand.
 double left_in_group(const std::string& root, std::string group, const char* limit, const char* used,
                      const char* cached) {
   double left = infinity;
@@ -66,7 +67,7 @@ double left_in_groups() {
   return left;
 }
 
-/// Pools of more than one huge page are given whole ones.
+/// Pools larger than one huge page are allocated in whole huge pages.
 double in_pages(double bytes) {
   constexpr double page = 1 << 21;
   return std::ceil(bytes / page) * page;

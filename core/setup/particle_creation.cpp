@@ -12,10 +12,10 @@ namespace mpm::core {
 
 namespace {
 
-constexpr std::uint64_t units_in_run = 16;       // of a body, next to each other, that one rank makes
-constexpr std::size_t seeds_in_piece = 1 << 14;  // seeds that a rank makes between two sends
+constexpr std::uint64_t units_in_run = 16;       // adjacent units of a body that one rank creates
+constexpr std::size_t seeds_in_piece = 1 << 14;  // seeds that a rank creates between two sends
 
-/// This rank's share of a body's units, in pieces: f(seeds). Every ranks-th run of units is ours.
+/// This rank's share of a body's units, in pieces: f(seeds). Runs of units are distributed cyclically.
 template <class F>
 void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
   const std::uint64_t units = source.units();
@@ -61,13 +61,12 @@ void refuse_uncounted(std::span<const BodySeeds> bodies, std::uint64_t first_ide
   if (identities < static_cast<double>(identity_limit)) return;
   throw InputErrors(
       largest->input->source, "Body",
-      fmt::format(
-          "the lattices of the bodies, body `{}`'s above all, have {} places to number, more than can "
-          "be told apart (2^53), for about {:.3g} particles; use a larger dp",
-          largest->input->name,
-          largest->source->identities() >= identity_limit ? "at least 9.01e+15"
-                                                          : fmt::format("{:.3g}", identities),
-          particles));
+      fmt::format("the lattices of the bodies, body `{}`'s above all, have {} sites, more than the largest "
+                  "identity (2^53), for about {:.3g} particles; use a larger dp",
+                  largest->input->name,
+                  largest->source->identities() >= identity_limit ? "at least 9.01e+15"
+                                                                  : fmt::format("{:.3g}", identities),
+                  particles));
 }
 
 std::vector<BrickCount> SeedCount::in_bricks() const {
@@ -175,7 +174,7 @@ void create_particles(Model& model, std::span<const BodySeeds> bodies, Communica
       ranks.any(true);
       send();
     });
-    // The others may have more pieces than we: keep receiving until all are through.
+    // Other ranks may have more pieces: keep receiving until all have finished.
     while (ranks.any(false)) send();
     model.next_identity += of.source->identities();
     created[of.body] = true;

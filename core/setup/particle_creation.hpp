@@ -1,9 +1,9 @@
-// Particles come into being: at the start of a run, and in a run that goes on.
+// Creation of particles, at the start of a run and during it.
 //
-// Every rank makes its own share of every body's particles, twice: once to count them per brick, so that each
-// brick has an owner, and once to send each particle to the rank that owns its brick. No rank ever holds more
-// than its share and a buffer of fixed size. Identities come from the bodies' lattices, so they depend on no
-// rank.
+// Every rank creates its own share of every body's particles, twice: once to count them per brick, so that
+// each brick gets an owner, and once to send each particle to the rank that owns its brick. No rank ever
+// holds more than its share and a buffer of fixed size. Identities come from the bodies' lattices, so they do
+// not depend on ranks.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@
 
 namespace mpm::core {
 
-/// A body whose particles are to be made.
+/// A body whose particles are to be created.
 struct BodySeeds {
   std::size_t body = 0;  ///< its number in the model
   const BodyInput* input = nullptr;
@@ -26,20 +26,20 @@ struct BodySeeds {
   std::int64_t block_bytes = 0;  ///< of eight of its particles; 0: only those outside the grid are counted
 };
 
-/// Of these bodies of the model. Throws every fault about any of them.
+/// Of these bodies of the model. Throws all errors in any of them.
 std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies);
 
-/// Throws InputErrors where the bodies' identities, from `first_identity` on, cannot be numbered; names the
-/// largest body.
+/// Throws InputErrors where the bodies' identities, from `first_identity` on, exceed the largest one; names
+/// the largest body.
 void refuse_uncounted(std::span<const BodySeeds> bodies, std::uint64_t first_identity);
 
-/// This rank's share, counted.
+/// Counts of this rank's share.
 struct SeedCount {
   std::map<BrickKey, std::int64_t> bricks;
-  std::vector<std::int64_t> bodies;  ///< of each body all particles, outside of the grid too
+  std::vector<std::int64_t> bodies;  ///< particles of each body, including those outside the grid
   std::int64_t block_bytes = 0;  ///< of the blocks that hold them: in every brick of every body, full but one
   std::int64_t outside = 0;      ///< of the grid
-  std::string first_outside;     ///< in words
+  std::string first_outside;     ///< text that describes it
 
   std::vector<BrickCount> in_bricks() const;
 };
@@ -50,22 +50,22 @@ SeedCount count_seeds(const GridGeometry& geometry, std::span<const BodySeeds> b
 void refuse_outside(const Scene& scene, const GridGeometry& geometry, const SeedCount& count,
                     Reductions& ranks);
 
-/// Throws InputErrors on every rank for each body without a particle (those that were too large to be tried
-/// before, core/discretise/shape_check.hpp). Collective.
+/// Throws InputErrors on every rank for each body without particles (bodies too large to be checked before,
+/// core/discretise/shape_check.hpp). Collective.
 void refuse_empty(const Scene& scene, std::span<const BodySeeds> bodies, const SeedCount& count,
                   Reductions& ranks);
 
-/// The columns of a particle as a body's input states them, in the order of `layout`; the material's own
-/// start from zero (ConstitutiveModel::initialise).
+/// The columns of a particle as given by the body's input, in the order of `layout`; the material's own start
+/// from zero (ConstitutiveModel::initialise).
 void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
                   double identity, std::vector<double>& columns);
 
-/// Make the particles and bring each to its brick, which some rank owns; identities go on from the model's
-/// next one. Tiles end up in the order of cells and, within a cell, of identities. Collective.
+/// Creates the particles and sends each to its brick, which some rank owns; identities continue from the
+/// model's next one. Afterwards tiles are ordered by cell and, within a cell, by identity. Collective.
 void create_particles(Model& model, std::span<const BodySeeds> bodies, Communication& communication);
 
-/// Tiles of all bodies, or of those for which `wanted` is true, in the order of cells and, within a cell, of
-/// identities, however they arrived.
+/// Sorts the tiles of all bodies, or of those for which `wanted` is true, by cell and, within a cell, by
+/// identity, independently of the order of arrival.
 void sort_tiles(Model& model, const std::vector<bool>& wanted = {});
 
 }  // namespace mpm::core

@@ -103,7 +103,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     columns.add(transfer_columns(*scene));
     if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
         model.grid->geometry().boundary.end())
-      columns.add(Column::sound_speed);  // of the dashpots there
+      columns.add(Column::sound_speed);  // for the dashpots there
     body.pool = pools.of(columns);
     model.bodies.push_back(std::move(body));
   });

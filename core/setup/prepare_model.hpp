@@ -1,4 +1,4 @@
-// From a checked scene to a model whose bodies and grid are known and that holds no particles yet.
+// From a checked scene to a model with bodies and grid but without particles.
 #pragma once
 
 #include <memory>
@@ -10,16 +10,16 @@
 
 namespace mpm::core {
 
-/// Bodies without particles, an empty grid: enough to know the columns. `output_columns`: what outputs ask
-/// for. Throws InputErrors for what does not fit the grid's limits.
+/// Creates bodies without particles and an empty grid, which determine the columns. `output_columns`: those
+/// that outputs need. Throws InputErrors where the grid's limits are exceeded.
 Model prepare_model(std::shared_ptr<const Scene> scene,
                     std::vector<std::unique_ptr<ConstitutiveModel>> materials,
                     const ColumnSet& output_columns);
 
-/// Throws InputErrors where a body and its material do not go together.
+/// Throws InputErrors where a material does not suit its body.
 void check_material_of(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material);
 
-/// The grid's geometry as the scene states it.
+/// The grid's geometry from the scene.
 GridGeometry geometry_of(const Scene& scene);
 
 struct BodyPlan {
@@ -29,11 +29,11 @@ struct BodyPlan {
   std::vector<std::string_view> columns;  ///< beyond what every particle carries
 };
 
-/// What a scene will need, before anything is allocated.
+/// What a scene will need, computed before any allocation.
 struct ModelPlan {
   std::vector<BodyPlan> bodies;
   double particles = 0;
-  double state_bytes = 0;  ///< all ranks
+  double state_bytes = 0;  ///< over all ranks
 };
 
 ModelPlan plan_of(const Model& model);

@@ -17,20 +17,20 @@ namespace mpm::core {
 
 namespace {
 
-/// This rank's fastest particle, wave speed included; of several, the one with the smallest identity.
+/// This rank's fastest particle, by speed plus wave speed; on ties, the one with the smallest identity.
 struct Fastest {
   double speed = 0, identity = std::numeric_limits<double>::infinity();
   double wave = 0;
   Vec3<double> position{}, velocity{};
   int body = -1;
 
-  /// Lane `i` of a batch of body `number`, its critical speed filled in. A speed that is no number is
+  /// Lane `i` of a batch of body `number`, after its critical speed is computed. A NaN speed counts as
   /// infinite.
   void offer(int number, const Batch& batch, int i);
 };
 
-/// Throws InputErrors for the body of the particle with the smallest identity of all ranks. `words`: of this
-/// rank's, if it has one. Collective.
+/// Throws InputErrors for the body of the particle with the smallest identity of all ranks. `words`: text
+/// about this rank's, if it has one. Collective.
 [[noreturn]] void refuse_particle(const Model& model, double identity, int body, const std::string& words,
                                   Reductions& ranks) {
   OffendingParticle mine;
@@ -57,8 +57,7 @@ void Fastest::offer(int number, const Batch& batch, int i) {
   *this = {sum, id, batch.critical_speed[i], vector(Column::position_x), v, number};
 }
 
-/// Throws InputErrors, on every rank, for the first particle whose state or energy is not all finite.
-/// Collective.
+/// Throws InputErrors, on every rank, for the first particle whose state or energy is not finite. Collective.
 void refuse_undefined(const Model& model, Reductions& ranks) {
   int body = -1;
   const OffendingParticle lost = first_not_finite(model, &body);
@@ -71,8 +70,8 @@ void refuse_undefined(const Model& model, Reductions& ranks) {
       ranks);
 }
 
-/// Throws InputErrors, on every rank, for a first step so short that the steps could not be counted to the
-/// end: naming the fastest particle, of which `mine` is this rank's. Collective.
+/// Throws InputErrors, on every rank, for a first step so short that the number of steps to the end would
+/// overflow; names the fastest particle, of which `mine` is this rank's. Collective.
 void refuse_endless(const Model& model, const Fastest& mine, Reductions& ranks) {
   const SolutionInput& solution = model.scene->solution;
   const TimeStepInput& how = solution.time_step;
@@ -89,7 +88,7 @@ void refuse_endless(const Model& model, const Fastest& mine, Reductions& ranks) 
   if (!endless(how.factor * critical_step(*model.grid, fastest))) {
     throw InputErrors(solution.source, "Solution",
                       what +
-                          ", for heat would spread so fast: check CoefficientOfThermalConductivity and "
+                          "; heat conduction limits the step: check CoefficientOfThermalConductivity and "
                           "SpecHeat, and the units");
   }
   const bool ours = mine.speed == fastest;
@@ -102,7 +101,7 @@ void refuse_endless(const Model& model, const Fastest& mine, Reductions& ranks) 
       ranks);
 }
 
-/// This rank's particles of the bodies that `wanted` marks start by their materials; the fastest of them.
+/// Initialises this rank's particles of the bodies that `wanted` marks; returns the fastest of them.
 Fastest initialise(Model& model, const std::vector<bool>& wanted) {
   Fastest fastest;
   const GridGeometry& geometry = model.grid->geometry();
@@ -139,9 +138,8 @@ double energy_of(const Totals& totals, const std::vector<bool>& wanted) {
 
 void refuse_infinite(double energy, const Model& model) {
   if (std::isfinite(energy)) return;
-  throw InputErrors(
-      model.scene->components.front().source, "Component",
-      "the energies of all particles together are beyond the range of numbers: check the units");
+  throw InputErrors(model.scene->components.front().source, "Component",
+                    "the total energy of all particles overflows: check the units");
 }
 
 double critical_step_of(const Model& model, const Fastest& fastest, Reductions& ranks) {

@@ -1,4 +1,4 @@
-// One brick in the coordinates in which its particles are located.
+// The coordinates of one brick, in which its particles are located.
 #pragma once
 
 #include "core/grid/brick.hpp"
@@ -7,8 +7,8 @@ namespace mpm::core {
 
 struct BrickFrame {
   Vec3<double> origin, inverse_cell;
-  Vec3<double> first_cell;  ///< of the brick, counted from the grid's origin
-  Vec3<double> last_cell;   ///< highest cell that a particle can be in, counted from the brick's first
+  Vec3<double> first_cell;  ///< of the brick, in cells from the grid's origin
+  Vec3<double> last_cell;   ///< highest cell that a particle can be in, relative to the brick's first
   int side = 0, halo = 0;
 
   BrickFrame(const GridGeometry& g, const NodeBlockShape& shape, BrickCoord b)

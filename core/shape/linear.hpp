@@ -1,10 +1,10 @@
 // Trilinear shape functions (thesis 2-17, 2-20): S_i = product over the axes of 1 - |x - x_i|/h on the eight
 // nodes of the particle's cell.
 //
-// Grid to particles: particles in the lanes of a vector, each distinct cell among the eight visited once.
-// Particles to grid: the eight nodes of a cell in the lanes, a particle adds itself to ten vectors (momentum,
-// mass, V sigma), and only when the cell changes are these turned into node records and written. Particles
-// are kept in approximate cell order, so that is once in about eight. Shown by
+// Grid to particles: particles in the vector lanes; each distinct cell among the eight particles is visited
+// once. Particles to grid: the eight nodes of a cell in the lanes; each particle adds to ten vectors
+// (momentum, mass, V sigma), which are converted to node records and written only when the cell changes.
+// Particles are stored in approximate cell order, so this happens about once in eight. Shown by
 // tests/core/shape/linear_test.cpp and, against a plain loop, tests/core/step.
 #pragma once
 
@@ -18,21 +18,21 @@
 
 namespace mpm::core {
 
-/// Particles in lanes: fraction of the cell's edge from its lower corner, and the cell's lowest node.
+/// Particles in lanes: position within the cell as fractions of its edges, and the cell's lowest node.
 template <class T>
 struct LocatedInCells {
   T fx, fy, fz;
   int node[LaneTraits<T>::width];
 };
 
-/// `x`, `y`, `z`: columns of a block from the lane on. Lanes out of use are clamped into the brick.
+/// `x`, `y`, `z`: columns of a block from the lane on. Unused lanes are clamped into the brick.
 template <class T>
 inline LocatedInCells<T> locate_in_cells(const BrickFrame& f, const double* x, const double* y,
                                          const double* z) {
   const T sx = GridGeometry::scaled(load<T>(x), f.origin.x, f.inverse_cell.x) - T(f.first_cell.x);
   const T sy = GridGeometry::scaled(load<T>(y), f.origin.y, f.inverse_cell.y) - T(f.first_cell.y);
   const T sz = GridGeometry::scaled(load<T>(z), f.origin.z, f.inverse_cell.z) - T(f.first_cell.z);
-  // max(s, 0) turns not-a-number into 0, so that an index is always one.
+  // max(s, 0) maps NaN to 0, so that the index is always valid.
   const T cx = min(max(floor(sx), T(0.0)), T(f.last_cell.x));
   const T cy = min(max(floor(sy), T(0.0)), T(f.last_cell.y));
   const T cz = min(max(floor(sz), T(0.0)), T(f.last_cell.z));
@@ -45,7 +45,7 @@ inline LocatedInCells<T> locate_in_cells(const BrickFrame& f, const double* x, c
   return p;
 }
 
-/// Where the particles of a block lie.
+/// Position of a block's particles within their cells.
 struct LinearPlace {
   alignas(64) double f[3][block_lanes];  ///< fractions of the cell's edges
   int node[block_lanes];
@@ -66,14 +66,14 @@ struct LinearPlace {
   }
 };
 
-/// Node number `n` = i + 2 j + 4 k of a cell, counted from its lowest node. Of bricks without a halo, as
-/// these functions have them: so the compiler knows every distance.
+/// Node number `n` = i + 2 j + 4 k of a cell, relative to its lowest node. These functions use bricks without
+/// a halo, so that all strides are compile-time constants.
 constexpr int corner_node(int n) {
   constexpr int side = brick_cells + 1;
   return (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2));
 }
 
-/// f(lowest node, lanes) for each cell in which particles of the block lie, with the lanes that do.
+/// f(lowest node, lanes) for each cell that holds particles of the block, with their lanes.
 template <class F>
 inline void for_each_cell(const LinearPlace& place, F f) {
   using Mask = LaneMask<block_lanes>;
@@ -92,7 +92,7 @@ inline void for_each_cell(const LinearPlace& place, F f) {
 namespace linear {
 using Nodes = Lanes<8>;
 
-/// A node's weight along an axis is 1 - f or f: its slope.
+/// A node's weight along an axis is 1 - f or f; this is its slope.
 inline Nodes sign_x() { return Nodes::vector{-1, 1, -1, 1, -1, 1, -1, 1}; }
 inline Nodes sign_y() { return Nodes::vector{-1, -1, 1, 1, -1, -1, 1, 1}; }
 inline Nodes sign_z() { return Nodes::vector{-1, -1, -1, -1, 1, 1, 1, 1}; }
@@ -102,16 +102,16 @@ inline Nodes one_x() { return Nodes::vector{1, 0, 1, 0, 1, 0, 1, 0}; }
 inline Nodes one_y() { return Nodes::vector{1, 1, 0, 0, 1, 1, 0, 0}; }
 inline Nodes one_z() { return Nodes::vector{1, 1, 1, 1, 0, 0, 0, 0}; }
 
-/// Both nodes of an edge along an axis get the sum of the two.
+/// Each node of an edge along an axis gets the sum of the two.
 inline Nodes along_x(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 1, 0, 3, 2, 5, 4, 7, 6); }
 inline Nodes along_y(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 2, 3, 0, 1, 6, 7, 4, 5); }
 inline Nodes along_z(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7, 0, 1, 2, 3); }
 }  // namespace linear
 
 /// Sums over the particles of one cell, node i + 2 j + 4 k in lane i + 2 j + 4 k. The force on a node is
-/// minus the sum of V sigma times the weight's gradient. Its component along an axis is a sign over the
-/// cell's edge times the weights along the other two axes, and these are what the weights of the edge's two
-/// nodes add up to. So V sigma is summed with the weights themselves, and a flush makes forces of the sums.
+/// minus the sum of V sigma times the weight's gradient. A gradient component is a sign over the cell's edge
+/// times the weights along the other two axes, and that product is the sum of the weights of the edge's two
+/// nodes. So V sigma is summed with the weights themselves, and a flush converts the sums to forces.
 template <NodeFields what>
 struct LinearScatter {
   linear::Nodes px, py, pz, m;
@@ -152,7 +152,7 @@ struct LinearScatter {
     }
   }
 
-  /// Add the cell's sums to the node records of the brick.
+  /// Adds the cell's sums to the node records of the brick.
   [[gnu::always_inline]] void flush(const BrickFrame& frame, double* contributions) {
     using N = linear::Nodes;
     if (node < 0) return;
@@ -184,7 +184,7 @@ struct LinearScatter {
   }
 };
 
-/// Three neighbouring components of the node records, from `nodes` on, at the block's particles.
+/// Interpolates three consecutive components of the node records, from `nodes` on, to the block's particles.
 struct LinearInterpolation {
   using R = Lanes<8>;
   R value[3];
@@ -224,7 +224,7 @@ struct Linear {
       const double* lowest = nodes + node_doubles * node;
       for (int i = 0; i < 3; ++i) {
         const auto v = [&](int n) { return R(lowest[node_doubles * corner_node(n) + i]); };
-        // Differences along x on the four edges, and the values at x; then the same with these along y and z.
+        // Differences along x on the four edges, and the values at x; then the same along y and z.
         R d[4], u[4];
         for (int e = 0; e < 4; ++e) {
           d[e] = v(2 * e + 1) - v(2 * e);
@@ -262,8 +262,8 @@ struct Linear {
     });
   }
 
-  /// f(node, offset, S, gradient of S) for the nodes of the cell in which the particle of a lane lies: for
-  /// what is too rare to be written in lanes.
+  /// f(node, offset, S, gradient of S) for the nodes of the cell that holds the particle of a lane: for terms
+  /// too infrequent to vectorise.
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
     const double fraction[3] = {place.f[0][lane], place.f[1][lane], place.f[2][lane]};

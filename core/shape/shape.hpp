@@ -1,15 +1,16 @@
-// What a family of shape functions S_i offers to the passes (core/step). Kernels are templates over it; a run
-// chooses one (core/step/make_passes.cpp), so a family costs nothing where another one is chosen.
+// Interface of a family of shape functions S_i to the passes (core/step). Kernels are templates over it; a
+// run chooses one (core/step/make_passes.cpp), so families that are not chosen cost nothing.
 //
 //   node_block          the nodes that a brick keeps for its particles
-//   Place               where a block of eight particles lies: found once for all that a pass does with it
+//   Place               location of a block of eight particles: found once per pass
 //   Scatter<fields>     sums of m S, m v S and V sigma grad S over particles, added to the brick's nodes
 //   interpolate         sum_i S_i u_i of three node components at the block's particles
 //   gradient            sum_i u_i (x) grad S_i of three node components
 //   cell_divergence     mean of div u over the cell of each particle (volume update `cell`)
-//   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: rare terms
+//   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: infrequent
+//   terms
 //
-// Kernels see a node by its number in the brick's block and read records of node_doubles.
+// Kernels identify a node by its number in the brick's node block and read records of node_doubles.
 #pragma once
 
 #include <concepts>
@@ -31,14 +32,14 @@ concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layo
   requires std::constructible_from<typename S::Interpolation, const typename S::Place&, const double*>;
 };
 
-/// What the particles of a block map to the grid, by lane.
+/// Values that the particles of a block map to the grid, by lane.
 struct MappedRows {
   alignas(64) double mass[block_lanes];
   alignas(64) double momentum[3][block_lanes];
   alignas(64) double stress[6][block_lanes];  ///< V sigma: xx, yy, zz, xy, yz, xz
 };
 
-/// A node of a particle's support, counted from the lowest one.
+/// A node of a particle's support, relative to the lowest one.
 struct NodeOffset {
   int along[3];
 };

@@ -12,8 +12,8 @@
 // The grid does not resolve variations of T within a cell, such as the jump at a contact of hot and cold, and
 // increments alone never smooth them. Therefore the part of T that two passes over the grid do not reproduce,
 // T'' = (1 - P)^2 T with P T = sum S_i T_i, decays at the rate 1/dt_c. On resolved waves this term is only
-// (k h)^4, so the method stays second order; P conserves heat, so the decay does too. The first and second node
-// arrays, idle between steps, hold (Q, C T') and (C, C T), T' = (1 - P) T.
+// (k h)^4, so the method stays second order; P conserves heat, so the decay does too.
+// The first and second node arrays, idle between steps, hold (Q, C T') and (C, C T), T' = (1 - P) T.
 // Shown by tests/system/physics_heat.py.
 #pragma once
 

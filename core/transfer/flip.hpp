@@ -1,6 +1,6 @@
-// FLIP (Brackbill and Ruppel 1986; thesis 2-28, 2-42): particles map their momentum m v and take the nodes'
-// increments of velocity, so that what the grid does not resolve stays with them. They move with the
-// velocity of the grid. No column beyond the mechanics.
+// FLIP (Brackbill and Ruppel 1986; thesis 2-28, 2-42): particles map their momentum m v and take the nodal
+// velocity increments, so that they keep the velocity components that the grid does not resolve. They move
+// with the grid velocity. No columns beyond the mechanics.
 #pragma once
 
 #include "core/transfer/transfer.hpp"

@@ -1,8 +1,8 @@
-// How velocity goes between particles and grid: what a particle maps as momentum, and how it takes the
-// nodes' new velocities. Kernels are templates over a transfer as they are over a shape; a run chooses one
-// (core/step/make_passes.cpp).
+// Velocity transfer between particles and grid: the momentum that a particle maps, and its update from the
+// new nodal velocities. Kernels are templates over a transfer as they are over the shape functions; a run
+// chooses one (core/step/make_passes.cpp).
 //
-//   columns             what its particles carry beyond the mechanics
+//   columns             the columns its particles need beyond the mechanics
 //   momentum            rows of mass and momentum that a block maps
 //   update_velocities   the particles' velocities from the nodes' records (MotionRecord)
 #pragma once
