@@ -1,5 +1,5 @@
-// Who owns which brick: every rank knows all bricks of the run. 16 bytes an entry, at most three quarters
-// filled.
+// Owner of each brick: every rank stores all bricks of the run. 16 bytes per entry, at most three quarters
+// full.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ class BrickTable {
  public:
   static constexpr std::int32_t nobody = -1;
 
-  /// The rank that owns the brick; nobody if it does not exist.
+  /// The rank that owns the brick; `nobody` if it does not exist.
   std::int32_t owner(core::BrickCoord b) const { return entries_[place_of(core::key_of(b))].owner; }
   bool contains(core::BrickCoord b) const { return owner(b) != nobody; }
 
@@ -30,7 +30,7 @@ class BrickTable {
     std::size_t hole = place_of(core::key_of(b));
     if (entries_[hole].owner == nobody) return;
     --size_;
-    // What was pushed past the hole moves back into it, so that searches still end at the first free entry.
+    // Entries displaced past the hole move back, so that searches still end at the first free entry.
     for (std::size_t i = after(hole); entries_[i].owner != nobody; i = after(i)) {
       const std::size_t home = home_of(entries_[i].key);
       if (((i - home) & mask()) >= ((i - hole) & mask())) {

@@ -58,7 +58,7 @@ UniformBoxes boxes_of_bricks(std::span<const BrickCount> bricks, int ranks) {
     for (int y = 1; y <= ranks / x; ++y) {
       if (ranks / x % y != 0) continue;
       const std::array<int, 3> p{x, y, ranks / x / y};
-      // A rank without bricks helps nobody: as many boxes with bricks as possible, then the smallest cuts.
+      // A rank without bricks is idle: as many non-empty boxes as possible, then the smallest cuts.
       std::int64_t used = 1;
       for (std::size_t a = 0; a < 3; ++a) used *= std::min<std::int64_t>(p[a], n[a]);
       const double area = (p[0] - 1) * double(n[1]) * n[2] + (p[1] - 1) * double(n[0]) * n[2] +
@@ -75,10 +75,10 @@ UniformBoxes boxes_of_bricks(std::span<const BrickCount> bricks, int ranks) {
 
 namespace {
 
-// Doubles: sums of weights may pass the largest integer.
+// Doubles: sums of weights may overflow integers.
 double weight_of(const BrickCount& b) { return std::max(1.0, static_cast<double>(b.particles)); }
 
-/// Largest sum of weights that one rank gets, over the mean.
+/// Largest sum of weights of any rank, over the mean.
 double imbalance(std::span<const BrickCount> bricks, std::span<const std::int32_t> owner, int ranks) {
   std::vector<double> sum(static_cast<std::size_t>(ranks));
   for (std::size_t i = 0; i < bricks.size(); ++i)
@@ -87,7 +87,7 @@ double imbalance(std::span<const BrickCount> bricks, std::span<const std::int32_
   return *std::max_element(sum.begin(), sum.end()) * ranks / total;
 }
 
-/// The graph of bricks in the form that METIS reads: neighbours of i are adjacent[begin[i]] to
+/// The graph of bricks in METIS's format: neighbours of i are adjacent[begin[i]] to adjacent[begin[i+1]-1].
 /// adjacent[begin[i+1]-1].
 struct Graph {
   std::vector<idx_t> begin, adjacent, shared, weight;
@@ -142,7 +142,7 @@ std::vector<std::int32_t> metis(Method method, Graph& graph, int ranks) {
   std::array<idx_t, METIS_NOPTIONS> options{};
   METIS_SetDefaultOptions(options.data());
   options[METIS_OPTION_SEED] = 1;
-  options[METIS_OPTION_UFACTOR] = 10;  // at most 1 % above the mean, where it can
+  options[METIS_OPTION_UFACTOR] = 10;  // at most 1 % above the mean, where possible
   options[METIS_OPTION_NCUTS] =
       graph.weight.size() < many_bricks ? 8 : 1;  // attempts, of which it keeps the best
   auto vertices = static_cast<idx_t>(graph.weight.size());
@@ -198,7 +198,7 @@ std::vector<std::int32_t> split_graph(std::span<const BrickCount> bricks, const 
   std::optional<Graph> graph = graph_of(bricks, shape);
   if (!graph) return best;
 
-  // Balance counts down to the tolerance, then the nodes that travel.
+  // First the imbalance beyond the tolerance, then the number of shared nodes.
   const auto price = [&](std::span<const std::int32_t> owner) {
     return std::pair(std::max(imbalance(bricks, owner, ranks), tolerance), cut(*graph, owner));
   };

@@ -1,5 +1,5 @@
-// What one rank does for all: read a file, check it, write it. All ranks go on with the same result, or leave
-// together with the same error.
+// Work of one rank for all: reading, checking or writing a file. All ranks continue with the same result, or
+// throw the same error.
 #pragma once
 
 #include <array>
@@ -29,7 +29,8 @@ std::string bytes_of(const T& value) {
   if constexpr (std::is_same_v<T, std::string>) {
     return value;
   } else {
-    static_assert(std::is_trivially_copyable_v<T>, "only plain data and std::string travel between ranks");
+    static_assert(std::is_trivially_copyable_v<T>,
+                  "only plain data and std::string can be sent between ranks");
     return std::string(reinterpret_cast<const char*>(&value), sizeof(T));
   }
 }
@@ -45,7 +46,7 @@ T value_from(std::string bytes) {
   }
 }
 
-// The first letter of what is broadcast.
+// First letter of the broadcast text.
 inline constexpr char is_value = 'v', is_input_errors = 'i', is_other = 'x', is_first_kept = 'A';
 
 template <class... Kept>
@@ -66,10 +67,10 @@ template <class... Kept>
 
 }  // namespace detail
 
-/// Run f() on rank 0 and return its result, a std::string, plain data or nothing, on every rank. If it
-/// throws, every rank throws: InputErrors as they are; those of the types `Kept`, each made from its text;
-/// anything else as a std::runtime_error with the same text. std::bad_alloc is thrown on rank 0 alone, while
-/// the others wait: the answer is abort(). Collective.
+/// Runs f() on rank 0 and returns its result, a std::string, plain data or nothing, on every rank. If it
+/// throws, every rank throws: InputErrors unchanged; the types `Kept`, each made from its text; anything else
+/// as a std::runtime_error with the same text. std::bad_alloc is thrown on rank 0 alone, while the others
+/// wait: the caller must call abort(). Collective.
 template <class... Kept, class F>
 auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&> {
   using Result = std::invoke_result_t<F&>;
@@ -85,7 +86,7 @@ auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&>
     } catch (const core::InputErrors& e) {
       message = detail::is_input_errors + detail::to_bytes(e);
     } catch (const std::bad_alloc&) {
-      throw;  // there may be no memory for a message either: the program ends every rank
+      throw;  // memory may not suffice for a message either: the program ends every rank
     } catch (const std::exception& e) { message = detail::letter_of<Kept...>(e) + std::string(e.what()); }
   }
   message = broadcast(comm, std::move(message));

@@ -67,13 +67,13 @@ Communicator::Communicator(Communicator&& other) noexcept
       exceptions_(other.exceptions_) {}
 
 Communicator::~Communicator() {
-  // Freeing is collective; a rank that unwinds alone would wait here for ever.
+  // Freeing is collective; a rank that unwinds alone would wait here forever.
   if (handle_ != MPI_COMM_NULL && std::uncaught_exceptions() <= exceptions_) MPI_Comm_free(&handle_);
 }
 
 namespace {
 
-/// f(part) for the parts of a list that have `longest` bytes at most.
+/// f(part) for the parts of a list, each at most `longest` bytes.
 template <class T, class F>
 void for_each_part(std::span<T> list, std::size_t longest, F f) {
   const std::size_t most = std::max(longest / sizeof(T), std::size_t{1});

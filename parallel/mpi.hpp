@@ -1,6 +1,6 @@
-// Thin owners over MPI: the library's life, a communicator, persistent messages. Every return code is
-// checked. Sizes are 64-bit on this side, MPI counts with an int: long messages are cut into pieces. The
-// length of a piece is an argument of the calls that cut, so that tests can do it with short messages.
+// Thin owners over MPI: the library's lifetime, a communicator, persistent messages. Every return code is
+// checked. Sizes are 64-bit here, MPI counts with an int: long messages are split into pieces. The length of
+// a piece is an argument, so that tests can split short messages.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,7 @@
 
 namespace mpm::parallel {
 
-/// A call of MPI that failed, perhaps on this rank alone: the others may be waiting, so the answer is
-/// abort().
+/// A failed MPI call, perhaps on this rank alone: the others may be waiting, so the caller must call abort().
 class MpiError : public std::runtime_error {
  public:
   MpiError(const char* function, int code);
@@ -27,14 +26,14 @@ inline constexpr std::size_t longest_piece = std::size_t{1} << 30;
 
 /// Throws MpiError unless `code` is MPI_SUCCESS.
 void check(int code, const char* function);
-/// `n` as MPI counts; throws std::length_error if it is too large.
+/// `n` as an MPI count; throws std::length_error if it is too large.
 int count_of(std::size_t n);
 
-/// End every rank of the run at once. For bugs, and for errors that the ranks have not agreed on.
+/// Ends every rank of the run at once. For bugs, and for errors that the ranks have not agreed on.
 [[noreturn]] void abort(int exit_code);
 
-/// MPI from start to end of main: the first thing in it and the last to go. An exception that passes it ends
-/// every rank, because the other ranks may be waiting for this one.
+/// Owns MPI for the duration of main: constructed first, destroyed last. An exception that leaves its scope
+/// ends every rank, because the other ranks may be waiting for this one.
 class Environment {
  public:
   /// Starts MPI for calls from the main thread only.
@@ -44,8 +43,7 @@ class Environment {
   Environment& operator=(const Environment&) = delete;
 };
 
-/// What every rank gave, one after the other in the order of ranks; that of rank r is [begin[r], begin[r +
-/// 1]).
+/// The contributions of all ranks, concatenated in rank order; that of rank r is [begin[r], begin[r + 1]).
 template <class T>
 struct Gathered {
   std::vector<T> items;
@@ -58,9 +56,9 @@ struct Gathered {
 
 class Communicator {
  public:
-  /// A communicator of its own over all ranks. Collective.
+  /// A new communicator over all ranks. Collective.
   static Communicator world();
-  /// The same ranks, messages apart from this one's. Collective.
+  /// The same ranks, with messages separate from this one's. Collective.
   Communicator duplicate() const { return Communicator(handle_); }
 
   Communicator(Communicator&& other) noexcept;
@@ -75,13 +73,14 @@ class Communicator {
   void reduce(std::span<double> values, MPI_Op op, std::size_t longest = longest_piece) const;
   /// Collective.
   void reduce(std::span<std::int64_t> values, MPI_Op op, std::size_t longest = longest_piece) const;
-  /// In place on every rank what `root` holds. Collective.
+  /// Copies `root`'s bytes to every rank, in place. Collective.
   void broadcast(std::span<std::byte> bytes, int root = 0, std::size_t longest = longest_piece) const;
 
-  /// Append what `rank` sends next with Requests::send_unannounced and the same `longest`. Waits for it.
+  /// Appends what `rank` sends next with Requests::send_unannounced and the same `longest`. Blocks until it
+  /// arrives.
   void receive_onto(std::vector<double>& data, int rank, int tag, std::size_t longest = longest_piece) const;
 
-  /// Every rank's list to every rank. Collective.
+  /// Every rank's list to all ranks. Collective.
   template <class T>
   Gathered<T> all_gather(std::span<const T> mine, std::size_t longest = longest_piece) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -92,8 +91,8 @@ class Communicator {
     return all;
   }
 
-  /// Stretch [begin[r], begin[r + 1]) of `send` goes to rank r; what arrives is put in the order of ranks.
-  /// Messages are cut at `longest` bytes. Collective.
+  /// Sends the part [begin[r], begin[r + 1]) of `send` to rank r; received data are stored in rank order.
+  /// Messages are split at `longest` bytes. Collective.
   template <class T>
   std::vector<T> all_to_all(std::span<const T> send, std::span<const std::size_t> begin,
                             std::size_t longest = longest_piece) const {
@@ -117,15 +116,15 @@ class Communicator {
   MPI_Comm handle_ = MPI_COMM_NULL;
   int rank_ = 0;
   int size_ = 1;
-  int exceptions_ = 0;  ///< in flight when made; while more are, the handle is left to the end of the run
+  int exceptions_ = 0;  ///< active at construction; if more are at destruction, the handle is not freed
 };
 
-/// Messages on their way. Their buffers stay as they are until wait_all() returns.
+/// Pending messages. Their buffers must not change until wait_all() returns.
 class Requests {
  public:
   void send(const Communicator& comm, const void* data, std::size_t bytes, int rank, int tag);
   void receive(const Communicator& comm, void* data, std::size_t bytes, int rank, int tag);
-  /// To a rank that does not know how much comes: pieces of `longest` bytes and a shorter last one.
+  /// To a rank that does not know the length: pieces of `longest` bytes and a shorter last one.
   void send_unannounced(const Communicator& comm, const void* data, std::size_t bytes, int rank, int tag,
                         std::size_t longest = longest_piece);
   void wait_all();
@@ -134,7 +133,7 @@ class Requests {
   std::vector<MPI_Request> requests_;
 };
 
-/// Messages of fixed place and length, set up once and sent again and again.
+/// Messages of fixed buffer and length, set up once and sent repeatedly.
 class PersistentRequests {
  public:
   PersistentRequests() = default;
@@ -147,14 +146,14 @@ class PersistentRequests {
     return *this;
   }
 
-  /// Each adds one request, numbered from 0 on.
+  /// Each adds one request, numbered from 0.
   void add_send(const Communicator& comm, const double* data, std::size_t n, int rank, int tag);
   void add_receive(const Communicator& comm, double* data, std::size_t n, int rank, int tag);
 
   std::size_t size() const { return requests_.size(); }
   void start(std::size_t i);
   void start_all();
-  /// Number of a request that has arrived, or -1 if none is under way.
+  /// Number of a completed request, or -1 if none is active.
   int wait_any();
   void wait_all();
 

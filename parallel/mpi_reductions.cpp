@@ -9,7 +9,7 @@ namespace mpm::parallel {
 
 namespace {
 
-// Doubles as integers of the same order, so that MPI_MIN need not know about NaN: it is below everything.
+// Maps doubles to integers of the same order, for MPI_MIN; NaN is mapped to the smallest.
 constexpr std::int64_t not_a_number = std::numeric_limits<std::int64_t>::min();
 
 std::int64_t ordered(double x) {
@@ -57,7 +57,7 @@ void MpiReductions::sum(std::span<core::ExactSum> values) {
 }
 
 core::StepStatus MpiReductions::combine(const core::StepStatus& mine) {
-  // One message: the smallest step, and of each flag the smallest "not so".
+  // One message: the smallest step, and the minimum of each negated flag.
   std::array<std::int64_t, 4> keys{ordered(mine.stable_step), !mine.needs_bricks, !mine.failed, !mine.stop};
   comm_.reduce(keys, MPI_MIN);
   return {from_ordered(keys[0]), keys[1] == 0, keys[2] == 0, keys[3] == 0};

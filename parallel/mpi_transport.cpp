@@ -18,7 +18,7 @@ constexpr int tag_migrate = 3;
 
 [[noreturn]] void throw_lost(const MigrationBuffer::Head& head, const std::string& why) {
   const BrickCoord to = head.to;
-  throw std::logic_error("a particle of body " + std::to_string(head.body) + " travels to brick (" +
+  throw std::logic_error("a particle of body " + std::to_string(head.body) + " migrates to brick (" +
                          std::to_string(to.x) + ", " + std::to_string(to.y) + ", " + std::to_string(to.z) +
                          "), which " + why);
 }

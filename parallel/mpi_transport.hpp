@@ -1,4 +1,4 @@
-// core::ParticleTransport over MPI: particles go to the ranks next to this one only, except in scatter().
+// core::ParticleTransport over MPI: particles are sent to neighbouring ranks only, except in scatter().
 #pragma once
 
 #include "core/communication/brick_directory.hpp"
@@ -10,7 +10,7 @@ namespace mpm::parallel {
 
 class MpiTransport final : public core::ParticleTransport {
  public:
-  /// `halo` knows the ranks next to this one.
+  /// `halo` knows the neighbouring ranks.
   MpiTransport(const Communicator& comm, const core::BrickDirectory& bricks, MpiHalo& halo)
       : comm_(comm), bricks_(bricks), halo_(halo) {}
 

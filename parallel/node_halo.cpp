@@ -20,7 +20,7 @@ constexpr int tag_halo = 2;
 
 using NodeSet = std::bitset<NodeBlockShape{core::most_halo}.nodes()>;
 
-/// Nodes of a brick's array that the array of its neighbour number n holds too.
+/// Nodes of a brick's node block that the block of its neighbour number n also contains.
 std::array<NodeSet, core::neighbourhood> shared_sets(const NodeBlockShape& shape) {
   const auto shares = [&](int node, std::int32_t offset) {
     if (offset < 0) return node <= shape.halo;
@@ -62,7 +62,7 @@ std::vector<Slot> by_key(int first, int last, CoordOf coord_of) {
   return slots;
 }
 
-/// copy(place in the message, record's components) for every node of the list, Count doubles each.
+/// copy(position in the message, record's components) for every node of the list, Count doubles each.
 template <int Count, class Records, class Copy>
 void for_each_node(const NodeList& list, Records records, int width, Copy copy) {
   std::size_t at = 0;
@@ -91,7 +91,7 @@ void unpack(BrickGrid& grid, const NodeList& list, NodeFields fields, const doub
       [&](std::size_t at, double* node) { std::copy_n(message + at, Count, node); });
 }
 
-/// What no neighbour sends is zero.
+/// Nodes that no neighbour sends are zero.
 void clear_ghosts(BrickGrid& grid) {
   for (const NodeArray of : core::node_arrays) {
     if (!grid.arrays().has(of)) continue;
@@ -102,7 +102,7 @@ void clear_ghosts(BrickGrid& grid) {
   }
 }
 
-/// f with the constant `count`: copies of a length that the compiler knows.
+/// f with `count` as a compile-time constant, so that copies have a fixed length.
 template <int Count = core::node_doubles, class F>
 void with_count(int count, F f) {
   if constexpr (Count > 0) {
@@ -148,11 +148,11 @@ std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const core::BrickD
 
 void MpiHalo::update(const BrickGrid& grid) {
   if (planned_grid_ == &grid && planned_revision_ == grid.revision()) return;
-  if (under_way_) throw std::logic_error("the set of bricks changed while a halo exchange was under way");
+  if (under_way_) throw std::logic_error("the set of bricks changed during a halo exchange");
   planned_grid_ = &grid;
   planned_revision_ = grid.revision();
   partners_ = halo_partners(grid, directory_);
-  // Requests point into the buffers and go first.
+  // Requests refer to the buffers and are destroyed first.
   for (auto& r : sends_) r = {};
   for (auto& r : receives_) r = {};
   outgoing_.assign(partners_.size(), {});
@@ -180,7 +180,7 @@ void MpiHalo::begin(BrickGrid& grid, NodeFields fields) {
   const int count = fields.count;
   if (!grid.arrays().has(fields.array) || fields.first < 0 || count < 1 ||
       fields.end() > core::record_doubles(fields.array)) {
-    throw std::logic_error("a halo exchange of components that a node does not have");
+    throw std::logic_error("a halo exchange of components beyond a node's record");
   }
   update(grid);
   if (!ghosts_are_clear_) clear_ghosts(grid);
@@ -197,7 +197,7 @@ void MpiHalo::begin(BrickGrid& grid, NodeFields fields) {
 }
 
 void MpiHalo::end(BrickGrid& grid) {
-  if (!under_way_) throw std::logic_error("a halo exchange was ended that had not begun");
+  if (!under_way_) throw std::logic_error("a halo exchange was ended before it began");
   const NodeFields fields = *under_way_;
   with_count(fields.count, [&](auto constant) {
     for (int p = receives(constant).wait_any(); p >= 0; p = receives(constant).wait_any()) {

@@ -1,8 +1,9 @@
-// The exchange of contributions at the nodes that bricks of several ranks share: one message to each
-// neighbouring rank, its place and length settled when the set of bricks changes.
+// Exchange of contributions to the nodes that bricks of several ranks share: one message to each neighbouring
+// rank; its buffer and length are fixed when the set of bricks changes.
 //
 // For every brick of ours and every neighbouring rank, the nodes that it shares with any brick of that rank
-// travel; the receiver derives the same list from its ghosts. Bricks go by key, the nodes of each by index.
+// are sent; the receiver derives the same list from its ghosts. Bricks are ordered by key, the nodes of each
+// by index.
 #pragma once
 
 #include <array>
@@ -17,19 +18,19 @@
 
 namespace mpm::parallel {
 
-/// Nodes of several bricks in the order in which they stand in a message.
+/// Nodes of several bricks in the order of a message.
 struct NodeList {
   struct Piece {
     core::Slot slot = core::no_slot;
     std::uint32_t begin = 0, end = 0;  ///< in `nodes`
   };
   std::vector<Piece> pieces;
-  std::vector<std::uint16_t> nodes;  ///< index in the brick's array
+  std::vector<std::uint16_t> nodes;  ///< index in the brick's node block
 
   std::size_t size() const { return nodes.size(); }
 };
 
-/// What goes to and comes from one neighbouring rank.
+/// Nodes sent to and received from one neighbouring rank.
 struct HaloPartner {
   int rank = 0;
   NodeList send;     ///< from owned slots
@@ -44,7 +45,7 @@ class MpiHalo final : public core::NodeHalo {
   MpiHalo(const Communicator& comm, const core::BrickDirectory& directory)
       : comm_(comm), directory_(directory) {}
 
-  /// The ranks with bricks next to ours, ascending. No communication.
+  /// The ranks with bricks next to ours, in ascending order. No communication.
   const std::vector<HaloPartner>& partners(const core::BrickGrid& grid) {
     update(grid);
     return partners_;

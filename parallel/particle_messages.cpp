@@ -15,8 +15,8 @@ static_assert(head_doubles * sizeof(double) == sizeof(MigrationBuffer::Head));
 
 std::size_t columns(std::span<const int> columns_of, std::int32_t body) {
   if (body < 0 || static_cast<std::size_t>(body) >= columns_of.size()) {
-    throw std::logic_error("a particle travels whose body number " + std::to_string(body) +
-                           " does not exist");
+    throw std::logic_error("a migrating particle has the body number " + std::to_string(body) +
+                           ", which does not exist");
   }
   return static_cast<std::size_t>(columns_of[static_cast<std::size_t>(body)]);
 }
@@ -51,7 +51,7 @@ MigrationBuffer unpack(std::vector<double> data, std::span<const int> columns_of
     const bool has_head = at + head_doubles <= data.size();
     if (has_head) std::memcpy(static_cast<void*>(&head), data.data() + at, sizeof head);
     const std::size_t end = at + head_doubles + (has_head ? columns(columns_of, head.body) : 0);
-    if (end > data.size()) throw std::logic_error("a message of travelling particles ends within a particle");
+    if (end > data.size()) throw std::logic_error("a message of migrating particles ends within a particle");
     particles.heads.push_back(head);
     particles.offsets.push_back(at + head_doubles);
     at = end;

@@ -1,5 +1,5 @@
-// Particles as they cross ranks: all that go to one rank lie one after the other, each its head, in two
-// doubles, and its columns. What arrives is read in place: the message becomes the buffer's columns.
+// Messages of migrating particles: those for one rank are stored consecutively, each as its head, in two
+// doubles, and its columns. Received messages are read in place: the message becomes the buffer's columns.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@ namespace mpm::parallel {
 
 struct ParticleMessages {
   std::vector<double> data;
-  std::vector<std::size_t> begin;  ///< destination d gets [begin[d], begin[d + 1]) of `data`
+  std::vector<std::size_t> begin;  ///< [begin[d], begin[d + 1]) of `data` is for destination d
   std::span<const double> of(std::size_t destination) const {
     return std::span(data).subspan(begin[destination], begin[destination + 1] - begin[destination]);
   }
 };
 
-/// `destination[i]`, below `destinations`, is where particle i goes.
+/// `destination[i]`, below `destinations`, is the destination of particle i.
 ParticleMessages pack(const core::MigrationBuffer& particles, std::span<const std::uint32_t> destination,
                       std::size_t destinations, std::span<const int> columns_of);
 
-/// The particles in `data`. Throws std::logic_error where `data` is not what pack() makes.
+/// The particles in `data`. Throws std::logic_error where pack() cannot have made `data`.
 core::MigrationBuffer unpack(std::vector<double> data, std::span<const int> columns_of);
 
 }  // namespace mpm::parallel

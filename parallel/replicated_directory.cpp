@@ -30,7 +30,7 @@ void for_each_neighbour(BrickCoord b, F f) {
 }  // namespace
 
 std::vector<BrickCount> ReplicatedDirectory::merged(std::span<const BrickCount> counts) const {
-  // Each brick's counts meet on one rank first, so that no rank holds what all ranks found in one brick.
+  // Each brick's counts are combined on one rank first, so that no rank stores the counts of all ranks.
   const auto ranks = static_cast<std::size_t>(comm_.size());
   const auto meeting = [&](const BrickCount& c) {
     return (core::key_of(c.brick) * 0x9e3779b97f4a7c15u >> 32) % ranks;
@@ -104,7 +104,7 @@ bool ReplicatedDirectory::touches_mine(BrickCoord b) const {
   return touches;
 }
 
-/// Bring the grid in line with the directory, in which bricks were added or removed, not both.
+/// Updates the grid after bricks were added to or removed from the directory, not both.
 void ReplicatedDirectory::refresh(BrickGrid& grid, std::span<const BrickCoord> changed) {
   const bool concerned = std::any_of(changed.begin(), changed.end(), [&](BrickCoord b) {
     return grid.find(b) != core::no_slot || touches_mine(b);
@@ -155,7 +155,7 @@ void ReplicatedDirectory::activate(BrickGrid& grid, std::span<const BrickCoord> 
   const Gathered<BrickCoord> asked = comm_.all_gather(std::span<const BrickCoord>(unknown));
   if (asked.items.empty()) return;
 
-  std::vector<std::pair<BrickCoord, std::int32_t>> requests;  // brick, asker
+  std::vector<std::pair<BrickCoord, std::int32_t>> requests;  // brick, requesting rank
   for (std::int32_t r = 0; r < comm_.size(); ++r) {
     for (const BrickCoord b : asked.of(r)) requests.emplace_back(b, r);
   }
@@ -173,7 +173,7 @@ void ReplicatedDirectory::activate(BrickGrid& grid, std::span<const BrickCoord> 
 void ReplicatedDirectory::deactivate(BrickGrid& grid, std::span<const BrickCoord> empty) {
   for (const BrickCoord b : empty) {
     if (!mine(b) || grid.brick(grid.find(b)).particles() > 0) {
-      throw std::logic_error("a brick is deactivated that holds particles or is another rank's");
+      throw std::logic_error("cannot deactivate a brick that holds particles or belongs to another rank");
     }
   }
   const std::vector<BrickCoord> removed = comm_.all_gather(empty).items;

@@ -1,8 +1,9 @@
-// core::BrickDirectory where every rank knows the owner of every brick: 16 bytes a brick of the run on each
-// rank. Ranks without a brick take part like any other.
+// core::BrickDirectory in which every rank stores the owner of every brick: 16 bytes per brick of the run on
+// each rank. Ranks without bricks participate like any other.
 //
-// A brick that a particle is the first to enter goes to the rank that shares most nodes with it (the lowest
-// of several), or, in a uniform decomposition, to the rank of its box. No result of the run depends on who
+// A brick that its first particle enters is assigned to the rank that shares most nodes with it (the lowest
+// on ties), or, in a uniform decomposition, to the rank of its box. No result of the run depends on the
+// assignment.
 // owns what.
 #pragma once
 

@@ -1,7 +1,7 @@
 #pragma once
-// Block: particles at the centres of cubes of edge dp, counted from the corner (x0, y0, z0).
-// Along each axis stand round(l/dp) particles, at least one; where l is no multiple of dp the spacing stays
-// dp and the block that they fill is longer or shorter than l by up to half a spacing.
+// Block: particles at the centres of cubes of edge dp, starting at the corner (x0, y0, z0).
+// Along each axis there are round(l/dp) particles, at least one; where l is no multiple of dp the spacing
+// stays dp, and the filled block is longer or shorter than l by up to half a spacing.
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,7 @@
 #pragma once
-// Bool subtract: the particles of body A that do not lie within body B (inside.hpp says what counts as
-// within). Identities and units are A's; density is the Bool body's, so that A's point masses stay and their
-// volumes follow. A and B stand where their own work planes put them; a work plane of the Bool body moves the
-// result.
+// Bool subtract: the particles of body A outside body B (inside.hpp defines inside). Identities and units are
+// A's; density is the Bool body's, so that A's point masses are kept and their volumes follow. A and B are
+// placed by their own work planes; a work plane of the Bool body moves the result.
 
 #include <cstdint>
 #include <limits>

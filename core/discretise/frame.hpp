@@ -1,6 +1,6 @@
 #pragma once
-// Between a body's work plane and the global frame. Axes along the global ones bring no round-off but that of
-// the one addition of the origin.
+// Transformation between a body's work plane and the global frame. With axes along the global ones the only
+// round-off is that of adding the origin.
 
 #include <array>
 

@@ -1,8 +1,8 @@
 #pragma once
-// Layers whose thickness grows by one factor from layer to layer, exactly from `bottom` to `top`. Their
-// number is the one with which they fill the height best; like a block's, a stack of whole layers is longer
-// or shorter than the height by up to half a layer. With bottom = top this is the uniform stack of
-// round(height/spacing) layers.
+// Layers whose thickness grows by a constant factor per layer, exactly from `bottom` to `top`. Their number
+// is the one that fits the height best; as with a block, a stack of whole layers is longer or shorter than
+// the height by up to half a layer. With bottom = top this is the uniform stack of round(height/spacing)
+// layers.
 
 namespace mpm::core {
 
@@ -12,7 +12,7 @@ class Grading {
   Grading(double bottom, double top, double height);
 
   bool uniform() const { return log_ratio_ == 0; }
-  double layers() const { return layers_; }  ///< whole number of any size, >= 1
+  double layers() const { return layers_; }  ///< integer of any size, >= 1
   double thickness(double k) const;          ///< of layer k, counted from 0
   double lower(double k) const;              ///< height of layer k's lower face; k = layers: of the top
 

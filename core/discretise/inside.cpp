@@ -53,7 +53,7 @@ InsideTest inside_revolved(const Revolved& solid, const Frame& frame) {
   };
 }
 
-/// Points in cubes of a hash, to be asked for neighbours within a distance.
+/// Points hashed into cubes, for neighbour searches within a distance.
 class PointCloud {
  public:
   PointCloud(const std::vector<Seed>& seeds, double cube) : cube_(cube) {
@@ -61,7 +61,7 @@ class PointCloud {
   }
 
   bool any_within(const Position& position, double distance) const {
-    // More cubes than points: of points that are far denser than the particles that ask.
+    // More cubes than points: the points are far denser than the querying particles.
     if (std::pow(2 * distance / cube_ + 1, 3) > static_cast<double>(points_.size()))
       return std::ranges::any_of(points_, [&](const auto& p) { return near(p.second, position, distance); });
     const auto reach = static_cast<std::int64_t>(std::ceil(distance / cube_));

@@ -1,8 +1,8 @@
 #pragma once
 // Round shapes cut out of orthogonal lattices: layers along local Z, each a square lattice of its own spacing
 // with points at the odd multiples of half the spacing from the axis. A point (2i + 1, 2j + 1) of a layer
-// belongs to the shape when the sum of the squares lies between two whole numbers; with that, nothing depends
-// on round-off and the mirror images of a point have its very coordinates. A particle's volume is spacing^3.
+// belongs to the shape when its sum of squares is between two integers; so nothing depends on round-off, and
+// mirrored points have exactly mirrored coordinates. A particle's volume is spacing^3.
 
 #include <array>
 #include <cstdint>
@@ -27,8 +27,8 @@ class LayeredLattice : public RowSource {
   /// centre: of all layers, local frame. Spans of layers follow with set_layers.
   LayeredLattice(const Position& centre, double angle, const Frame& frame, double density);
 
-  /// layers, half_columns: whole numbers of any size; half_columns: points from the axis to the widest
-  /// layer's rim.
+  /// layers, half_columns: integers of any size; half_columns: points from the axis to the rim of the widest
+  /// layer.
   void set_layers(double layers, double half_columns);
 
   const Position& centre() const { return centre_; }

@@ -1,18 +1,18 @@
 #pragma once
-// Whole-number arithmetic on which the lattices' exact symmetry rests.
+// Integer arithmetic that makes the lattices exactly symmetric.
 
 #include <cmath>
 #include <cstdint>
 
 namespace mpm::core {
 
-/// Relative tolerance with which a particle on a boundary counts as inside: far above the round-off of an
-/// input's decimal numbers, far below anything seen in a result, and free of units.
+/// Relative tolerance within which a particle on a boundary counts as inside: far above the round-off of
+/// decimal input, far below any effect on results, and dimensionless.
 inline constexpr double on_boundary = 1e-9;
 
 /// Coordinates origin + half * odd, half being half a spacing. Where the origin itself is a multiple of
-/// `half` (to 1e-9 of it) both go through one whole number: a body symmetric about zero then has mirror
-/// images to the last bit, and bodies that share a lattice share its coordinates.
+/// `half` (to 1e-9 of it) both are combined in one integer: a body symmetric about zero is then bitwise
+/// symmetric, and bodies that share a lattice share its coordinates.
 class LatticeLine {
  public:
   LatticeLine(double origin, double spacing) : origin_(origin), half_(spacing / 2) {
@@ -35,7 +35,7 @@ double odd(Integer i) {
   return static_cast<double>(2 * i + 1);
 }
 
-/// Nearest whole number of spacings in a length, at least 1.
+/// Nearest integer number of spacings in a length, at least 1.
 inline double whole_count(double length, double spacing) {
   return std::fmax(1, std::floor(length / spacing + 0.5));
 }
@@ -49,7 +49,7 @@ inline std::int64_t whole_root(std::int64_t n) {
   return r;
 }
 
-/// Number of odd whole numbers a > 0 with a * a <= n.
+/// Number of odd integers a > 0 with a * a <= n.
 inline std::int64_t odd_roots(std::int64_t n) { return (whole_root(n) + 1) / 2; }
 
 }  // namespace mpm::core

@@ -17,7 +17,7 @@ namespace {
 
 using Source = std::unique_ptr<SeedSource>;
 
-/// Makes a source from the alternative that a body holds.
+/// Creates a source for the geometry that a body holds.
 struct Maker {
   const Scene& scene;
   const BodyInput& body;

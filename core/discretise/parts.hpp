@@ -1,5 +1,5 @@
 #pragma once
-// The bodies that a body is made of: itself and, where it is a Bool body, its operands and theirs.
+// The bodies from which a body is made: itself and, for a Bool body, its operands and theirs.
 
 #include <cstddef>
 #include <string>
@@ -12,8 +12,8 @@ namespace mpm::core {
 
 class Parts {
  public:
-  /// Shapes that a body may be made of, each counted as often as it is used. Keeps the depth of a Bool body
-  /// and the work per particle within bounds.
+  /// Limit on the shapes of a body, each counted as often as it is used. Bounds the depth of a Bool body and
+  /// the work per particle.
   static constexpr double most_shapes = 1000;
 
   Parts(const Scene& scene, const BodyInput& body);
@@ -23,11 +23,11 @@ class Parts {
   /// Number of shapes in the expression of the body, each counted as often as it is used.
   double shapes() const { return shapes_; }
   bool too_many() const { return shapes_ > most_shapes || cut_; }
-  /// The names on the way from the body through its operands back to itself; empty where there is none.
+  /// The names on the path from the body through its operands back to itself; empty if there is none.
   const std::vector<std::string>& circle() const { return circle_; }
-  /// Whether the way back starts with the subtracted body.
+  /// Whether the path starts with the subtracted body.
   bool circle_by_subtrahend() const { return circle_by_subtrahend_; }
-  /// No operand is missing, no body is made of itself, and there are not too many shapes.
+  /// True if no operand is missing, no body is made of itself, and there are not too many shapes.
   bool whole() const { return !missing_ && !circular_ && !too_many(); }
 
  private:
@@ -35,7 +35,7 @@ class Parts {
 
   const Scene& scene_;
   std::vector<const BodyInput*> bodies_;
-  std::unordered_map<const BodyInput*, double> seen_;  ///< shapes; 0 while they are counted
+  std::unordered_map<const BodyInput*, double> seen_;  ///< shapes; 0 while being counted
   std::vector<const BodyInput*> path_;
   std::vector<std::string> circle_;
   double shapes_ = 0;

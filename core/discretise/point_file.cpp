@@ -19,7 +19,7 @@ constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
 ParsedLine wrong(std::string message) { return {LineKind::wrong, {}, std::move(message)}; }
 
-/// Control characters of a file that is no text must not reach the terminal.
+/// Control characters of a binary file must not reach the terminal.
 std::string printable(std::string_view word) {
   std::string text(word.substr(0, 40));
   for (char& c : text)
@@ -104,7 +104,7 @@ bool PointFile::next(std::string_view& line) {
 }
 
 void PointFile::seek(const LinePlace& place) {
-  // What is in the buffer need not be read again.
+  // Skips the part already in the buffer.
   const std::int64_t ahead = place.offset - following_.offset;
   if (ahead >= 0 && static_cast<std::uint64_t>(ahead) <= end_ - begin_) {
     begin_ += static_cast<std::size_t>(ahead);

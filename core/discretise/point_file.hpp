@@ -1,6 +1,6 @@
 #pragma once
-// The lines of a text file of particles, plain or gzipped: mass x y z, separated by blanks. Empty lines are
-// skipped, and what follows a # or !. Reads in blocks; remembers nothing of what it has passed.
+// Lines of a text file of particles, plain or gzipped: mass x y z, separated by blanks. Empty lines and text
+// after # or ! are skipped. Reads in blocks; does not store what it has passed.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@ struct gzFile_s;
 
 namespace mpm::core {
 
-/// Where a line starts.
+/// Position where a line starts.
 struct LinePlace {
   std::int64_t offset = 0;  ///< in the unpacked text
   std::int64_t number = 1;  ///< of the line, from 1
@@ -21,7 +21,7 @@ struct LinePlace {
 
 class PointFile {
  public:
-  /// Longest line that is still taken for one of a particle.
+  /// Longest line accepted as a particle.
   static constexpr std::size_t longest_line = 4096;
 
   /// Throws std::runtime_error with the system's reason when the file cannot be opened.
@@ -30,7 +30,7 @@ class PointFile {
   /// The next line without its end; valid until the next call. False at the end of the file. Throws
   /// std::runtime_error on a read error, a damaged archive and lines that are too long.
   bool next(std::string_view& line);
-  /// Where the line returned last starts.
+  /// Start of the line returned last.
   const LinePlace& place() const { return place_; }
   /// Makes next() return the line at `place`. Going back in a gzipped file unpacks it from its start.
   void seek(const LinePlace& place);
@@ -55,7 +55,7 @@ enum class LineKind { point, blank, wrong };
 struct ParsedLine {
   LineKind kind = LineKind::blank;
   std::array<double, 4> values{};  ///< mass, x, y, z; finite, mass > 0
-  std::string message;             ///< what is wrong
+  std::string message;             ///< the error
 };
 
 ParsedLine parse_point_line(std::string_view line);

@@ -17,7 +17,7 @@ Diagnostic at_line(const std::string& path, std::int64_t line, std::string messa
   return {path, static_cast<int>(std::min(line, most)), {}, {}, {}, std::move(message)};
 }
 
-/// A fault about the file as a whole, at the place where the input names it.
+/// An error in the file as a whole, located where the input names it.
 InputErrors about_file(const std::string& path, const SourceLocation& body, std::string message) {
   return InputErrors({Diagnostic{body.file, body.line, "Geometry", "file", path, std::move(message)}});
 }

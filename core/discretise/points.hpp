@@ -1,7 +1,7 @@
 #pragma once
-// Particles given one by one. Positions are in the body's work plane; a particle's volume is its mass over
-// the body's density. Of a file every rank reads every line, because a gzipped one cannot be entered in its
-// middle, but keeps only the particles of its units.
+// Particles given individually. Positions are in the body's work plane; a particle's volume is its mass over
+// the body's density. Every rank reads every line of a file, because a gzipped one has no random access, but
+// keeps only the particles of its units.
 
 #include <cstdint>
 #include <mutex>
@@ -13,7 +13,7 @@
 
 namespace mpm::core {
 
-/// What both kinds share: a list of known length and total, in units of points_per_unit.
+/// Common part of both kinds: a list of known length and total, in units of points_per_unit.
 class PointList : public SeedSource {
  public:
   static constexpr std::uint64_t points_per_unit = 4096;

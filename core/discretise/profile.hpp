@@ -1,5 +1,6 @@
 #pragma once
-// Outlines of solids of revolution: radii over the height above the base. Both outlines are monotone in z.
+// Outlines of solids of revolution: radii as functions of the height above the base. Both outlines are
+// monotone in z.
 
 #include <memory>
 
@@ -13,12 +14,12 @@ class Profile {
   virtual double height() const = 0;
   virtual double inner(double z) const = 0;  ///< z in [0, height]
   virtual double outer(double z) const = 0;
-  /// Volume of the whole turn between two heights and between two fractions of the wall (0: the inner
-  /// surface, 1: the outer one). Volumes of adjoining pieces add up to the whole to round-off.
+  /// Volume of the full revolution between two heights and between two fractions of the wall (0: the inner
+  /// surface, 1: the outer one). Volumes of adjacent pieces add up to the whole to round-off.
   virtual double volume(double lower, double upper, double from, double to) const = 0;
 };
 
-/// A revolved solid as the input states it, whichever its outline.
+/// A solid of revolution from the input, with any outline.
 struct Revolved {
   Vec3<double> base{};  ///< centre of the base, local frame
   double bottom_spacing = 0;

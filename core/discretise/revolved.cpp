@@ -10,8 +10,7 @@ namespace mpm::core {
 
 namespace {
 
-/// Calls visit(first, last) for groups of consecutive layers, some hundred of them however many layers there
-/// are.
+/// Calls visit(first, last) for some hundred groups of consecutive layers, whatever the number of layers.
 template <class Visit>
 void for_groups(double layers, Visit&& visit) {
   constexpr double most = 512;

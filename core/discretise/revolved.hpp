@@ -1,10 +1,10 @@
 #pragma once
 // Particles of cylinders, cones, frustums and ogives: graded layers along local Z (grading.hpp), the radii of
-// a layer taken at its middle. Orthogonal: each layer a square lattice of the layer's own thickness
-// (lattice.hpp). Polar: the layers stretched evenly to fill the height; in each the wall cut into rings of
-// equal thickness close to the layer's, each ring into arcs of about the same length. A particle stands at
-// half the layer's height and at its arc's middle, at the radius of the cell's centroid, and has the cell's
-// volume; all cells together are the solid, to round-off.
+// a layer taken at its middle. Orthogonal: each layer is a square lattice of the layer's own thickness
+// (lattice.hpp). Polar: the layers are stretched evenly to fill the height; in each the wall is cut into
+// rings of equal thickness close to the layer's, each ring into arcs of about the same length. A particle is
+// at half the layer's height and at its arc's middle, at the radius of the cell's centroid, and has the
+// cell's volume; all cells together are the solid, to round-off.
 
 #include <cstdint>
 #include <vector>
@@ -48,7 +48,7 @@ class RingSource final : public RowSource {
   Sweep sweep_;
   Frame frame_;
   double density_;
-  std::uint64_t layer_rings_ = 1;  ///< rows per layer, the most that any has
+  std::uint64_t layer_rings_ = 1;  ///< rows per layer, maximum over the layers
 };
 
 }  // namespace mpm::core

@@ -1,7 +1,7 @@
 #pragma once
-// A source whose candidates stand in rows of one width: candidate number = row * width + column. The numbers
-// are the seeds' identities, and a unit is a run of consecutive candidates, so that needles, plates and long
-// rows all fall into pieces of one size.
+// A source whose candidates form rows of one width: candidate number = row * width + column. The numbers are
+// the seeds' identities, and a unit is a run of consecutive candidates, so that needles, plates and long rows
+// are all divided into pieces of one size.
 
 #include <cstdint>
 #include <vector>
@@ -21,7 +21,7 @@ class RowSource : public SeedSource {
   void generate(std::uint64_t first_unit, std::uint64_t last_unit, std::vector<Seed>& out) const final;
 
  protected:
-  /// Whole numbers of any size. Returns false, and leaves a source that cannot generate, when their product
+  /// Integers of any size. Returns false, and leaves a source that cannot generate, when their product
   /// reaches identity_limit. No row of candidates counts as none.
   bool set_extent(double rows, double width);
 

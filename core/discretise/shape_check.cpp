@@ -19,12 +19,12 @@ namespace mpm::core {
 
 namespace {
 
-/// No machine holds more particles; beyond it the spacing is a mistake.
+/// No machine can store more particles; a larger number means a wrong spacing.
 constexpr double most_particles = 0x1p48;
-/// Arc over base of an ogive: beyond it round-off takes the digits of its outline and its volumes.
+/// Arc over base of an ogive: above it round-off dominates its outline and volumes.
 constexpr double most_slender = 1000;
 
-/// Checks the numbers of one body, each alternative of Geometry by its own function.
+/// Checks the values of one body, each alternative of Geometry by its own function.
 class NumberCheck {
  public:
   explicit NumberCheck(const BodyInput& body) : body_(body) {
@@ -56,7 +56,7 @@ class NumberCheck {
   void angle(double value) {
     if (!(value > 0 && value <= 360)) report("angle", value, "expected a number in (0, 360]");
   }
-  /// The distance of particles: their volume and mass are numbers, and not 0.
+  /// The particle spacing: volume and mass of a particle must be finite and not 0.
   void spacing(std::string_view attribute, double value) {
     positive(attribute, value);
     if (!(value > 0)) return;
@@ -160,7 +160,7 @@ class NumberCheck {
       report("expand_direction", bars.expand_direction, "expected another axis than extend_direction");
   }
   template <class Geometry>
-  void check(const Geometry&) {}  // nothing beyond the ranges of its attributes, or nothing of its own (Bool)
+  void check(const Geometry&) {}  // no checks beyond the ranges of the attributes, or none of its own (Bool)
 
   const BodyInput& body_;
   bool dense_ = false;
@@ -184,11 +184,11 @@ bool placed(const Scene& scene, const BodyInput& body) {
                              });
 }
 
-/// What is wrong with the operands of a Bool body, by what they are.
+/// Checks the operands of a Bool body by their types.
 void check_operands(const Scene& scene, const BoolGeometry& difference, const Parts& parts,
                     std::vector<ShapeFault>& faults) {
   const auto check = [&](const char* attribute, BodyPlace place) {
-    if (place.component == BodyPlace{}.component) return;  // the reader knows no body of this name
+    if (place.component == BodyPlace{}.component) return;  // the reader found no body of this name
     const BodyInput& other = body_at(scene, place);
     const auto report = [&](std::string message) {
       faults.push_back({"Body", 0, attribute, other.name, std::move(message)});
@@ -212,7 +212,7 @@ void check_operands(const Scene& scene, const BoolGeometry& difference, const Pa
                                   Parts::most_shapes)});
 }
 
-/// Refuses a body no part of which can be in the grid.
+/// Rejects a body that is entirely outside the grid.
 void check_inside(const Scene& scene, const BodyInput& body, std::vector<ShapeFault>& faults) {
   const SolidBox box = solid_box(scene, body);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -247,7 +247,7 @@ ShapeFault nothing_left(const Scene& scene, const BodyInput& body) {
           "the body has no particles: its shape is smaller than their distance; expected a smaller distance"};
 }
 
-/// What the particles' lattice tells: whether there are too many, or none.
+/// Checks the particles' lattice: whether there are too many particles, or none.
 void check_lattice(const Scene& scene, const BodyInput& body, std::vector<ShapeFault>& faults) {
   if (const auto* block = std::get_if<HexahedronBlockGeometry>(&body.geometry))
     check_count("dp", block->spacing, BlockSource(*block, Frame(), body.density).expected_particles(),

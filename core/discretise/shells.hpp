@@ -1,8 +1,8 @@
 #pragma once
 // Particles of spheres in spherical shells: round((outer - inner)/dp) shells of equal thickness; each
-// hemisphere of a shell cut into bands of equal polar angle, each band into arcs of about dp. A particle
-// stands at its cell's centroid along each of r, cos(polar angle) and azimuth, and has its cell's volume; all
-// cells together are the solid, to round-off. Hemispheres and quadrants are mirror images to the last bit.
+// hemisphere of a shell is cut into bands of equal polar angle, each band into arcs of about dp. A particle
+// is at its cell's centroid along each of r, cos(polar angle) and azimuth, and has its cell's volume; all
+// cells together are the solid, to round-off. Hemispheres and quadrants are bitwise mirror images.
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Boxes around the shapes of bodies as the input states them: no particles are made.
+// Bounding boxes of the shapes of bodies from the input alone, without particles.
 
 #include <cmath>
 
@@ -20,8 +20,8 @@ struct SolidBox {
   }
 };
 
-/// In the global frame; of a Bool body the box around the one from which is subtracted. Empty for shapes that
-/// are read from files and for finite elements.
+/// In the global frame; for a Bool body the box of its minuend. Empty for shapes that are read from files and
+/// for finite elements.
 SolidBox solid_box(const Scene& scene, const BodyInput& body);
 
 }  // namespace mpm::core

@@ -9,7 +9,7 @@
 
 namespace mpm::core {
 
-/// Whole numbers [begin, end).
+/// Integers [begin, end).
 struct Span {
   std::int64_t begin = 0;
   std::int64_t end = 0;
@@ -24,14 +24,14 @@ class Sweep {
   bool only_positive_x() const { return degrees_ <= 90; }
   bool only_positive_y() const { return degrees_ <= 180; }
 
-  /// The i for which the lattice point (2i + 1, row) lies in the sweep; row is odd.
+  /// The i for which the lattice point (2i + 1, row) is in the sweep; row is odd.
   Span columns(std::int64_t row) const;
   bool contains(double x, double y) const;
   /// Box around the swept disc, between the heights given.
   Box box(double radius, double lower, double upper) const;
 
-  /// Number of nearly equal steps of about `spacing` along the arc at `radius`; a multiple of the quadrants
-  /// where the sweep is made of whole ones. Grows with radius/spacing.
+  /// Number of nearly equal steps of about `spacing` along the arc at `radius`; a multiple of the number of
+  /// quadrants where the sweep consists of whole ones. Grows with radius/spacing.
   double arc_count(double radius, double spacing) const;
   /// Cosine and sine at the middle of an arc's step, index < count.
   std::array<double, 2> arc_direction(std::uint64_t index, std::uint64_t count) const;

@@ -1,7 +1,7 @@
-// A batch: up to 64 particles of one body, as the step hands them to a material and as mpm_point makes them.
+// A batch: up to 64 particles of one body, the unit in which the step and mpm_point call a material.
 //
-// State lives in the particles' own blocks (columns of eight doubles); what one stage of the update passes to
-// the next lives in scratch rows here, which stay in the first-level cache.
+// State is in the particles' own blocks (columns of eight doubles); intermediate values between the stages of
+// the update are in scratch rows here, which stay in the first-level cache.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ inline constexpr int batch_particles = batch_blocks * block_lanes;
 
 using Row = double[batch_particles];
 
-/// What a material adds to the counts of a step. Summed over batches, so integers.
+/// A material's contribution to the counts of a step. Summed over batches, so integers.
 struct MaterialEvents {
   long failed = 0;           ///< particles that failed in this step
   long negative_energy = 0;  ///< internal energy below zero (Warn ie)
   long negative_volume = 0;  ///< volume that would have become <= 0 (Warn vol)
-  long volume_limited = 0;   ///< volumes held by Volume min/max
-  long not_finite = 0;       ///< stress, energy or volume that is no number
-  long undefined_root = 0;   ///< squares of the sound speed below zero, and the like
-  long unresolved = 0;       ///< steps too large for a strength law to end on its yield surface
+  long volume_limited = 0;   ///< volumes limited by Volume min/max
+  long not_finite = 0;       ///< stress, energy or volume that is not finite
+  long undefined_root = 0;   ///< negative squares of the sound speed, and the like
+  long unresolved = 0;       ///< steps too large for a strength law to reach its yield surface
   MaterialEvents& operator+=(const MaterialEvents& o) {
     failed += o.failed;
     negative_energy += o.negative_energy;
@@ -40,7 +40,7 @@ struct MaterialEvents {
 
 struct GridGeometry;
 
-/// The stages of a material's update tell how their work on a block is spread over this many parts.
+/// The work of all stages of a material's update on a block is divided into this many parts.
 inline constexpr int parts_of_update = 16;
 
 struct Batch {
@@ -58,26 +58,26 @@ struct Batch {
   /// Volumetric strain increment of the particle's cell; read for volume update 1 only.
   alignas(64) Row cell_volumetric_strain;
 
-  /// Memory that the caller wants while the update works on each block.
+  /// Memory that the caller prefetches while the update processes each block.
   PrefetchLines background[batch_blocks] = {};
-  /// The stages of the update call this as they come to a block: so many of its parts_of_update follow. What
-  /// is done meanwhile is the caller's affair: a cache line for each.
+  /// Called by the stages of the update at each block: `parts` of the parts_of_update follow. Requests one
+  /// prefetch cache line for each.
   [[gnu::always_inline]] void begin_parts(int b, int parts) { background[b].request(parts); }
 
   // --- passed between the stages of the material update ---
   alignas(64) Row volumetric_strain;  ///< trace of the strain increment
   alignas(64) Row old_volume;         ///< V^n; the column holds V^{n+1} after the kinematic stage
   alignas(64) Row deviatoric_work;    ///< 1/2 (s^n + s^{n+1}) : strain increment, per current volume
-  alignas(64) Row shear_modulus;      ///< for the wave speed, of the state reached
+  alignas(64) Row shear_modulus;      ///< for the wave speed, of the updated state
   alignas(64) Row shear_viscosity;    ///< for the critical step, s = 2 viscosity D'
   alignas(64) Row lowest_pressure;    ///< largest tension of a strength model that limits it, as a pressure
   alignas(64) Row law_pressure;       ///< the strength law's, where it computes the pressure itself
-  alignas(64) Row bulk_modulus;       ///< likewise, for the wave speed
-  // --- results beside the columns ---
+  alignas(64) Row bulk_modulus;       ///< the same, for the wave speed
+  // --- results other than the columns ---
   alignas(64) Row sound_speed;     ///< longitudinal wave speed c; filled where the layout has that column
-  alignas(64) Row critical_speed;  ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is not to count
+  alignas(64) Row critical_speed;  ///< Q + sqrt(Q^2 + c^2) (thesis 2-74), or c when viscosity is ignored
   MaterialEvents events;
-  /// Lanes that events.negative_volume and events.negative_energy count, a bit each.
+  /// Lanes counted in events.negative_volume and events.negative_energy, one bit each.
   std::uint64_t vanishing = 0, negative = 0;
 
   double* column(Column c, int b) { return block[b] + layout->offset(c); }

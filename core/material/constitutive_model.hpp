@@ -1,5 +1,5 @@
-// What the step knows of a material: which columns it needs, how to start a particle and how to update a
-// batch. The laws themselves live in `physics`; `mpm_point` drives them through this same door.
+// Interface of a material to the step: the columns it needs, the initialisation of particles and the update
+// of a batch. The laws themselves are in `physics`; `mpm_point` uses the same interface.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace mpm::core {
 
-/// Settings of the run that reach into the update of a material point.
+/// Settings of the run that affect the update of a material point.
 struct UpdateOptions {
   int volume_update = 0;                ///< Volume@update_type, 0..4
   double volume_min = 0;                ///< times the volume at reference density; 0: off
@@ -26,19 +26,19 @@ class ConstitutiveModel {
   virtual const std::string& name() const = 0;
   /// Columns beyond ColumnSet::mechanics() that this material's particles carry under these options.
   virtual ColumnSet columns(const UpdateOptions& options) const = 0;
-  /// The bulk stiffness wave speed at rest, for messages and the first step; 0 for a rigid body.
+  /// Bulk stiffness wave speed at rest, for messages and the first step; 0 for a rigid body.
   virtual double initial_sound_speed() const = 0;
   /// Shear wave speed at rest; 0 for a fluid.
   virtual double initial_shear_speed() const { return 0; }
   virtual double reference_density() const = 0;
-  /// A rigid body takes no velocity from the grid and is never deformed.
+  /// A rigid body takes no velocity from the grid and never deforms.
   virtual bool rigid() const { return false; }
-  /// A bar's stress: along x, which the owner of bars turns into the bar's axis.
+  /// Stress of a bar: along x, which the caller rotates to the bar's axis.
   virtual bool uniaxial() const { return false; }
 
-  /// First state of new particles whose position, velocity, mass, volume and identity are set, the
-  /// temperature too where it is not the material's own; all else is zero: energy, temperature, the pressure
-  /// of a body placed at another density, history. Also fills sound_speed and critical_speed.
+  /// Initial state of new particles whose position, velocity, mass, volume and identity are set, and the
+  /// temperature where the material does not set it; all else is zero: energy, temperature, the pressure of a
+  /// body placed at another density, history. Also sets sound_speed and critical_speed.
   virtual void initialise(Batch& batch, const UpdateOptions& options) const = 0;
 
   /// One step: from `gradient` and `dt` to stress, volume, energy, state, sound_speed and critical_speed.

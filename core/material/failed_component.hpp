@@ -1,6 +1,6 @@
-// Which particles contact takes out of their component and puts into that of the failed (manual 3.2.1,
-// FailureDamageThreshold): those that have failed, and those whose damage has reached the threshold, though
-// they may still have strength.
+// Which particles contact moves from their component to that of the failed (manual 3.2.1,
+// FailureDamageThreshold): those that have failed, and those whose damage has reached the threshold, even if
+// they still have strength.
 #pragma once
 
 #include "core/particles/columns.hpp"
@@ -20,7 +20,7 @@ struct FailedComponentRule {
     if (layout.has(Column::damage)) {
       T limit = damage;
       if (scatters) limit = min(limit * at(Column::threshold_factor), 1.0);
-      // With a threshold of zero the first damage counts, not its absence.
+      // With a threshold of zero, any damage counts, but not its absence.
       const T damaged = at(Column::damage);
       const MaskOf<T> enough = damaged >= limit, some = damaged > 0.0;
       joins = joins | (enough & some);

@@ -1,6 +1,7 @@
-// Random numbers by counting: Philox4x32-10 (Salmon, Moraes, Dror and Shaw, SC11 (2011), 4.3) turns a counter
-// and a key into four random words. A draw is a pure function of what it is for, a particle's identity say,
-// and so the same on any number of ranks and in any order. Shown by tests/core/random/philox_test.cpp.
+// Counter-based random numbers: Philox4x32-10 (Salmon, Moraes, Dror and Shaw, SC11 (2011), 4.3) turns a
+// counter and a key into four random words. A draw is a pure function of its purpose, such as a particle's
+// identity, and therefore the same on any number of ranks and in any order. Shown by
+// tests/core/random/philox_test.cpp.
 #pragma once
 
 #include <array>
@@ -20,7 +21,7 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c
   return counter;
 }
 
-/// Two numbers within (0, 1), neither end included, for the `item`-th draw of a kind.
+/// Two numbers in the open interval (0, 1) for the `item`-th draw of a kind.
 constexpr std::array<double, 2> uniform_pair(std::uint64_t item, std::uint32_t kind, std::uint64_t seed) {
   const auto low = [](std::uint64_t x) { return static_cast<std::uint32_t>(x); };
   const auto word = philox4x32({low(item), low(item >> 32), kind, 0}, {low(seed), low(seed >> 32)});

@@ -1,5 +1,5 @@
 #pragma once
-// Bodies, the components that group them, and what is prescribed for them.
+// Bodies, the components that group them, and their prescribed loads and motion.
 
 #include <array>
 #include <cstddef>
@@ -13,8 +13,8 @@
 
 namespace mpm::core {
 
-/// Local axes: a point r of a body lies at origin + r_x x_axis + r_y y_axis + r_z z_axis in the global frame.
-/// The axes are orthonormal and right-handed whatever lengths the input gave.
+/// Local axes: a point r of a body is at origin + r_x x_axis + r_y y_axis + r_z z_axis in the global frame.
+/// The axes are orthonormal and right-handed; the input's lengths do not matter.
 struct WorkPlane {
   std::string name;
   Vec3<double> origin{};
@@ -44,20 +44,22 @@ struct HarmonicExcitation {
   Vec3<double> end_time{};
 };
 
-/// A pressure all around a body, or a traction on the surfaces that look along one axis; the part of the
-/// surface inside the box alone, if there is one. Factors over time: linear between the points, zero outside.
+/// A pressure on the whole surface of a body, or a traction on the surfaces with one axis as normal;
+/// restricted to the part of the surface inside the box, if given. Factors over time: linear between the
+/// points, zero outside.
 struct SurfaceLoad {
   struct Point {
     double time = 0;
     double factor = 1;
   };
-  double pressure = 0;      ///< stress, pushing inwards
+  double pressure = 0;      ///< stress, positive inwards
   Vec3<double> traction{};  ///< stress
   int normal = -1;          ///< axis of `traction`; -1: none
   Vec3<double> lower{-1e300, -1e300, -1e300};
   Vec3<double> upper{1e300, 1e300, 1e300};
-  std::optional<double> ramp;  ///< over which the load falls to zero across the box's faces; a cell without
-  std::vector<Point> points;   ///< times strictly increasing; none: constant
+  std::optional<double>
+      ramp;  ///< width over which the load falls to zero across the box's faces; default: one cell
+  std::vector<Point> points;  ///< times strictly increasing; none: constant
 };
 
 /// Fixes the finite element nodes between two planes.
@@ -71,7 +73,7 @@ struct FixedLayer {
 struct BodyInput {
   std::string name;
   std::size_t material = 0;  ///< index into Scene::materials
-  std::string type;          ///< the input's word; `geometry` holds the same in its alternative
+  std::string type;          ///< the type's name in the input; `geometry` holds the matching alternative
   Geometry geometry;
   double density = 0;                     ///< initial density; the material's reference density unless given
   std::optional<std::size_t> work_plane;  ///< index into Scene::work_planes; the global frame without
@@ -98,7 +100,7 @@ struct ComponentInput {
   SourceLocation source;
 };
 
-/// A point or a rectangle from which explosives are lit.
+/// A point or a rectangle from which explosives are ignited.
 struct DetonationItem {
   enum class Kind { point, plane };
   Kind kind = Kind::point;

@@ -1,6 +1,6 @@
 #pragma once
-// The parameter tables of the material laws. `physics` fills a Catalogue; `io` checks the input and prints
-// the keyword reference from it. Neither knows the other: the applications hand the catalogue over.
+// The parameter tables of the material laws. `physics` fills a Catalogue; `io` uses it to check the input and
+// print the keyword reference. Neither includes the other: the applications pass the catalogue.
 
 #include <limits>
 #include <string_view>
@@ -22,25 +22,25 @@ struct ParameterInfo {
   double max = unbounded;
   bool min_open = false;
   bool max_open = false;
-  bool integer = false;  ///< only whole numbers are accepted
+  bool integer = false;  ///< only integers are accepted
   std::string_view dimension =
       "1";                   ///< "stress", "1", "density", "time", "1/time", "energy/(mass temperature)" ...
   std::string_view meaning;  ///< one line for the keyword reference
   /// Attributes of one law with the same non-empty group are given all together or not at all (D1 .. D5).
   std::string_view group = {};
-  /// Every finite number makes sense: what a parameter of a law from outside says that has no range.
+  /// Every finite number is valid: set by an external law's parameter without a range.
   bool any_number = false;
 };
 
 /// One type of strength model, equation of state or failure model.
 struct TypeInfo {
-  std::string_view name;  ///< the word after `type=` in the input
+  std::string_view name;  ///< the value of `type=` in the input
   std::string_view summary;
   std::vector<ParameterInfo> parameters;
 };
 
-/// All laws. The common tables hold for every type of their family; a type's own entry of the same name wins
-/// (so a type makes a common parameter required, or narrows its range, by listing it).
+/// All laws. The common tables apply to every type of their family; a type's own entry of the same name takes
+/// precedence (so a type can make a common parameter required, or narrow its range).
 struct Catalogue {
   std::vector<ParameterInfo> common_strength;  ///< bq1, bq2, FailedType, ..., Young, Poisson, SpecHeat
   std::vector<ParameterInfo> common_eos;       ///< C0, E0

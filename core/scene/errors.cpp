@@ -8,7 +8,7 @@ namespace mpm::core {
 
 namespace {
 
-/// On one line and of readable length, whatever the file held.
+/// On one line and of readable length, for any content of the file.
 std::string shown(const std::string& value) {
   constexpr std::size_t longest = 120;
   std::size_t cut = std::min(value.size(), longest);

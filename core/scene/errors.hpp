@@ -1,7 +1,7 @@
 #pragma once
-// Errors of the user's input: each names file, line, element, attribute and value, says what was expected,
-// and all of a file are thrown together. The program that catches InputErrors prints what() and leaves with
-// exit code 2.
+// Errors in the user's input: each names file, line, element, attribute and value and the expected value; all
+// errors of a file are thrown together. The program that catches InputErrors prints what() and exits with
+// code 2.
 
 #include <stdexcept>
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace mpm::core {
 
-/// Where in the user's files a thing was declared; line counts from 1, 0 when the whole file is meant.
+/// Where in the user's files something was declared; lines count from 1, 0 stands for the whole file.
 struct SourceLocation {
   std::string file;
   int line = 0;
 };
 
-/// One fault about the input. Element, attribute and value may be empty when the fault is about more.
+/// One error in the input. Element, attribute and value may be empty when the error is not specific to them.
 struct Diagnostic {
   std::string file;
   int line = 0;
@@ -29,11 +29,11 @@ struct Diagnostic {
 /// `file:line: <Element attribute="value">: message`
 std::string to_text(const Diagnostic& diagnostic);
 
-/// Every fault about an input, sorted by file and line. what() is the full text, one fault per line.
+/// All errors of an input, sorted by file and line. what() is the full text, one error per line.
 class InputErrors : public std::runtime_error {
  public:
   explicit InputErrors(std::vector<Diagnostic> diagnostics);
-  /// A single fault about something declared at `where` (for checks made after the file was read).
+  /// A single error about something declared at `where` (for checks after the file was read).
   InputErrors(const SourceLocation& where, std::string element, std::string message);
 
   const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
@@ -42,10 +42,10 @@ class InputErrors : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// What several checks report, to be thrown together.
+/// The errors of several checks, to be thrown together.
 class ErrorList {
  public:
-  /// Run f(); what it throws as InputErrors is kept.
+  /// Runs f() and keeps the InputErrors that it throws.
   template <class F>
   void collect(F f) {
     try {

@@ -1,5 +1,5 @@
 #pragma once
-// The shapes that a body is made of, each in its own work plane's axes. Lengths in the user's unit, angles in
+// The shapes of bodies, each in the axes of its own work plane. Lengths in the user's unit, angles in
 // degrees.
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace mpm::core {
 
-/// How particles are laid out in a round shape.
+/// Arrangement of particles in a round shape.
 enum class Layout { orthogonal = 0, polar = 1 };  // polar: spherical shells, or rings
 
 struct PointMass {
@@ -22,7 +22,7 @@ struct PointMass {
   Vec3<double> position{};
 };
 
-/// Particles given one by one: inline, or in a text file (lines: mass x y z; may be gzipped).
+/// Particles given individually: inline, or in a text file (lines: mass x y z; may be gzipped).
 struct PointGeometry {
   std::vector<PointMass> points;
   std::string file;  ///< resolved against the input's folder; empty when the points are inline
@@ -69,7 +69,7 @@ struct OgiveGeometry {
   Layout layout = Layout::orthogonal;
 };
 
-/// Where a body stands in the scene: components[component].bodies[body]. By itself it means no body.
+/// A body's position in the scene: components[component].bodies[body]. By default no body.
 struct BodyPlace {
   std::size_t component = std::numeric_limits<std::size_t>::max();
   std::size_t body = 0;

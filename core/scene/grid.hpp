@@ -1,5 +1,5 @@
 #pragma once
-// The background grid as the input states it.
+// The background grid from the input.
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace mpm::core {
 
-/// What a face of the grid does to the nodes on it. Values are the input's.
+/// Boundary condition of a grid face on its nodes. Values are the input's.
 enum class Boundary {
   free = 0,
   fixed = 1,
@@ -31,21 +31,21 @@ enum class ShapeFunction {
   ddmp,
 };
 
-/// A stretch of cells along one axis of a nonuniform grid, from the previous one's end.
+/// A segment of cells along one axis of a nonuniform grid, from the end of the previous one.
 struct GridSegment {
   double end = 0;         ///< coordinate
   std::size_t cells = 0;  ///< > 0
   double ratio = 1;       ///< last cell's length over the first one's
 };
 
-/// One axis of the grid; [min, max] are the physical walls, whatever the shape function needs beyond them.
+/// One axis of the grid; [min, max] are the physical walls, without the extra cells of the shape functions.
 struct GridAxis {
   double min = 0;
   double max = 0;
   Boundary lower = Boundary::free;
   Boundary upper = Boundary::free;
   double cell_size = 0;
-  /// Cells along the axis. A wall at max lies on a face of cells; a free face may lie within the last cell.
+  /// Cells along the axis. A wall at max coincides with a cell face; a free face may be inside the last cell.
   std::size_t cells = 0;
   std::vector<GridSegment> segments;  ///< nonuniform grids only; empty: uniform
 };
@@ -62,14 +62,14 @@ struct MovingGridInput {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// Storage only of cells with particles. Always so here; the settings are kept for the record.
+/// Storage only of cells with particles. Always on here; the settings are kept for reference.
 struct DynamicCellInput {
   bool enable = false;
   int clear_steps = 10;
 };
 
 struct GridInput {
-  /// Nodes lighter than mass_cutoff * mean reference density * cell volume are left out.
+  /// Nodes lighter than mass_cutoff * mean reference density * cell volume are ignored.
   double mass_cutoff = 2.220446049250313e-16;
   ShapeFunction shape = ShapeFunction::linear;
   bool nonuniform = false;

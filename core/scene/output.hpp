@@ -1,5 +1,5 @@
 #pragma once
-// What the run writes, as the input states it.
+// The outputs of the run from the input.
 
 #include <optional>
 #include <string>
@@ -27,7 +27,7 @@ struct PostProcessingInput {
   GridData grid_data = GridData::none;
   bool fragments = false;
   std::optional<double> fragments_time_interval;  ///< time_interval unless given
-  std::vector<std::string> variables;  ///< the words of keywords.md, each once, in the input's order
+  std::vector<std::string> variables;  ///< names as in keywords.md, each once, in the input's order
 };
 
 /// Histories of variables at the particle nearest to a point, or at a point in space.

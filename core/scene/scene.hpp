@@ -1,7 +1,7 @@
 #pragma once
-// The scene: everything that an input file states, checked and with every default filled in, as plain
-// structs. It holds no particles and no file format; `io` makes it, `core` discretises it. Units are the
-// user's own and consistent; vectors are in the global frame unless a work plane says otherwise.
+// The scene: the contents of an input file, checked and with every default filled in, as plain structs. It
+// contains no particles and no file format; `io` creates it, `core` discretises it. Units are the user's own
+// and consistent; vectors are in the global frame unless a work plane is given.
 
 #include <array>
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 namespace mpm::core {
 
-/// What the user wrote about the case; carried into every output.
+/// The user's description of the case; copied to every output.
 struct HeaderInput {
   std::string name;
   std::string heading;
@@ -30,7 +30,7 @@ struct HeaderInput {
   std::string mass_unit;
 };
 
-/// Which bytes the scene was made from.
+/// The source of the scene.
 struct Provenance {
   std::string path;      ///< as given by the user
   std::string job_name;  ///< the file's name without folder and `.xmp`
@@ -63,12 +63,12 @@ struct Scene {
   Provenance provenance;
 };
 
-/// Throws std::out_of_range for a place without a body.
+/// Throws std::out_of_range if there is no body at `place`.
 inline const BodyInput& body_at(const Scene& scene, BodyPlace place) {
   return scene.components.at(place.component).bodies.at(place.body);
 }
 
-/// The bodies that take part, in the order of the input; with them the numbers of their components.
+/// The active bodies, in the order of the input, with the numbers of their components.
 template <class F>
 void for_each_active_body(const Scene& scene, F f) {
   for (std::size_t c = 0; c < scene.components.size(); ++c) {

@@ -1,5 +1,5 @@
 #pragma once
-// How the equations are integrated, as the input states it.
+// Settings of the time integration from the input.
 
 #include <optional>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace mpm::core {
 
-/// When the stress is updated: first, last, or last with the nodal velocity mapped anew from the particles.
+/// When the stress is updated: first, last, or last with the nodal velocity re-mapped from the particles.
 enum class Scheme { usf, usl, musl };
 
 enum class Integration { explicit_dynamics, implicit };
@@ -39,11 +39,11 @@ struct VolumeInput {
   std::optional<double> max;    ///< upper bound of volume over initial volume
 };
 
-/// What is watched, and what happens then.
+/// Conditions that are checked for, and the reaction to them.
 struct WarnInput {
   enum class Level {
     per_step = 0,      ///< one warning per step
-    per_particle = 1,  ///< one warning when a particle first does it
+    per_particle = 1,  ///< one warning when a particle first meets the condition
     stop = 2,
   };
   bool negative_internal_energy = false;
@@ -93,7 +93,7 @@ struct SolutionInput {
       false;            ///< write a restart file and leave when a particle nears the grid's bounds
   double end_time = 0;  ///< > 0
   TimeStepInput time_step;
-  std::optional<double> limit_velocity;  ///< particles move no faster than this
+  std::optional<double> limit_velocity;  ///< largest particle speed
   VolumeInput volume;
   WarnInput warn;
   std::optional<double> energy_fraction;  ///< stop when the relative error of the total energy exceeds this

@@ -1,5 +1,5 @@
-// Numbers below 2^-1022 count as zero. Ahead of a wave a stress falls by a factor per cell and step until it
-// is that small, and the processor then takes a hundred times longer for each operation on it.
+// Flushes numbers below 2^-1022 to zero. Ahead of a wave the stress falls by a factor per cell and step until
+// it is that small, and operations on denormal numbers take a hundred times longer.
 #pragma once
 
 #include <bit>
@@ -22,7 +22,7 @@ inline void flush_denormals_to_zero() {
 #endif
 }
 
-/// Whether the number is one that flush_denormals_to_zero() makes 0; right before and after it.
+/// Whether flush_denormals_to_zero() would make the number 0; correct before and after that call.
 inline bool is_subnormal(double x) {
   constexpr std::uint64_t exponent = 0x7FF0000000000000, mantissa = 0x000FFFFFFFFFFFFF;
   const auto bits = std::bit_cast<std::uint64_t>(x);

@@ -1,10 +1,10 @@
-// A few doubles that move together: the value type of every hot kernel and of every batched law.
+// A short vector of doubles: the value type of every hot kernel and every batched law.
 //
 // Code is written once as `template <class T>` over T = double (the readable reference) or T = Lanes<L>.
 // Lanes wraps the vector extension of g++ and clang, so any width compiles on any machine; the width that
 // suits the machine is chosen at configure time (MPM_SIMD_LANES).
 // Every operation acts on each lane alone: a particle's result never depends on its neighbours in the vector,
-// and that is what makes results independent of where a particle is stored.
+// so results do not depend on where a particle is stored.
 #pragma once
 
 #include <cmath>
@@ -40,7 +40,7 @@ struct Vector<8> {
   typedef double real __attribute__((vector_size(64)));
   typedef std::int64_t bits __attribute__((vector_size(64)));
 };
-typedef long long Long8 __attribute__((vector_size(64)));  // as the compilers' built-ins spell it
+typedef long long Long8 __attribute__((vector_size(64)));  // as the compilers' built-ins require
 }  // namespace detail
 
 /// Comparison result: all bits of a lane set where true.
@@ -97,7 +97,7 @@ struct Lanes {
   friend Mask operator!=(Lanes a, Lanes b) { return {a.v != b.v}; }
 };
 
-/// How a value type is cut out of a block's column: its width, and its mask.
+/// Value type of a block's column: its width, and its mask.
 template <class T>
 struct LaneTraits {
   static constexpr int width = 1;
@@ -126,7 +126,7 @@ struct RealOf<1> {
 using Real = detail::RealOf<MPM_SIMD_LANES>::type;
 inline constexpr int real_width = LaneTraits<Real>::width;
 
-// --- memory: unaligned access costs nothing on aligned data, and scratch arrays need no care -------------
+// --- memory: unaligned access costs nothing on aligned data, and scratch arrays need no alignment ---------
 template <class T>
 inline T load(const double* p) {
   T x;
@@ -175,8 +175,8 @@ template <int L>
 inline bool test(LaneMask<L> m, int lane) {
   return m[lane];
 }
-/// One bit per lane, of lane 0 the lowest. Spelled per machine, because neither compiler finds the one
-/// instruction that this is.
+/// One bit per lane, lane 0 lowest. Machine-specific, because neither compiler finds the single instruction
+/// for it.
 template <int L>
 inline unsigned bits(LaneMask<L> m) {
 #if defined(__AVX512DQ__)
@@ -209,7 +209,7 @@ inline bool all(LaneMask<L> m) {
 template <int L>
 inline Lanes<L> min(Lanes<L> a, Lanes<L> b) {
 #if defined(__AVX512F__) && !defined(__clang__)
-  // g++ turns a comparison with a constant around, and then finds no instruction for it.
+  // g++ reverses a comparison with a constant and then finds no instruction for it.
   if constexpr (L == 8) return __builtin_ia32_minpd512_mask(a.v, b.v, a.v, -1, 4);
 #endif
   return a.v < b.v ? a.v : b.v;
@@ -245,7 +245,7 @@ inline Lanes<L> lanewise(Lanes<L> a, F f) {
 
 template <int L>
 inline Lanes<L> sqrt(Lanes<L> a) {
-  // The loop compiles to one vector square root (errno is off); intrinsics would tie us to one machine.
+  // The loop compiles to one vector square root (errno is off); intrinsics would not be portable.
   return detail::lanewise(a, [](double x) { return std::sqrt(x); });
 }
 template <int L>

@@ -18,7 +18,7 @@ namespace detail {
 // ln 2 in two parts: a multiple of the first by a whole number below 2^11 is exact.
 inline constexpr double ln2_high = 0x1.62e42fefap-1;
 inline constexpr double ln2_low = 0x1.cf79abc9e3b3ap-40;
-/// Adding it rounds to a whole number, which then stands in the low bits of the sum.
+/// Adding it rounds to an integer, which is then in the low bits of the sum.
 inline constexpr double round_magic = 0x1.8p52;
 
 template <int L>
@@ -33,7 +33,7 @@ inline Lanes<L> from_bits(Bits<L> b) {
   return reinterpret_cast<typename Vector<L>::real>(b);
 }
 
-/// 2^n for whole n in [-1022, 1023].
+/// 2^n for integer n in [-1022, 1023].
 template <int L>
 inline Lanes<L> power_of_two(Lanes<L> n) {
   return from_bits<L>((to_bits<L>(n + round_magic) << 52) + (std::int64_t{1023} << 52));
@@ -48,14 +48,14 @@ inline Lanes<L> exp(Lanes<L> x) {
   const Lanes<L> held = min(max(x, -746.0), 710.0);
   const Lanes<L> n = (held * 0x1.71547652b82fep+0 + round_magic) - round_magic;
   const Lanes<L> r = (held - n * ln2_high) - n * ln2_low;  // |r| <= ln(2)/2
-  // Taylor to r^13/13!; what is left out is below 5e-18. Summed in pairs of pairs: a short chain of
-  // dependences.
+  // Taylor series to r^13/13!; the truncation error is below 5e-18. Summed in pairs of pairs to shorten the
+  // dependence chain.
   const Lanes<L> r2 = r * r, r4 = r2 * r2;
   const Lanes<L> a = (1.0 / 2 + r * (1.0 / 6)) + r2 * (1.0 / 24 + r * (1.0 / 120));
   const Lanes<L> b = (1.0 / 720 + r * (1.0 / 5040)) + r2 * (1.0 / 40320 + r * (1.0 / 362880));
   const Lanes<L> c = (1.0 / 3628800 + r * (1.0 / 39916800)) + r2 * (1.0 / 479001600 + r * (1.0 / 6227020800));
   const Lanes<L> p = r2 * (a + r4 * (b + r4 * c)) + r + 1.0;
-  // In two factors, so that results near the ends of the range overflow and underflow as they should.
+  // In two factors, so that results near the ends of the range overflow and underflow correctly.
   const Lanes<L> half = (0.5 * n + round_magic) - round_magic;
   const Lanes<L> result = p * power_of_two(half) * power_of_two(n - half);
   return select(x == x, result, x);
@@ -64,7 +64,8 @@ inline Lanes<L> exp(Lanes<L> x) {
 template <int L>
 inline Lanes<L> log(Lanes<L> x) {
   using namespace detail;
-  // Subnormal numbers are scaled up first; what has no logarithm goes as 1 and gets its answer at the end.
+  // Subnormal numbers are scaled up first; arguments without a logarithm are replaced by 1 and corrected at
+  // the end.
   const auto tiny = x < std::numeric_limits<double>::min();
   const Lanes<L> y = select(x > 0.0, select(tiny, x * 0x1p54, x), 1.0);
   // x = 2^k m with m in [sqrt(1/2), sqrt(2)), so that k is 0 about x = 1.
@@ -74,8 +75,8 @@ inline Lanes<L> log(Lanes<L> x) {
   const Lanes<L> m = from_bits<L>((shifted & 0x000fffffffffffff) + sqrt_half);
   const Lanes<L> k =
       from_bits<L>(exponent + 0x4338000000000000) - round_magic - select(tiny, 54.0, Lanes<L>(0.0));
-  // log(1 + f) = 2 artanh(t) for t = f/(2 + f); as f - t (f - 2 t^2 (1/3 + t^2/5 + ...)) its leading term is
-  // exact. t^2 < 0.0295: what is left out is below 3e-18 of the whole.
+  // log(1 + f) = 2 artanh(t) for t = f/(2 + f); in the form f - t (f - 2 t^2 (1/3 + t^2/5 + ...)) the leading
+  // term is exact. t^2 < 0.0295: the relative truncation error is below 3e-18.
   const Lanes<L> f = m - 1.0;
   const Lanes<L> t = f / (2.0 + f);
   const Lanes<L> t2 = t * t;

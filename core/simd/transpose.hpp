@@ -1,4 +1,4 @@
-// Rows to columns of small matrices held in vectors, in shuffles alone.
+// Transposition of small matrices held in vectors, by shuffles alone.
 #pragma once
 
 #include "core/simd/lanes.hpp"

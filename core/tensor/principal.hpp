@@ -1,12 +1,11 @@
 // Principal values of a symmetric tensor, for all lanes at once and without a loop.
 //
-// The largest root of the characteristic equation of the normed deviator, 4 c^3 - 3 c = r with c =
-// cos(acos(r)/3) (Smith, Comm. ACM 4 (1961) 168), is well apart from the other two when r >= 0; where r < 0
-// the tensor is taken with the other sign. The other two do not come from the same formula, which loses half
-// the digits where they nearly coincide: the tensor is reduced to the plane normal to the first axis, where
-// half their difference is a norm. Error below 8e-15 of the largest component, also for double and triple
-// values, and no tensor is too small or too large (tests/core/tensor/principal_test.cpp, against an iterative
-// solver).
+// The largest root of the characteristic equation of the normalised deviator, 4 c^3 - 3 c = r with c =
+// cos(acos(r)/3) (Smith, Comm. ACM 4 (1961) 168), is well separated from the other two when r >= 0; where r <
+// 0 the tensor's sign is reversed. The other two do not come from the same formula, which loses half the
+// digits where they nearly coincide: the tensor is reduced to the plane normal to the first axis, where half
+// their difference is a norm. The error is below 8e-15 of the largest component, also for double and triple
+// values, for tensors of any size (tests/core/tensor/principal_test.cpp, against an iterative solver).
 #pragma once
 
 #include <limits>
@@ -22,7 +21,7 @@ namespace detail {
 template <class T>
 T cosine_of_third_of_acute(const T& r) {
   // A parabola within 2e-3 of the root; the error of each Newton step is below 2.1 times the square of the
-  // last.
+  // previous one.
   T c = 0.8660254037844386 + r * (0.166 - 0.032 * r);
   for (int i = 0; i < 3; ++i) c = (8.0 * c * c * c + r) / (12.0 * c * c - 3.0);
   return c;
@@ -31,7 +30,8 @@ T cosine_of_third_of_acute(const T& r) {
 /// Unit vector along the null space of a symmetric matrix of rank two; zero for rank less than two.
 template <class T>
 Vec3<T> null_vector(const Sym3<T>& a) {
-  // The columns of the adjugate are multiples of it, as long as their diagonal component is large.
+  // The columns of the adjugate are multiples of it, and their length is large where their diagonal component
+  // is.
   const T xx = a.yy * a.zz - a.yz * a.yz, yy = a.xx * a.zz - a.xz * a.xz, zz = a.xx * a.yy - a.xy * a.xy;
   const T xy = a.xz * a.yz - a.xy * a.zz, xz = a.xy * a.yz - a.xz * a.yy, yz = a.xy * a.xz - a.yz * a.xx;
   const auto y_first = abs(yy) > abs(xx);
@@ -44,7 +44,7 @@ Vec3<T> null_vector(const Sym3<T>& a) {
 
 }  // namespace detail
 
-/// x >= y >= z. A component that is no number gives no numbers.
+/// x >= y >= z. A NaN component makes all results NaN.
 template <class T>
 Vec3<T> principal_values(const Sym3<T>& a) {
   const T largest = max(max(max(abs(a.xx), abs(a.yy)), max(abs(a.zz), abs(a.xy))), max(abs(a.yz), abs(a.xz)));
@@ -54,8 +54,8 @@ Vec3<T> principal_values(const Sym3<T>& a) {
   const T mean = trace(unit) * (1.0 / 3.0);
   const Sym3<T> d{unit.xx - mean, unit.yy - mean, unit.zz - mean, unit.xy, unit.yz, unit.xz};
 
-  // In units of `radius` the deviator's values are 2 cos of angles a third of a turn apart. Below this size
-  // of the square it is round-off of the mean.
+  // In units of `radius` the deviator's values are 2 cos of angles a third of a revolution apart. Below this
+  // size the square is round-off of the mean.
   const T radius2 = contract(d, d) * (1.0 / 6.0);
   const T radius = sqrt(radius2);
   const Sym3<T> b = select(radius2 > 1e-40, 1.0 / radius, T(0.0)) * d;
@@ -78,7 +78,7 @@ Vec3<T> principal_values(const Sym3<T>& a) {
                   c.yz - n.y * w.z - n.z * w.y + k * n.y * n.z, c.xz - n.x * w.z - n.z * w.x + k * n.x * n.z};
   const T half = sqrt(0.5 * contract(m, m));
 
-  // Without a first axis, in a multiple of the unit tensor, radius is nothing and so is all this.
+  // Without a first axis, in a multiple of the unit tensor, radius and all of this are zero.
   const T outer = sign * first, upper = half - sign * shift, lower = -half - sign * shift;
   const auto value = [&](const T& v) { return scale * (mean + radius * v); };
   const Vec3<T> up{value(outer), value(upper), value(lower)}, down{value(upper), value(lower), value(outer)};

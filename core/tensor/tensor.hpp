@@ -73,7 +73,7 @@ Sym3<T> deviator(const Sym3<T>& a) {
   const T m = trace(a) * T(1.0 / 3.0);
   return {a.xx - m, a.yy - m, a.zz - m, a.xy, a.yz, a.xz};
 }
-/// sqrt(3/2 s:s) of a deviator: the von Mises equivalent of a stress.
+/// sqrt(3/2 s:s) of a deviator: the von Mises equivalent stress.
 template <class T>
 T mises(const Sym3<T>& s) {
   return sqrt(T(1.5) * contract(s, s));

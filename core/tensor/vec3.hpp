@@ -1,5 +1,5 @@
-// Three components of any value type (double or Lanes): a position, a velocity, the edges of a box. They
-// refer to the global Cartesian frame unless it is said otherwise.
+// Three components of any value type (double or Lanes): a position, a velocity, the edges of a box. In the
+// global Cartesian frame unless stated otherwise.
 #pragma once
 
 namespace mpm::core {

@@ -35,7 +35,7 @@ struct NamedUnit {
 constexpr Dimension length{1, 0, 0, 0}, mass{0, 1, 0, 0}, time{0, 0, 1, 0}, temperature{0, 0, 0, 1};
 constexpr Dimension stress{-1, 1, -2, 0}, energy{2, 1, -2, 0}, power_{2, 1, -3, 0}, force{1, 1, -2, 0};
 
-// The first of equal units is the one that output uses.
+// Of equal units, output uses the first.
 constexpr std::array<NamedUnit, 51> units{{
     {"m", {length, 1}},
     {"dm", {length, 1e-1}},
@@ -87,13 +87,13 @@ constexpr std::array<NamedUnit, 51> units{{
     {"kN", {force, 1e3}},
     {"MN", {force, 1e6}},
     {"Hz", {{0, 0, -1, 0}, 1}},
-    {"degree", {{0, 0, 0, 0}, 1}},  // angles are pure numbers, and the laws that ask for degrees get degrees
+    {"degree", {{0, 0, 0, 0}, 1}},  // angles are pure numbers; laws with angles in degrees receive degrees
 }};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/// The micro and the middle dot of data sheets, of which UTF-8 makes two bytes, in plain letters.
+/// Replaces the micro sign and middle dot of data sheets, two bytes each in UTF-8, by ASCII.
 std::string plain(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, char>, 4> replacements{
       {{"\xC2\xB5", 'u'}, {"\xCE\xBC", 'u'}, {"\xC2\xB7", ' '}, {"*", ' '}}};  // micro, mu, dot
@@ -120,7 +120,7 @@ std::string join(const std::vector<std::string>& words, std::string_view separat
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// `; did you mean 'x'?` for a name that differs by case only or is spelled out, else the list.
+/// `; did you mean 'x'?` for a name that differs only in case or is written out, otherwise the list.
 template <class Table>
 std::string suggestion(std::string_view word, const Table& table) {
   std::vector<std::string> names;
@@ -246,8 +246,8 @@ std::string quotient_text(const std::array<std::string_view, 4>& symbols, const 
   return fmt::format("{}/({})", text, join(below, " "));
 }
 
-/// value * factor; a factor that is a power of ten but for rounding is taken as one, so that the decimals of
-/// a table stay: 8960 kg/m^3 are 0.00896 g/mm^3 to the last bit.
+/// value * factor; a factor that equals a power of ten up to rounding is replaced by it, so that tabulated
+/// decimals are kept: 8960 kg/m^3 is exactly 0.00896 g/mm^3.
 double scaled(double value, double factor) {
   const double exponent = std::round(std::log10(factor));
   const double ten = std::pow(10.0, std::abs(exponent));

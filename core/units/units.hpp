@@ -1,5 +1,5 @@
-// Dimensions and units. A law's table says "energy/(mass temperature)", a data sheet "J/(kg K)", a case
-// "mm g ms": all three are read here, and quantities are converted between them.
+// Dimensions and units. A law's table uses "energy/(mass temperature)", a data sheet "J/(kg K)", a case "mm g
+// ms": all three are parsed here, and quantities are converted between them.
 //
 // A product is written with blanks, a quotient with one slash and brackets around a longer denominator, a
 // power as ^2, ^-1, ^0.5 or ^name where name is another parameter of the law (stress time^nn).
@@ -15,7 +15,7 @@
 
 namespace mpm::core {
 
-/// A text that is no dimension, unit or system of units; what() says which part and offers the nearest.
+/// An invalid dimension, unit or system of units; what() names the part and suggests the nearest.
 class UnitError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -30,7 +30,7 @@ struct Dimension {
 Dimension operator*(const Dimension& a, const Dimension& b);
 Dimension operator/(const Dimension& a, const Dimension& b);
 Dimension power(const Dimension& a, double exponent);
-/// In the words of the laws' tables where one fits: "stress", "1/time"; else of length, mass, time.
+/// As in the laws' tables where possible: "stress", "1/time"; otherwise in length, mass, time.
 std::string to_text(const Dimension& dimension);
 
 /// The value of another parameter, for exponents by name; nothing where it is not known.
@@ -39,7 +39,7 @@ using ExponentOf = std::function<std::optional<double>(std::string_view name)>;
 /// "stress time", "1/temperature", "stress time^nn"; throws UnitError.
 Dimension parse_dimension(std::string_view text, const ExponentOf& exponent_of = {});
 
-/// A unit: what it measures, and how many SI units it is.
+/// A unit: its dimension, and its size in SI units.
 struct Unit {
   Dimension dimension;
   double in_si = 1;
@@ -47,7 +47,7 @@ struct Unit {
 /// "MPa", "kg/m^3", "J/(kg K)", "cm/us", "1"; throws UnitError.
 Unit parse_unit(std::string_view text);
 
-/// A number with its unit: "90 MPa", "0.31"; the number alone is a pure number. Throws UnitError.
+/// A number with its unit: "90 MPa", "0.31"; a number alone is dimensionless. Throws UnitError.
 struct Quantity {
   double value = 0;
   Unit unit;
@@ -61,13 +61,13 @@ class UnitSystem {
   /// "mm g ms", "kg m s", "cm g us", "SI", "cgs", in any order; throws UnitError.
   static UnitSystem parse(std::string_view text);
 
-  /// How many SI units one unit of this system is.
+  /// Size of one unit of this system in SI units.
   double in_si(const Dimension& dimension) const;
   /// The quantity's value in this system.
   double value_of(const Quantity& quantity) const;
   /// "mm g ms"
   std::string name() const;
-  /// What a value of this dimension is in: "MPa", "mm/ms", "g/mm^3", "K", "1".
+  /// Unit of a value of this dimension: "MPa", "mm/ms", "g/mm^3", "K", "1".
   std::string unit_name(const Dimension& dimension) const;
 
   friend bool operator==(const UnitSystem&, const UnitSystem&) = default;
@@ -81,7 +81,7 @@ class UnitSystem {
   std::array<Base, 3> bases_{{{"m", 1}, {"kg", 1}, {"s", 1}}};  ///< length, mass, time
 };
 
-/// The value in `to` of what is `value` in `from`.
+/// Converts `value` from the units of `from` to those of `to`.
 double convert(double value, const UnitSystem& from, const UnitSystem& to, const Dimension& dimension);
 
 }  // namespace mpm::core

@@ -195,7 +195,7 @@ TEST_CASE("A traveller to nowhere is a bug that says where") {
   MigrationBuffer particles;
   particles.add({5, 6, 7}, 2, columns.data(), 18);
   CHECK_THROWS_WITH(exchange.particles.migrate(grid, particles, columns_of),
-                    "a particle of body 2 travels to brick (5, 6, 7), which does not exist");
+                    "a particle of body 2 migrates to brick (5, 6, 7), which does not exist");
   CHECK_THROWS_AS(exchange.particles.scatter(particles, columns_of), std::logic_error);
 
   const int other = (world().rank() + 1) % world().size();
