@@ -1,5 +1,5 @@
-// The parameter tables of every law in the lists, as the input reader and the keyword reference want them;
-// with a user's laws besides: physics/registry.hpp.
+// The parameter tables of every law in the lists, for the input reader and the keyword reference;
+// physics/registry.hpp adds a user's laws.
 #pragma once
 
 #include "core/scene/catalogue.hpp"

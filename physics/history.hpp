@@ -1,8 +1,7 @@
-// How a law's own state travels between the particle's columns and the point that the law sees.
+// Transfer of a law's state between the particle's columns and the point on which the law operates.
 //
-// A law names its columns once, as `static constexpr std::array state`; each point type says which of its
-// members holds which column. What a law does not name is neither loaded nor stored
-// (tests/physics/laws_test.cpp).
+// A law lists its columns once, as `static constexpr std::array state`; each point type maps columns to
+// members. Columns that a law does not list are neither loaded nor stored (tests/physics/laws_test.cpp).
 #pragma once
 
 #include <array>
@@ -28,8 +27,7 @@ consteval auto member_of(core::Column column) {
   throw "this kind of law cannot carry the column: add it to the point's table";
 }
 
-/// Whether a law of this configuration carries one of the columns of its `state`; all, unless it says
-/// otherwise.
+/// Whether a law of this configuration carries one of the columns of its `state`; all by default.
 template <class Law>
 bool carries(const Law& law, core::Column column) {
   if constexpr (requires { law.carries(column); }) return law.carries(column);
@@ -64,7 +62,7 @@ class History {
       if (offset >= 0) core::store(block + offset, point.*member);
     });
   }
-  /// The lanes of `mask` go back to the state that the columns still hold.
+  /// Resets the lanes of `mask` to the state still in the columns.
   template <class Mask>
   void restore(const double* block, Point& point, Mask mask) const {
     each([&]<auto member>(int offset) {

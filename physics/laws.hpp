@@ -1,4 +1,4 @@
-// What every list of laws can be asked for: each law in turn; and how a law is made of its input.
+// Operations on lists of laws: iteration over the laws, and creation of a law from its input.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ constexpr void for_each_law(F f) {
   }(std::type_identity<List>{});
 }
 
-/// The parameters checked against each other and the derived constants filled in. `element` is for messages.
+/// Checks the parameters against each other and computes the derived constants. `element` is for messages.
 template <class Law>
 void finish(Law& law, const core::LawInput& input, std::string_view element, double reference_density) {
   std::string fault;
@@ -38,7 +38,7 @@ void finish(Law& law, const core::LawInput& input, std::string_view element, dou
   }
 }
 
-/// The law with the input's numbers, ready for use.
+/// Creates the law with the input's values.
 template <class Law>
 Law read_law(const core::LawInput& input, std::string_view element, double reference_density) {
   Law law;

@@ -1,5 +1,5 @@
-// A law's parameters as one table: the member that holds the value beside the name, range and meaning that
-// the input is checked against and that the keyword reference prints. Said once, used for all three.
+// A law's parameters as one table: the member that holds the value together with the name, range and meaning,
+// used for input checking and the keyword reference.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct Parameter {
   core::ParameterInfo info;
 };
 
-/// One table after another, for laws that build on others' parameters.
+/// Concatenates two tables, for laws that extend others' parameters.
 template <class Law, std::size_t M, std::size_t N>
 constexpr std::array<Parameter<Law>, M + N> join(const std::array<Parameter<Law>, M>& first,
                                                  const std::array<Parameter<Law>, N>& second) {

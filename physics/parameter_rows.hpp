@@ -1,4 +1,4 @@
-// Rows of the laws' tables that several laws share, each with a member of its own.
+// Rows of the parameter tables that several laws share, each with its own member.
 #pragma once
 
 #include <string_view>

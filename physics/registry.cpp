@@ -12,14 +12,14 @@ namespace mpm::physics {
 
 namespace {
 
-/// Letters, digits, - and _, not beginning with a digit: what an attribute's name may be.
+/// Whether a text is a valid attribute name: letters, digits, - and _, not beginning with a digit.
 bool is_word(std::string_view text) {
   const auto good = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
   return !text.empty() && std::ranges::all_of(text, good) &&
          std::isdigit(static_cast<unsigned char>(text.front())) == 0;
 }
 
-/// What is wrong with a parameter in itself.
+/// Errors in the parameter itself.
 std::vector<std::string> faults_of(const core::ParameterInfo& p) {
   std::vector<std::string> faults;
   if (!is_word(p.name)) faults.emplace_back("its name is not a word of letters, digits, - and _");
@@ -62,7 +62,7 @@ std::vector<std::string> faults_of(const core::TypeInfo& info, const BuildTraits
   return faults;
 }
 
-/// Puts a law from outside into its family, or what is wrong with it into `faults`.
+/// Adds an external law to its family, or its errors to `faults`.
 template <class Entry>
 void take_into(std::vector<Entry>& family, std::size_t built_in, std::string_view element, Entry entry,
                const BuildTraits& build, std::vector<std::string>& faults, std::vector<std::string>& added) {
@@ -82,7 +82,7 @@ void take_into(std::vector<Entry>& family, std::size_t built_in, std::string_vie
   family.push_back(std::move(entry));
 }
 
-/// Laws that share a name, to be told apart by a parameter, are one type with the parameters of all.
+/// Laws that share a name and differ by a parameter are one type with the parameters of all.
 template <class Entry>
 std::vector<core::TypeInfo> types(const std::vector<Entry>& family) {
   std::vector<core::TypeInfo> infos;

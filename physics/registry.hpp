@@ -1,15 +1,15 @@
-// The laws that a program knows: those of the lists, and a user's own. A program hands its registry to
-// mpm::run (apps/mpm.hpp), and input checking, the keyword reference, mpm_point and the generic tests know
-// the laws in it.
+// The laws available to a program: those of the lists, and a user's own. A program passes its registry to
+// mpm::run (apps/mpm.hpp); input checking, the keyword reference, mpm_point and the generic tests use its
+// laws.
 //
 //   mpm::Registry registry;
 //   registry.add<MyLaw>();
 //
 // A law is a struct as in physics/strength/iso_harden.hpp, physics/eos/jwl.hpp or
-// physics/failure/plastic_strain.hpp; its function update, line or fails says to which family it belongs.
-// add() compiles it here, once, with the flags of this project: it goes with every law of the other families.
-// Refused, by name: a name that is taken, a parameter without range or meaning, headers that are not those of
-// the library. Shown by tests/physics/registry_test.cpp and tests/hygiene/consumer.
+// physics/failure/plastic_strain.hpp; its function update, linearise or fails determines its family. add()
+// compiles it once, with the flags of this project, for use with every law of the other families. It rejects,
+// by name: a name already in use, a parameter without range or meaning, and headers of another build than the
+// library. Shown by tests/physics/registry_test.cpp and tests/hygiene/consumer.
 #pragma once
 
 #include <cstddef>
@@ -28,11 +28,11 @@
 
 namespace mpm::physics {
 
-/// A law of a family: its table, and how it is made. Laws of one name are told apart by `chosen`.
+/// A law of a family: its table, and its factory. `chosen` selects among laws of one name.
 template <class Interface>
 struct LawEntry {
   core::TypeInfo info;
-  bool (*chosen)(const core::LawInput&) = nullptr;  ///< null: by the name alone
+  bool (*chosen)(const core::LawInput&) = nullptr;  ///< null: selected by the name alone
   std::unique_ptr<Interface> (*make)(const core::LawInput&, double reference_density) = nullptr;
 };
 using StrengthLawEntry = LawEntry<StrengthLaw>;
@@ -91,14 +91,14 @@ auto entry_of() {
   return entry;
 }
 
-/// What headers and library must agree in.
+/// Properties in which headers and library must agree.
 struct BuildTraits {
   int lanes = 0, columns = 0;
   std::size_t batch = 0, strength_point = 0, parameter_info = 0;
   bool assertions = false;
   friend bool operator==(const BuildTraits&, const BuildTraits&) = default;
 
-  /// Of the file that calls it.
+  /// Those of the calling file.
   static constexpr BuildTraits here() {
     BuildTraits t{MPM_SIMD_LANES, core::column_count, sizeof(core::Batch), sizeof(StrengthPoint<double>),
                   sizeof(core::ParameterInfo)};
@@ -113,7 +113,7 @@ class Registry {
  public:
   Registry();  ///< the laws of the lists
 
-  /// A law from outside. What is wrong with it goes to faults(), and the law is left out.
+  /// Adds an external law. Its errors are appended to faults(), and the law is omitted.
   template <class Law>
   Registry& add() {
     static_assert(
@@ -136,15 +136,15 @@ class Registry {
     take(entry_of<Law>(), BuildTraits::here());
     return *this;
   }
-  /// What is wrong with the laws that were added, a sentence each; the programs refuse to start with any.
+  /// Errors in the added laws, one sentence each; the programs refuse to start with any.
   const std::vector<std::string>& faults() const { return faults_; }
-  /// The laws from outside: "StrengthModel Wearing".
+  /// The external laws: "StrengthModel Wearing".
   const std::vector<std::string>& added() const { return added_; }
 
-  /// The parameter tables of all laws, as the input reader and the keyword reference want them.
+  /// The parameter tables of all laws, for the input reader and the keyword reference.
   core::Catalogue catalogue() const;
 
-  /// The law that the input names, ready for use. All throw core::InputErrors.
+  /// Creates the law that the input names. All throw core::InputErrors.
   std::unique_ptr<StrengthLaw> make_strength(const core::LawInput& input, double reference_density) const;
   std::unique_ptr<EosLaw> make_eos(const core::LawInput& input, double reference_density) const;
   std::unique_ptr<FailureLaw> make_failure(const core::LawInput& input, double reference_density) const;
@@ -160,7 +160,7 @@ class Registry {
   std::vector<std::string> faults_, added_;
 };
 
-/// The laws of the lists and no others.
+/// The laws of the lists alone.
 const Registry& built_in_laws();
 
 // The lists, compiled (physics/material/built_in_*.cpp).

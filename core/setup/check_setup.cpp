@@ -69,7 +69,7 @@ double check_setup(std::shared_ptr<const Scene> scene,
   wrong.raise_if_any();
   refuse_uncounted(bodies, 0);
   const GridGeometry geometry = geometry_of(*scene);
-  // Whose box is inside has no particle outside; of the others every particle is looked at, in a few seconds.
+  // A body whose box is inside has no particle outside; for the others every particle is checked.
   constexpr double most_looked_at = 1 << 30;
   std::vector<std::vector<Seed>> samples;
   std::vector<BodySeeds> doubtful;

@@ -1,4 +1,4 @@
-// What the checks of the laws share: the sample's material and its paths, and the failures.
+// Common part of the checks of the laws: the sample's material, its paths, and the failures.
 #pragma once
 
 #include <algorithm>
@@ -31,14 +31,14 @@ class Checker {
   std::unique_ptr<Material> make() const { return make_material(sample.input, sample.detonations, registry); }
   RandomPath path(unsigned seed) const { return {seed, sample.strain, sample.duration}; }
   PointDriver::Options with_viscosity() const { return {.cell_size = sample.cell_size}; }
-  /// rho0 c0^2, the scale of what round-off leaves.
+  /// rho0 c0^2, the scale of round-off.
   double stiffness() const {
     return sample.input.reference_density * std::pow(material->initial_sound_speed(), 2);
   }
-  /// False for bars, whose axis is x, and rigid bodies: not for statements on tensors.
+  /// False for bars, whose axis is x, and rigid bodies: for checks on tensors.
   bool solid() const { return !traits.rigid && !traits.uniaxial; }
 
-  /// Fails unless `found` is at most `allowed`; what is no number never is.
+  /// Fails unless `found` is at most `allowed`; NaN always fails.
   void at_most(double found, double allowed, const std::string& what) {
     if (found <= allowed) return;
     std::ostringstream text;
@@ -55,7 +55,8 @@ class Checker {
   }
 };
 
-/// Along the path; `visit()` after every step. The largest stress, as the scale of what is negligible.
+/// Follows the path; calls `visit()` after every step. Returns the largest stress, the scale of negligible
+/// values.
 template <class Visit>
 double walk(PointDriver& point, const RandomPath& path, int steps, Visit visit) {
   double largest = 0;

@@ -1,7 +1,7 @@
-// What holds for every law, as tests that a law from outside can be put through as well (mpm_point --test):
-// each drives a sample of the law, a material with numbers in it, along smooth paths through stretch, shear
-// and spin, without a grid. None knows a law's name. tests/physics runs them over a sample of every law of
-// the lists; tests/hygiene/consumer over laws from outside.
+// Properties that every law must have, as tests that also apply to external laws (mpm_point --test): each
+// drives a sample of the law, a material with values, along smooth paths through stretch, shear and spin,
+// without a grid. None depends on a law's name. tests/physics runs them over a sample of every law of the
+// lists; tests/hygiene/consumer over external laws.
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ namespace mpm::physics {
 struct LawSample {
   core::MaterialInput input;
   std::vector<core::DetonationItem> detonations;
-  double strain = 0.02;  ///< that a path reaches: beyond yield where the law yields
+  double strain = 0.02;  ///< largest strain of a path: beyond yield where the law yields
   double duration =
       2e-5;  ///< of a path, in the sample's unit of time; strain rates are about strain/duration
   double cell_size = 1e-3;  ///< length of the artificial viscosity, in the sample's unit of length
@@ -26,13 +26,13 @@ struct LawSample {
 
 struct LawCheck {
   std::string_view name;       ///< a word
-  std::string_view statement;  ///< what holds
-  /// What does not hold, a sentence each. Throws core::InputErrors where the sample's numbers are refused.
+  std::string_view statement;  ///< the property
+  /// The violations, one sentence each. Throws core::InputErrors where the sample's values are rejected.
   std::vector<std::string> (*failures)(const LawSample& sample, const Registry& registry);
 };
 
 std::span<const LawCheck> law_checks();
-/// Throws std::logic_error where there is none of this name.
+/// Throws std::logic_error if no check has this name.
 const LawCheck& law_check(std::string_view name);
 
 /// The sample in other units, by the dimensions of the laws' own tables.

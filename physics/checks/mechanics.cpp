@@ -1,4 +1,4 @@
-// What holds of a law's stress, energy and wave speed.
+// Checks of a law's stress, energy and wave speed.
 
 #include <numbers>
 #include <random>
@@ -14,7 +14,7 @@ using core::Vec3;
 
 Failures ends_on_yield_surface(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
-  // Laws that set the pressure have surfaces of both invariants, and tests of their own for the return.
+  // Laws that set the pressure have surfaces in both invariants, and separate tests of the return.
   if (c.traits.sets_pressure) return {};
   PointDriver point(*c.material, {.extra_columns = {Column::yield_stress}});
   if (!point.has(Column::effective_plastic_strain)) return {};
@@ -54,8 +54,7 @@ Failures dissipates(const LawSample& sample, const Registry& registry) {
     const double energy = point.energy(), p = point.value(Column::pressure), v = point.value(Column::volume);
     point.step(l, dt);
     if (point.has(Column::failed) && point.value(Column::failed) > 0) break;
-    // What the stress work puts in, less what the elastic deviator stores: E* of the energy equation without
-    // -p dV.
+    // Stress work minus the energy stored by the elastic deviator: E* of the energy equation without -p dV.
     const double v0 = point.value(Column::mass) / sample.input.reference_density;
     const double dv = point.value(Column::volume) - v;
     const double work = (point.energy() - energy) + 0.5 * (p + point.value(Column::pressure)) * dv / v0;
@@ -93,7 +92,7 @@ Failures converges(const LawSample& sample, const Registry& registry) {
     last = norm(stress_after(coarse << level).first - exact) / scale;
     if (level == 0) first = last;
   }
-  // Errors of round-off size have no order; the moment of failure is only known to a step, so errors scatter.
+  // Errors of round-off size have no order; the time of failure is known only to one step, so errors scatter.
   const double order = std::log2(first / last) / (levels - 1),
                wanted = c.sample.input.failures.empty() ? 0.95 : 0.7;
   if (!(last < 1e-9)) c.at_most(wanted - order, 0, "wanted order of convergence, less the one found");
@@ -121,7 +120,8 @@ Mat3<double> rotation(double angle) {
          skew(s);
 }
 
-/// Error at the end of the path against the same path without ten superposed turns, over the largest stress.
+/// Error at the end of the path relative to the same path without ten superposed turns, over the largest
+/// stress.
 double error_of_turns(const Checker& c, int steps) {
   const RandomPath path = c.path(7);
   PointDriver still(*c.material, {}), turned(*c.material, {});
@@ -144,7 +144,7 @@ Failures objective(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   if (!c.solid()) return {};
   const double coarse = error_of_turns(c, 4000), fine = error_of_turns(c, 8000);
-  // 4000 steps turn by 0.9 degrees each; the angle falls behind by 2 pi 10 (0.0157)^2/12 = 1.3e-3 in all.
+  // 4000 steps turn by 0.9 degrees each; the angle error is 2 pi 10 (0.0157)^2/12 = 1.3e-3 in total.
   c.at_most(fine, 1e-3, "error of the stress with 8000 steps, relative");
   if (!(fine < 1e-12))
     c.at_most(1.8 - std::log2(coarse / fine), 0, "wanted order of convergence 1.8, less the one found");
@@ -177,7 +177,7 @@ Failures energy_balances(const LawSample& sample, const Registry& registry) {
     return std::abs(point.energy() - start - work) / std::max(std::abs(work), 1e-3 * start);
   };
   const double coarse = imbalance(1000), fine = imbalance(4000);
-  // The trapezoid here does not know the turn of the stress within the step: second order all the same.
+  // The trapezoidal rule ignores the rotation of the stress within the step: second order nevertheless.
   c.at_most(fine, 1e-3, "energy less work with 4000 steps, relative");
   if (!(fine < 1e-9))
     c.at_most(0.9 - std::log2(coarse / fine) / 2, 0, "wanted order of convergence 0.9, less the one found");
@@ -191,7 +191,7 @@ double along(const Sym3<double>& a, const Vec3<double>& n) {
          2 * (n.x * n.y * a.xy + n.y * n.z * a.yz + n.x * n.z * a.xz);
 }
 
-/// Stress along n after one small step of strain along n; the point is left as it was.
+/// Stress along n after one small step of strain along n; the point is restored.
 double stress_after(PointDriver& point, const Vec3<double>& n, double strain, double dt) {
   const PointDriver::State state = point.save();
   const double rate = strain / dt;
@@ -203,16 +203,15 @@ double stress_after(PointDriver& point, const Vec3<double>& n, double strain, do
   return stress;
 }
 
-/// d(stress along n)/d(strain along n), against a step without strain: what relaxes by itself is no
-/// stiffness.
+/// d(stress along n)/d(strain along n), relative to a step without strain: relaxation is not stiffness.
 double tangent(PointDriver& point, const Vec3<double>& n, double strain, double dt) {
   return (stress_after(point, n, strain, dt) - stress_after(point, n, 0, dt)) / strain;
 }
 
 }  // namespace
 
-/// rho c^2 against the slope of the stress for a small, fast uniaxial strain in many directions, found by
-/// differences, at states along a path. Elastic unloading is the stiffest answer, so both signs are tried.
+/// rho c^2 against the slope of the stress for a small, fast uniaxial strain in many directions, by
+/// differences, at states along a path. Elastic unloading is stiffest, so both signs are tried.
 Failures wave_speed_bounds_tangent(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   if (!c.solid() || c.traits.viscous) return {};  // viscous stress is not a modulus
@@ -222,16 +221,16 @@ Failures wave_speed_bounds_tangent(const LawSample& sample, const Registry& regi
   const RandomPath path = c.path(13);
   const int steps = 200;
   double largest = 0, stiffest = 0;
-  // Where strength follows the rate of the whole strain, a fast strain lifts it at once, which is no
-  // stiffness: in tension RHT's pressure with it. A slow one leaves it at rest.
+  // Where strength depends on the total strain rate, a fast strain raises it at once, which is not stiffness;
+  // in tension this includes RHT's pressure. A slow strain leaves it constant.
   const double dt = sample.duration * (c.traits.follows_strain_rate ? 5e4 : 5e-8);
   for (int i = 0; i < steps; ++i) {
     point.step(path.gradient((i + 0.5) * sample.duration / steps), sample.duration / steps);
     if (i % 20 != 0) continue;
-    // Strength that damage takes goes on sinking for some steps.
+    // Strength lost to damage continues to decrease for some steps.
     for (int rest = 0; rest < 30; ++rest) point.step({}, dt);
     const double modulus = point.density() * point.sound_speed() * point.sound_speed();
-    // (2-57) holds for dE = -p dV. The work of the deviatoric stress heats as well; with dp/dE < 2 here that
+    // (2-57) holds for dE = -p dV. The work of the deviatoric stress also heats; with dp/dE < 2 here that
     // adds at most twice the largest principal deviator, 2/3 of the von Mises stress.
     const double bound = modulus + (sample.input.eos ? 4.0 / 3.0 * mises(point.deviator()) : 0);
     for (int k = 0; k < 6; ++k) {
@@ -240,15 +239,15 @@ Failures wave_speed_bounds_tangent(const LawSample& sample, const Registry& regi
       for (const double strain : {1e-7, -1e-7}) {
         const double slope = tangent(point, n, strain, dt);
         largest = std::max(largest, slope / bound);
-        // An explosive has the speed of its products before it has burnt.
+        // An explosive has the wave speed of its products before it has burnt.
         const bool burns = point.has(Column::burn_fraction) && point.value(Column::burn_fraction) < 1;
         stiffest = std::max(stiffest, burns ? 1 : slope / modulus);
       }
     }
   }
-  // The difference quotient is of first order in 1e-7, with round-off 1e-16 of the modulus over 1e-7 besides.
+  // The difference quotient has a first-order error of 1e-7, plus round-off 1e-16 of the modulus over 1e-7.
   c.at_most(largest, 1 + 1e-5, "stiffest tangent over rho c^2: the time step is not safe");
-  // And it is no idle bound: in some direction the material is as stiff as it says.
+  // The bound is sharp: in some direction the material is as stiff as it states.
   c.at_most(0.98 - stiffest, 0, "rho c^2 is far above every tangent; 0.98 less the stiffest over rho c^2");
   return c.failures;
 }

@@ -1,5 +1,5 @@
-// A smooth path of the velocity gradient through a bounded strain, with stretch, shear and spin at once: the
-// same for every material, in any unit of time.
+// A smooth path of the velocity gradient through a bounded strain, with simultaneous stretch, shear and spin:
+// the same for every material, in any unit of time.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class RandomPath {
     std::array<double, 9> l{};
     for (std::size_t i = 0; i < 9; ++i) {
       const auto [a, w] = components_[i];
-      // The spin's share is larger: rotation is what the tests are after.
+      // The spin's share is larger: the tests target rotation.
       l[i] = strain_ * a * w * std::sin(2 * w * t / duration_) / duration_;
     }
     const double spin = 10 * strain_ * std::cos(3 * t / duration_) / duration_;

@@ -1,4 +1,4 @@
-// What holds of a law's state: it lies in the declared columns, and nowhere else.
+// Checks that a law's state is in the declared columns and nowhere else.
 
 #include <bit>
 #include <cstdint>
@@ -37,8 +37,8 @@ Failures instances_agree(const LawSample& sample, const Registry& registry) {
   const RandomPath path = c.path(1);
   const double scale = walk(vector, path, 200);
   walk(scalar, path, 200);
-  // Contraction and the library's exp and log differ: a few roundings a step, of the largest stress met, and
-  // of the moduli behind the differences of nearly equal volumes.
+  // Contraction and the library's exp and log differ: a few roundings per step, relative to the largest
+  // stress and to the moduli multiplied by differences of nearly equal volumes.
   c.at_most(norm(vector.stress() - scalar.stress()), 1e-12 * scale + 1e-13 * c.stiffness(),
             "difference of the stresses");
   c.at_most(std::abs(vector.energy() - scalar.energy()), 1e-12 * std::max(scale, std::abs(scalar.energy())),
@@ -63,7 +63,7 @@ Failures rest_stays(const LawSample& sample, const Registry& registry) {
   return c.failures;
 }
 
-/// What a restart does: a material made anew, the particles' columns and the time.
+/// Emulates a restart: a new material, the particles' columns and the time.
 Failures restarts(const LawSample& sample, const Registry& registry) {
   constexpr int steps = 100;
   Checker c(sample, registry);
@@ -85,7 +85,7 @@ Failures restarts(const LawSample& sample, const Registry& registry) {
   return c.failures;
 }
 
-/// SI and mm-g-ms where the sample is in SI. An absolute tolerance inside a law shows at once.
+/// SI and mm-g-ms, for a sample in SI. Reveals absolute tolerances inside a law.
 Failures units_agree(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   const double length = 1e3, mass = 1e3, time = 1e3, velocity = length / time,
@@ -96,7 +96,7 @@ Failures units_agree(const LawSample& sample, const Registry& registry) {
   PointDriver a(*c.material, c.with_viscosity()), b(*other, {.cell_size = sample.cell_size * length});
   const double scale = walk(a, path, 100);
   walk(b, converted_path, 100);
-  // Only the roundings of the conversion differ.
+  // Only the rounding of the conversion differs.
   c.at_most(norm(a.stress() - (1 / stress) * b.stress()), 1e-11 * scale + 1e-13 * c.stiffness(),
             "difference of the stresses");
   c.at_most(std::abs(a.energy() - b.energy() / stress), 1e-11 * std::max(scale, std::abs(a.energy())),
@@ -129,7 +129,7 @@ struct Crowd {
     }
     c.material->initialise(batch, {});
   }
-  /// The batch points into this crowd, wherever it lies.
+  /// Makes the batch point into this crowd; needed after a move.
   void connect() {
     batch.layout = &layout;
     for (int b = 0; b < batch.blocks; ++b) batch.block[b] = memory.data() + b * layout.block_doubles();
@@ -163,7 +163,7 @@ Failures neighbours_do_not_matter(const LawSample& sample, const Registry& regis
     }
     c.material->update(crowd.batch, {});
     for (std::size_t n = 0; n < alone.size(); ++n) {
-      // The lone particle sits in another lane; the others hold still.
+      // The single particle is in another lane; the others do not move.
       core::Batch& batch = alone[n].batch;
       for (int k = 0; k < 9; ++k) {
         std::fill_n(batch.gradient[k], core::block_lanes, 0.0);
@@ -185,13 +185,13 @@ Failures neighbours_do_not_matter(const LawSample& sample, const Registry& regis
 
 namespace {
 
-/// Columns that are written for whoever puts them into the layout, without being state of the law.
+/// Output columns, written if the layout has them, without being state of the law.
 bool is_output(Column c) { return c == Column::yield_stress || c == Column::sound_speed; }
 
 ColumnSet every_column_but_strains() {
   ColumnSet set;
   for_each_column([&](Column c) {
-    // The layout itself switches these on: their presence is the request to accumulate, to heat, to fail.
+    // The presence of these columns in the layout requests accumulation, heating or failure.
     const bool requests = c >= Column::strain_xx && c <= Column::strain_xz;
     if (!requests && c != Column::failed && c != Column::temperature) set.add(c);
   });
@@ -200,8 +200,7 @@ ColumnSet every_column_but_strains() {
 
 constexpr int column_steps = 60;
 
-/// State after the path, but for the column `changed`, which is set to `value` before the second half where
-/// `set` is true.
+/// State after the path; the column `changed` is set to `value` before the second half if `set` is true.
 std::vector<double> state_after(const Checker& c, const ColumnSet& watched, Column changed, double value,
                                 bool set) {
   PointDriver point(*c.material, c.with_viscosity());
@@ -217,8 +216,8 @@ std::vector<double> state_after(const Checker& c, const ColumnSet& watched, Colu
 
 }  // namespace
 
-/// A layout with every column there is holds a pattern where nothing was declared; the pattern must survive,
-/// and the results must be those of the lean layout.
+/// In a layout with all columns the undeclared ones hold a pattern; the pattern must survive, and the results
+/// must equal those of the minimal layout.
 Failures columns_suffice(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   const double pattern = std::nan("0x123456");
@@ -254,7 +253,7 @@ Failures columns_are_used(const LawSample& sample, const Registry& registry) {
     walk(end, c.path(9), column_steps);
     const double dt = sample.duration / column_steps, rate = 0.5 / sample.duration;
     for (int i = 0; i < column_steps; ++i) burst.step({rate, 0, 0, 0, rate, 0, 0, 0, rate}, dt);
-    // Written on the path, where the material is torn apart, or at the start, where all columns are zero
+    // Written on the path, where the material is torn apart, or at the start, where all columns were zero
     // before.
     const double first = start.value(column);
     const bool written =

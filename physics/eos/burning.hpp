@@ -1,17 +1,16 @@
-// The equation of state of an explosive that is not all burnt: the burn fraction F of its strength model
-// times what the equation says of the products (manual 3-9), p = F (a + b E). F is history here: the strength
-// stage has set it for this step. The wave speed is that of the products, however little has burnt, and so is
-// the sound speed in the artificial viscosity: the time step is ready for a front that arrives within the
-// step. Where compression burns, it stiffens: the line carries dF/dmu (a + b E) besides. Shown by
-// tests/physics/burn_test.cpp.
+// Equation of state of a partly burnt explosive: the burn fraction F of its strength model times the pressure
+// of the products (manual 3-9), p = F (a + b E). F is a state variable here: the strength stage has updated
+// it for this step. The wave speed is that of the products for any F, and so is the sound speed in the
+// artificial viscosity: the time step then allows for a front that arrives within the step. Burning by
+// compression adds stiffness: the line includes dF/dmu (a + b E). Shown by tests/physics/burn_test.cpp.
 #pragma once
 
 #include "physics/eos/point.hpp"
 
 namespace mpm::physics {
 
-/// A strength model that burns: it keeps F in the column burn_fraction and states -dF/d(V/V0) of what
-/// compression alone burns, which is one number for the whole of the burn; 0: compression burns nothing.
+/// A strength model that burns: it stores F in the column burn_fraction and defines -dF/d(V/V0) for burning
+/// by compression, one constant for the whole burn; 0: compression burns nothing.
 template <class Law>
 concept Burns = requires(const Law& law) {
   law.compression_burn;
@@ -40,7 +39,7 @@ struct Burning : Eos {
     products.db += slope * products.b;
     return products;
   }
-  /// What presses.
+  /// The effective pressure.
   template <class T>
   LinearisedPressure<T> acting(const EosPoint<T>& point, const LinearisedPressure<T>& products) const {
     const T f = point.burn_fraction;
@@ -48,7 +47,7 @@ struct Burning : Eos {
   }
 };
 
-/// The part of the products' line that presses: all of it, but for an explosive.
+/// The effective part of the products' line: all of it, except for an explosive.
 template <class T, class Eos>
 LinearisedPressure<T> acting_line(const Eos& eos, const EosPoint<T>& point,
                                   const LinearisedPressure<T>& line) {

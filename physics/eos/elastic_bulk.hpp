@@ -1,7 +1,6 @@
 // The pressure of a material without an equation of state: linear elastic in volume, p = p - K tr(de) (thesis
-// 2-97), which is p = K ln(rho/rho0) (2-58) in increments. Not a type of the input; K comes from Young and
-// Poisson. The energy of a body placed at another density is the work of bringing it there from the reference
-// density.
+// 2-97), which is p = K ln(rho/rho0) (2-58) in increments. Not an input type; K follows from Young and
+// Poisson. The energy of a body placed at another density is the work from the reference density to it.
 #pragma once
 
 #include <array>
@@ -30,7 +29,8 @@ struct ElasticBulk {
     point.energy = bulk * (v * log_v - v + 1.0);
   }
 
-  /// What a failed particle feels: of the density alone, so that a gap must close before it presses again.
+  /// Pressure of a failed particle: from the density alone, so that a gap must close before it carries
+  /// pressure.
   template <class T>
   T broken_pressure(const EosPoint<T>& point) const {
     using core::log;

@@ -2,7 +2,7 @@
 // 2-130):
 //   p = pH (1 - gamma mu/2) + gamma0 E,   gamma = gamma0/(1 + mu),   in tension p = rho0 C0^2 mu + gamma0 E
 //   pH = rho0 C0^2 mu (1 + mu) / (1 - (S1 - 1) mu)^2,   or its cubic expansion where simplified = 1
-// Limit: pH has a pole at mu = 1/(S1 - 1), where the shock speed is infinite; the compression is held below
+// Limit: pH has a pole at mu = 1/(S1 - 1), where the shock speed is infinite; the compression is kept below
 // it. Shown by tests/physics/gruneisen_test.cpp.
 #pragma once
 
@@ -50,7 +50,7 @@ struct Gruneisen {
   }
   void prepare(double reference_density) {
     stiffness = reference_density * c0 * c0;
-    // At 95 % of the pole pH is some 400 times what it would be without it: far beyond any use of the law.
+    // At 95 % of the pole pH is some 400 times its value without the pole: far beyond any use of the law.
     if (simplified == 0 && s1 > 1) compression_limit = 0.95 / (s1 - 1);
   }
 

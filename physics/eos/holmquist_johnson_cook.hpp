@@ -4,10 +4,10 @@
 //   mu_m <= mu_plock  p = PCrush + Ktr (mu_m - MuCrush) + [(1 - F) Kel + F K1](mu - mu_m),
 //                     Ktr = (PLock - PCrush)/(mu_plock - MuCrush), F = (mu_m - MuCrush)/(mu_plock - MuCrush)
 //   beyond            p = K1 m + K2 m^2 + K3 m^3 at mu_m, + K1 [m(mu) - m(mu_m)]
-// Loading is mu = mu_m. mu_plock is where the third line reaches PLock; the manual's 3-56 is that for
-// K2 = K3 = 0 and would leave a step in the pressure otherwise. mu_p, the compression that unloading to p = 0
-// would leave, is booked for the strength model's damage until the pores are closed. No heat. The limit of
-// tension is the strength model's. Shown by tests/physics/holmquist_johnson_cook_test.cpp.
+// Loading is mu = mu_m. mu_plock is where the third line reaches PLock; the manual's 3-56 is that value for
+// K2 = K3 = 0 and otherwise causes a jump in the pressure. mu_p, the compression that remains after unloading
+// to p = 0, is recorded for the strength model's damage until the pores are closed. No heat. The tension
+// limit is the strength model's. Shown by tests/physics/holmquist_johnson_cook_test.cpp.
 #pragma once
 
 #include <string>
@@ -82,7 +82,7 @@ struct HolmquistJohnsonCookBulk {
     using core::max;
     const T mu = point.compression, top = max(point.max_compression, mu);
     const Branch<T> from = branch(top);
-    // What unloading would leave; the dense material changes nothing any more.
+    // Compression after unloading; constant for the dense material.
     const T crushed = core::min(top, mu_plock);
     const Branch<T> pores = branch(crushed);
     const T left = core::select(crushed > mu_crush, crushed - pores.pressure / pores.unloading, 0.0);
@@ -112,7 +112,7 @@ struct HolmquistJohnsonCookBulk {
             select(dense, T(locked * k1), select(crushing, elastic + f * (k1 - elastic), T(elastic)))};
   }
   double dense(double m) const { return m * (k1 + m * (k2 + m * k3)); }
-  /// Smallest m with dense(m) = PLock; 0 where there is none below ten times the linear answer.
+  /// Smallest m with dense(m) = PLock; 0 if there is none below ten times the linear solution.
   double dense_compression() const {
     const double step = p_lock / k1 / 256;
     double low = 0;

@@ -1,4 +1,4 @@
-// The equations of state that the input can name. To add one: a file beside these, and its name here.
+// The equations of state of the input. To add one: a file beside these, and its name here.
 #pragma once
 
 #include "physics/eos/gruneisen.hpp"

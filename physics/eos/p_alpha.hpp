@@ -22,7 +22,7 @@
 
 namespace mpm::physics {
 
-/// EOSID: which number the language gives to the solid's equation. Specialised beside the list of laws.
+/// EOSID: the input's number of the solid's equation. Specialised beside the list of laws.
 template <class Solid>
 inline constexpr int solid_number = 0;
 
@@ -89,7 +89,7 @@ struct PAlpha : Solid {
     }
     return false;
   }
-  /// The laws of the list share one name: the input's EOSID tells which is meant.
+  /// The laws of the list share one name: the input's EOSID selects one.
   static bool chosen_by(const core::LawInput& input) {
     return input.value_or("EOSID", 0) == solid_number<Solid>;
   }
@@ -149,7 +149,7 @@ struct PAlpha : Solid {
       distension = select(crushes, crushed, elastic);
       point.porosity = select(crushes, 1.0 - 1.0 / crushed, point.porosity);
     }
-    // The answer to what comes is that of elastic unloading, the stiffest.
+    // The stiffness is that of elastic unloading, the largest.
     const Pressure<T> now = solid(point, distension);
     const T opening = elastic_slope * core::max((1.0 / (1.0 - point.porosity) - 1.0) * (1 / pores), 0.0);
     const T share = 1.0 / (1.0 + opening * now.by_distension);
@@ -195,8 +195,8 @@ struct PAlpha : Solid {
   }
 
   /// Where p(alpha) meets the crush curve, for the lanes of `crushes`. In x = [(alpha - 1)/(alpha_p -
-  /// 1)]^(1/n) the curve is straight, p = Plock - (Plock - Pcrush) x, and f below grows with x: Newton's
-  /// method in a shrinking bracket, each lane by itself.
+  /// 1)]^(1/n) the curve is straight, p = Plock - (Plock - Pcrush) x, and f below increases with x: Newton's
+  /// method in a shrinking bracket, independently per lane.
   template <class T>
   T crushed_distension(const EosPoint<T>& point, const T& x_reached, core::MaskOf<T> crushes) const {
     using core::pow;
@@ -220,8 +220,8 @@ struct PAlpha : Solid {
     return select(compacted, 1.0, 1.0 + pores * pow(x, n));
   }
 
-  /// alpha with p(alpha) = pressure at the compression mu, no energy; infinite where the solid alone would
-  /// not reach the pressure.
+  /// alpha with p(alpha) = pressure at the compression mu, without energy; infinite where the solid alone
+  /// does not reach the pressure.
   double distension_at(double pressure, double mu) const {
     EosPoint<double> point{};
     point.compression = mu;
@@ -233,7 +233,7 @@ struct PAlpha : Solid {
     }
     return high;
   }
-  /// The solid's attributes, which the EOSID chosen needs together; and C0, where it is not among them.
+  /// The solid's attributes, required together for the chosen EOSID; and C0, if it is not among them.
   static constexpr auto solid_parameters() {
     constexpr auto inner = Solid::parameters();
     std::array<Parameter<PAlpha>, inner.size()> table{};

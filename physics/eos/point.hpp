@@ -1,4 +1,4 @@
-// What an equation of state sees, and what it answers with.
+// Input and result of an equation of state.
 #pragma once
 
 #include <array>
@@ -40,8 +40,8 @@ struct EosPoint {
   }
 };
 
-/// The pressure at the volume reached, as a line in the energy: p = a + b E (thesis 2-91). A law that is not
-/// linear gives its tangent at the point's energy. da and db are derivatives with respect to mu at fixed E.
+/// The pressure at the new volume, linear in the energy: p = a + b E (thesis 2-91). A nonlinear law gives its
+/// tangent at the point's energy. da and db are derivatives with respect to mu at fixed E.
 template <class T>
 struct LinearisedPressure {
   T a, b, da, db;

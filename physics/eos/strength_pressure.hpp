@@ -1,5 +1,5 @@
 // The pressure of a material whose strength law computes it with the deviator (`sets_pressure`): the strength
-// stage leaves it and its modulus in the batch, and the energy follows from it. Not a type of the input.
+// stage stores it and its modulus in the batch, and the energy follows from it. Not an input type.
 // Shown by tests/physics/laws_test.cpp over the samples of such laws.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace mpm::physics {
 
-/// The law's `update` leaves its pressure and bulk modulus in the point; `place` starts them.
+/// The law's `update` sets the pressure and bulk modulus in the point; `place` initialises them.
 template <class Law>
 concept SetsPressure = requires {
   requires Law::sets_pressure;
@@ -31,7 +31,8 @@ struct StrengthPressure {
     return {pressure, 0.0, modulus * relative_volume, 0.0};
   }
 
-  /// What a failed particle feels: of the density alone, so that a gap must close before it presses again.
+  /// Pressure of a failed particle: from the density alone, so that a gap must close before it carries
+  /// pressure.
   template <class T>
   T broken_pressure(const EosPoint<T>& point) const {
     using core::log;

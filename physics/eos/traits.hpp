@@ -1,4 +1,4 @@
-// What an equation of state says of itself to the strength model beside it, and to the material.
+// Properties of an equation of state for the strength model and the material.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@ namespace mpm::physics {
 
 struct EosTraits {
   core::ColumnSet columns;               ///< of its state
-  std::optional<double> crush_pressure;  ///< stress, where pores begin to close; none: the law has none
+  std::optional<double> crush_pressure;  ///< stress, where pores begin to close; unset if the law has none
   bool solid_has_sound_speed = false;    ///< C0 is that of the solid in a porous material
 };
 

@@ -1,9 +1,9 @@
 // Fails, and with Erosion is deleted, where the instantaneous geometric strain exceeds ErosionStrain (manual
-// 3.2.3.5, which names it and gives no equation): the effective strain of the present deformation, which can
-// also fall again (that is what tells it from an accumulated one; ANSYS Explicit Dynamics Guide 2024
-// R2, 11.13: from the global strain components of the cycle),
+// 3.2.3.5, which names it and gives no equation): the effective strain of the current deformation, which
+// unlike an accumulated strain can also decrease (ANSYS Explicit Dynamics Guide 2024 R2, 11.13: from the
+// global strain components of the cycle),
 //   e_eff = sqrt(2/3 e':e'),   e the logarithmic strain (physics/failure/logarithmic_strain.hpp).
-// A bound of 0 is off. Shown by tests/physics/principal_failure_test.cpp.
+// A bound of 0 disables the criterion. Shown by tests/physics/principal_failure_test.cpp.
 #pragma once
 
 #include <string_view>

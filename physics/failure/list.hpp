@@ -1,4 +1,4 @@
-// The failure models that the input can name. To add one: a file beside these, and its name here.
+// The failure models of the input. To add one: a file beside these, and its name here.
 #pragma once
 
 #include "physics/failure/geometric_strain.hpp"

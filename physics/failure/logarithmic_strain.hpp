@@ -1,6 +1,6 @@
-// Principal values of the logarithmic strain e = ln V, V^2 = F F^T (Hencky). It is what the sum of strain
-// increments becomes where the axes stay, does not change under rotation, returns to zero with the shape, and
-// its trace is ln(V/V0).
+// Principal values of the logarithmic strain e = ln V, V^2 = F F^T (Hencky). It equals the sum of strain
+// increments where the axes are fixed, is invariant under rotation, returns to zero with the shape, and its
+// trace is ln(V/V0).
 #pragma once
 
 #include <limits>
@@ -19,7 +19,7 @@ core::Vec3<T> principal_strains(const FailurePoint<T>& point) {
       z{point.f_zx, point.f_zy, point.f_zz};
   const core::Vec3<T> squared =
       core::principal_values(core::Sym3<T>{dot(x, x), dot(y, y), dot(z, z), dot(x, y), dot(y, z), dot(x, z)});
-  // A stretch below round-off of the largest one may come out as zero or less.
+  // A stretch below the round-off of the largest one may be computed as zero or less.
   const auto strain = [](const T& square) {
     return 0.5 * log(core::max(square, std::numeric_limits<double>::min()));
   };

@@ -1,4 +1,4 @@
-// What a failure model sees: the state reached at the end of the step.
+// Input of a failure model: the state at the end of the step.
 #pragma once
 
 #include <array>

@@ -2,9 +2,9 @@
 // particle's factor x, drawn once at the start, per particle or per cell of the background grid.
 //   Gauss    density exp(-(x - GaussMean)^2 / (2 GaussStd^2)) / (sqrt(2 pi) GaussStd)             (3.60)
 //   Weibull  P(x) = 1 - exp(-(WeibPartVol/WeibRefVol) (x/WeibMed)^WeibMod)                        (3.62)
-// The manual calls what GaussStd holds a variance; it is taken as what its name says, the deviation: with the
+// The manual calls GaussStd a variance; as its name says, it is taken as the standard deviation: with the
 // default 0.2 as a variance one particle in eighty would have a negative threshold. A negative draw counts as
-// 0: a particle without strength, whose criterion is met by anything beyond zero. Shown by
+// 0: a particle without strength, whose criterion is met by any value above zero. Shown by
 // tests/physics/threshold_scatter_test.cpp.
 #pragma once
 
@@ -27,7 +27,7 @@ class ThresholdScatter {
 
   /// `item`: identity of the particle, or number of the cell.
   double factor(std::uint64_t item) const {
-    constexpr std::uint64_t seed = 0x4661696c75726531;  // any; fixed, so that a case repeats
+    constexpr std::uint64_t seed = 0x4661696c75726531;  // arbitrary; fixed, so that a case is reproducible
     const auto kind = static_cast<std::uint32_t>(input_.spread);
     switch (input_.distribution) {
       case Input::Distribution::gauss:

@@ -1,4 +1,4 @@
-// From a list of laws to what the registry holds.
+// Converts a list of laws to registry entries.
 #pragma once
 
 #include <type_traits>

@@ -1,5 +1,5 @@
-// What every material has beside its laws: artificial viscosity, what happens after failure, heat
-// (manual 3.2.1), and the common part of an equation of state (manual 3.2.2).
+// Parameters of every material beside its laws: artificial viscosity, behaviour after failure, heat (manual
+// 3.2.1), and the common part of an equation of state (manual 3.2.2).
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
-// The deformation gradient, for what asks for it: F^{n+1} = (I - L dt/2)^-1 (I + L dt/2) F^n with L of the
-// middle of the step. The rotation in it is the one of the stress (Hughes and Winget 1980), orthogonal to
-// round-off, so that no strain comes from spinning; second order in dt. A step that would turn the particle
-// inside out, or whose L is no number, leaves F, as it leaves the volume (physics/material/kinematics.hpp
-// counts it), and so does failure. Shown by tests/physics/principal_failure_test.cpp.
+// The deformation gradient, for laws and outputs that need it: F^{n+1} = (I - L dt/2)^-1 (I + L dt/2) F^n
+// with L at midstep. Its rotation is that of the stress update (Hughes and Winget 1980), orthogonal to
+// round-off, so that rotation causes no strain; second order in dt. A step that would invert the particle, or
+// whose L is not finite, leaves F and the volume unchanged (physics/material/kinematics.hpp counts it), and
+// so does failure. Shown by tests/physics/principal_failure_test.cpp.
 #pragma once
 
 #include "physics/material/kinematics.hpp"
@@ -18,7 +18,7 @@ template <class T>
     const core::Mat3<T> l = load_gradient<T>(batch, row);
     const core::Mat3<T> ahead = unit_plus(0.5 * batch.dt, l), behind = unit_plus(-0.5 * batch.dt, l);
     const T below = determinant(behind), above = determinant(ahead);
-    // The nine columns are neighbours, in the order of Mat3.
+    // The nine columns are adjacent, in the order of Mat3.
     const auto at = [&](int i) { return block + f_at + core::block_lanes * i; };
     const auto get = [&](int i) { return core::load<T>(at(i)); };
     const core::Mat3<T> old{get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8)};

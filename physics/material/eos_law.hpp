@@ -1,6 +1,6 @@
-// An equation of state behind an interface that is called once per batch, as
-// physics/material/strength_law.hpp has it for strength models. EosOf<Eos> holds two instances of the
-// pressure stage: the equation alone, and that of the products of an explosive that is not all burnt.
+// Type-erased equation of state, called once per batch, as physics/material/strength_law.hpp for strength
+// models. EosOf<Eos> holds two instances of the pressure stage: the equation alone, and with the burn
+// fraction of an explosive.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ class EosLaw {
   EosLaw& operator=(const EosLaw&) = delete;
   virtual ~EosLaw() = default;
 
-  /// Beside an explosive: what its traits say of compression_burn.
+  /// For an explosive: sets compression_burn from its traits.
   void burn(std::optional<double> compression_burn) { burn_ = compression_burn; }
 
   virtual EosTraits traits() const = 0;
@@ -98,7 +98,7 @@ class EosOf final : public EosLaw {
   Eos eos_;
 };
 
-/// The law behind the interface, where it is of that type; else null.
+/// Downcast to a law of that type; null if it is of another type.
 template <class Eos>
 const Eos* law_cast(const EosLaw& eos) {
   const auto* const of = dynamic_cast<const EosOf<Eos>*>(&eos);

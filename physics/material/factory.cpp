@@ -1,5 +1,5 @@
-// From the input's names and numbers to a material. Ranges were checked when the file was read; here only
-// what several elements together forbid.
+// Creates a material from the input's names and values. Ranges were checked when the file was read; here only
+// the combinations of several elements are checked.
 
 #include "physics/eos/elastic_bulk.hpp"
 #include "physics/material/material.hpp"
@@ -9,11 +9,11 @@ namespace mpm::physics {
 
 namespace {
 
-/// What stands for the pressure where the input gives no equation of state.
+/// The pressure law where the input gives no equation of state.
 std::unique_ptr<EosLaw> elastic_bulk(const StrengthTraits& strength, const CommonParameters& common,
                                      const core::MaterialInput& input) {
   double bulk = common.young / (3 * (1 - 2 * common.poisson));
-  if (strength.compression_burn) bulk = 0;  // what burns is an equation of products
+  if (strength.compression_burn) bulk = 0;  // burning material needs an equation of products
   if (strength.bulk) bulk = *strength.bulk;
   if (!(bulk > 0)) {
     throw core::InputErrors(input.strength.source, "StrengthModel",
@@ -39,7 +39,7 @@ std::unique_ptr<EosLaw> make_eos(const core::MaterialInput& input, const Strengt
   return registry.make_eos(*input.eos, input.reference_density);
 }
 
-/// What the strength model says of what it is told of the rest.
+/// Rejects the material if the strength model reports a fault.
 void refuse(const std::string& fault, const core::MaterialInput& input) {
   if (!fault.empty()) throw core::InputErrors(input.strength.source, "StrengthModel", fault);
 }

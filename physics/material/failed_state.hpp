@@ -1,5 +1,5 @@
-// What a failed particle's pressure may be (manual 3.2.1, FailedType): 0 no tension, 1 none at all, 2 tension
-// down to TensileCutoff, and zero beyond.
+// Pressure of a failed particle (manual 3.2.1, FailedType): 0 no tension, 1 none at all, 2 tension down to
+// TensileCutoff, and zero beyond.
 #pragma once
 
 #include "core/simd/lanes.hpp"
@@ -21,7 +21,7 @@ T allowed_pressure(const FailedRules& rules, const T& pressure) {
   }
 }
 
-/// A failed particle's pressure, where `pressure` is what the equation of state says.
+/// A failed particle's pressure; `pressure` is that of the equation of state.
 template <class T, class Eos>
 T broken_pressure(const Eos& eos, const FailedRules& rules, const EosPoint<T>& point, const T& pressure) {
   if constexpr (requires { eos.broken_pressure(point); }) {

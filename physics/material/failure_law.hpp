@@ -1,5 +1,4 @@
-// A failure model behind an interface that is called once per batch, as physics/material/strength_law.hpp has
-// it for strength models.
+// Type-erased failure model, called once per batch, as physics/material/strength_law.hpp for strength models.
 #pragma once
 
 #include <utility>
@@ -17,7 +16,7 @@ class FailureLaw {
   virtual ~FailureLaw() = default;
 
   virtual core::ColumnSet columns() const = 0;
-  /// As physics/material/failure_stage.hpp has it.
+  /// See physics/material/failure_stage.hpp.
   virtual void judge(const core::Batch& batch, bool erodes, bool scatters, double* verdict,
                      Instance instance) const = 0;
 };

@@ -1,8 +1,8 @@
-// Fourth stage, where the material can fail: every failure model judges the same state, then the worst
+// Fourth stage, where the material can fail: every failure model evaluates the same state, and the worst
 // verdict counts (manual 3.2.3: any one suffices). Verdicts and the column `failed`: 0 intact, 1 failed, 2 to
 // be eroded by the step. A particle that fails loses its deviatoric stress and the pressure that FailedType
-// forbids; the elastic energy of both stays in it as heat. The wave speed keeps the intact value for this one
-// step, which is on the safe side.
+// excludes; the elastic energy of both remains as heat. The wave speed keeps the intact value for this one
+// step, which is conservative.
 #pragma once
 
 #include <variant>
@@ -14,7 +14,7 @@
 
 namespace mpm::physics {
 
-/// `verdict` becomes at least 1 (2 where the model erodes) where the model says so. `scatters`: the particles
+/// Sets `verdict` to at least 1 (2 where the model erodes) where the model fails. `scatters`: the particles
 /// have their own threshold factors.
 template <class T, class Model>
 [[gnu::noinline, gnu::flatten]] void judge(const core::Batch& batch, const Model& model, bool erodes,

@@ -1,5 +1,5 @@
-// The two instances of every law: the vectors of the production code, and one number after another, which the
-// tests compare with them.
+// The two instances of every law: the vector types of the production code, and scalars, with which the tests
+// compare them.
 #pragma once
 
 #include <type_traits>

@@ -1,8 +1,8 @@
 // First stage: the volume from the velocity gradient L (manual 3.10.5).
 //   de = sym(L) dt;   by type: 0 V (1 + tr de), 1 as the background cell, 2 V exp(tr de), 3 V det(I + L dt),
 //   4 V0 (1 + e_xx)(1 + e_yy)(1 + e_zz) of the accumulated strain, taken as a ratio from step to step.
-// A volume that would become zero, negative or no number keeps its old value and is counted; one outside the
-// bounds of Volume min/max is put on the bound and counted.
+// A volume that would become zero, negative or NaN keeps its old value and is counted; one outside the bounds
+// of Volume min/max is set to the bound and counted.
 #pragma once
 
 #include "core/material/batch.hpp"
@@ -25,7 +25,7 @@ core::Sym3<T> strain_increment(const core::Mat3<T>& l, double dt) {
   return {dt * l.xx, dt * l.yy, dt * l.zz, half * (l.xy + l.yx), half * (l.yz + l.zy), half * (l.xz + l.zx)};
 }
 
-/// Adds to the accumulated strain, whose six columns are neighbours, and returns what it was before.
+/// Adds to the accumulated strain, whose six columns are adjacent, and returns its previous value.
 template <class T>
 core::Sym3<T> accumulate_strain(double* columns, const core::Sym3<T>& increment) {
   const T added[6] = {increment.xx, increment.yy, increment.zz, increment.xy, increment.yz, increment.xz};
@@ -62,7 +62,7 @@ T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::S
   }
 }
 
-/// The volume held within Volume min/max, which are factors of the volume at reference density.
+/// The volume limited to Volume min/max, which are factors of the volume at reference density.
 template <class T>
 T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double reference_density,
                const T& mass, const T& volume, int row) {

@@ -46,7 +46,7 @@ Material::Material(Laws laws) : laws_(std::move(laws)), strength_traits_(laws_.s
   initial_sound_speed_ = std::sqrt(std::max(initial_modulus_, 0.0) / laws_.reference_density);
 }
 
-/// Erosion by damage waits for all of it (manual 3.2.1.10); failure's threshold may scatter.
+/// Erosion by damage requires full damage (manual 3.2.1.10); the threshold of failure may scatter.
 void Material::add_failures_of_damage() {
   if (strength_traits_.failing_damage) {
     const core::RandomFailureInput& random = laws_.random_failure;
@@ -113,7 +113,7 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options,
   apply_failure<T>(batch, rules.failed, verdict);
 }
 
-/// One draw after the other: this happens once in a particle's life.
+/// Scalar loop: this happens once per particle.
 void Material::draw_thresholds(core::Batch& batch) const {
   const ThresholdScatter scatter(laws_.random_failure);
   const auto cell_of = [&](const double* lane) -> std::int64_t {

@@ -1,6 +1,5 @@
-// A material: strength model, equation of state and failure models composed, as the input states them, behind
-// the interface that the step knows. Each stage is one pass over the batch, and each law is called once per
-// batch.
+// A material: the strength model, equation of state and failure models of the input, behind the interface
+// that the step uses. Each stage is one pass over the batch, and each law is called once per batch.
 #pragma once
 
 #include <memory>
@@ -27,7 +26,7 @@ class Material final : public core::ConstitutiveModel {
     std::unique_ptr<FailureLaw> model;
     bool erodes = false;
   };
-  /// Laws read and prepared; make_material does that from the input.
+  /// Laws after parsing and set-up; make_material creates them from the input.
   struct Laws {
     std::string name;
     double reference_density = 0;
@@ -55,7 +54,7 @@ class Material final : public core::ConstitutiveModel {
   void initialise(core::Batch& batch, const core::UpdateOptions& options) const override;
   void update(core::Batch& batch, const core::UpdateOptions& options) const override;
 
-  /// The same update one particle after the other, for the comparison of instances.
+  /// The same update particle by particle, for the comparison of instances.
   void update_scalars(core::Batch& batch, const core::UpdateOptions& options) const;
 
   const Laws& laws() const { return laws_; }
@@ -80,15 +79,15 @@ class Material final : public core::ConstitutiveModel {
   StrengthTraits strength_traits_;
 };
 
-/// `detonations`: where and when explosives are lit. Throws core::InputErrors where parameters contradict
-/// each other. Without a registry: of the laws of the lists.
+/// `detonations`: where and when explosives are ignited. Throws core::InputErrors where parameters contradict
+/// each other. Without a registry: the laws of the lists.
 std::unique_ptr<Material> make_material(const core::MaterialInput& input,
                                         const std::vector<core::DetonationItem>& detonations,
                                         const Registry& registry);
 std::unique_ptr<Material> make_material(const core::MaterialInput& input,
                                         const std::vector<core::DetonationItem>& detonations = {});
 
-/// All materials of a scene, in its order. Throws what is wrong with any of them, together.
+/// All materials of a scene, in its order. Throws all errors in them together.
 std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene,
                                                                      const Registry& registry);
 std::vector<std::unique_ptr<core::ConstitutiveModel>> make_materials(const core::Scene& scene);

@@ -1,9 +1,9 @@
 // Third stage: artificial viscosity, and energy and pressure solved together (thesis 2-69, 2-82 to 2-92). Per
 // unit initial volume, with h = (V^{n+1} - V^n)/(2 V0) and the stress work w = V^{n+1/2} s^{n+1/2} : de / V0:
 //   E* = E^n - h p^n - h (q^n + q^{n+1}) + w,   p = (a + b E*)/(1 + b h),   E = E* - h p
-// h takes the place of V^{n+1/2} tr(de)/2 (2-88), so that -p dV is the work of the volume that really
-// changes. The sound speed in q is that of the new volume with the old energy and pressure. Then the wave
-// speed of the state reached (2-57) and the speed of the critical step (2-74). Shown by
+// h replaces V^{n+1/2} tr(de)/2 (2-88), so that -p dV is the work of the actual volume change. The sound
+// speed in q is that of the new volume with the old energy and pressure. The stage then computes the wave
+// speed of the new state (2-57) and the speed of the critical step (2-74). Shown by
 // tests/physics/energy_test.cpp and laws_test.cpp.
 #pragma once
 
@@ -21,18 +21,18 @@ struct PressureRules {
   double reference_density = 0;
   double bq1 = 0;              ///< quadratic term of the artificial viscosity
   double bq2 = 0;              ///< linear term
-  double initial_modulus = 0;  ///< rho0 c0^2 at rest, the scale of what is negligible
+  double initial_modulus = 0;  ///< rho0 c0^2 at rest, the scale of negligible stresses
   double initial_sound_speed = 0;
   bool constant_sound_speed = false;  ///< for the critical step
   bool viscosity_in_wave_speed = true;
-  double expansion = 0;       ///< volumetric, per degree; 0: the temperature does not count
+  double expansion = 0;       ///< volumetric, per degree; 0: no effect of temperature
   double expansion_from = 0;  ///< temperature without thermal strain
   bool viscous = false;       ///< the batch's shear_viscosity is not zero throughout
   FailedRules failed;
   TensionRules tension;
 };
 
-/// Mass and volume of a particle as everything below wants them; one division for all.
+/// Derived quantities of a particle's mass and volume, with one division.
 template <class T>
 struct Density {
   T inverse_mass, density, relative_volume, compression;
@@ -53,7 +53,7 @@ T isentropic_modulus(const LinearisedPressure<T>& line, const T& compression, co
   return (1.0 + compression) * (line.da + line.db * energy) + relative_volume * pressure * line.b;
 }
 
-/// The equation's line at the point, with the compression held below the equation's limit where it has one.
+/// The linearised equation at the point, with the compression limited where the equation has a limit.
 template <class T, class Eos>
 LinearisedPressure<T> limited_line(const Eos& eos, EosPoint<T>& point, core::MaskOf<T>& outside) {
   if constexpr (requires { eos.compression_limit; }) {
@@ -63,8 +63,8 @@ LinearisedPressure<T> limited_line(const Eos& eos, EosPoint<T>& point, core::Mas
   return eos.linearise(point);
 }
 
-/// Q of all that is viscous and counts in the critical step: the artificial viscosity (2-73), from the rate
-/// of compression and the sound speed in it, and the shear viscosity, 4/3 mu D = rho l Q D.
+/// Q of all viscosity that counts in the critical step: the artificial viscosity (2-73), from the rate of
+/// compression and its sound speed, and the shear viscosity, 4/3 mu D = rho l Q D.
 template <class T>
 T damping_speed(const core::Batch& batch, const PressureRules& rules, const T& rate, const T& c,
                 const T& specific_volume, int row) {
@@ -79,8 +79,8 @@ T damping_speed(const core::Batch& batch, const PressureRules& rules, const T& r
   return damping;
 }
 
-/// Speeds for the time step (2-74) and, where the layout has that column, for output. `damping` is Q of
-/// everything viscous that counts.
+/// Speeds for the time step (2-74) and, where the layout has that column, for output. `damping` is Q of all
+/// viscosity that counts.
 template <class T>
 void store_speeds(core::Batch& batch, double* block, int row, const PressureRules& rules, const T& c2,
                   const T& damping) {
@@ -94,7 +94,7 @@ void store_speeds(core::Batch& batch, double* block, int row, const PressureRule
   core::store(block + sound_at, c);
 }
 
-/// Every stress has gone into the energy, so one look at it finds what is no number.
+/// Every stress contributes to the energy, so checking the energy finds all NaN.
 template <class T>
 void count_events(core::Batch& batch, core::MaskOf<T> undefined, const T& energy, double negligible,
                   int row) {
@@ -108,10 +108,10 @@ void count_events(core::Batch& batch, core::MaskOf<T> undefined, const T& energy
   batch.negative |= lanes_of<T>(negative, row, batch.particles);
 }
 
-/// Thermal expansion: the pressure feels only what the volume has changed beyond it. With e = expansion (T -
-/// T0) the volume at rest is V0 exp(e), and `now` becomes that of V over it. Returns what e has grown since
-/// the column was last written, whoever changed the temperature. Without an effect on the temperature in turn
-/// (no cooling in tension), and only on equations whose pressure does not know of heat through E.
+/// Thermal expansion: the pressure depends only on the volume change beyond it. With e = expansion (T - T0)
+/// the volume at rest is V0 exp(e), and `now` becomes V relative to it. Returns the increase of e since the
+/// column was last written, whatever changed the temperature. There is no feedback on the temperature (no
+/// cooling in tension); only for equations whose pressure does not depend on heat through E.
 template <class T>
 T expand(Density<T>& now, const PressureRules& rules, const core::ColumnLayout& layout, double* block) {
   using core::exp;
@@ -124,9 +124,9 @@ T expand(Density<T>& now, const PressureRules& rules, const core::ColumnLayout& 
   return e - before;
 }
 
-/// Updates pressure, viscous_pressure, internal_energy and the equation's state; fills sound_speed and
-/// critical_speed. `verdict` (null where the material cannot fail) becomes 1 where the state has no defined
-/// answer, else 0.
+/// Updates pressure, viscous_pressure, internal_energy and the equation's state; computes sound_speed and
+/// critical_speed. `verdict` (null where the material cannot fail) becomes 1 where the result is undefined,
+/// else 0.
 template <class T, class Eos>
 [[gnu::noinline, gnu::flatten]] void update_pressure(core::Batch& batch, const Eos& eos,
                                                      const PressureRules& rules, double* verdict) {
@@ -165,7 +165,7 @@ template <class T, class Eos>
     const T h = 0.5 * (volume - old_volume) * per_v0;
     const T response = 1.0 / (1.0 + acting.b * h);
 
-    // Artificial viscosity: none in expansion, and none for what has failed.
+    // Artificial viscosity: none in expansion, and none for failed particles.
     core::MaskOf<T> failed{};
     if (failed_at >= 0) failed = core::load<T>(block + failed_at) > 0.5;
     const T rate = core::select(failed, 0.0, max(-inverse_dt * tr, 0.0));

@@ -1,5 +1,5 @@
-// Numbers at random that belong to a particle: drawn from its identity alone, so that a run is the same
-// again, on any number of ranks. Shown by tests/physics/gurson_test.cpp.
+// Random numbers of a particle: drawn from its identity alone, so that a run is reproducible on any number of
+// ranks. Shown by tests/physics/gurson_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace mpm::physics {
 
 /// Standard normal.
 inline double normal_deviate(double identity) {
-  constexpr std::uint64_t seed = 0x506f726f73697479;  // any; fixed, so that a case repeats
+  constexpr std::uint64_t seed = 0x506f726f73697479;  // arbitrary; fixed, so that a case is reproducible
   return core::standard_normal(static_cast<std::uint64_t>(identity), 0, seed);
 }
 template <int L>

@@ -1,6 +1,6 @@
-// The first state of new particles, of which position, velocity, mass, volume and identity are set and all
-// other columns are zero. The strength model starts first and leaves its moduli in the rows of the batch, the
-// equation of state follows. Shown by tests/physics/energy_test.cpp and laws_test.cpp.
+// Initial state of new particles whose position, velocity, mass, volume and identity are set and all other
+// columns zero. The strength model comes first and stores its moduli in the rows of the batch; the equation
+// of state follows. Shown by tests/physics/energy_test.cpp and laws_test.cpp.
 #pragma once
 
 #include "physics/material/pressure_stage.hpp"
@@ -16,7 +16,7 @@ struct StartRules {
   double e0 = 0;  ///< initial internal energy per initial volume
 };
 
-/// The particle's, where its body states one (the column is above zero then), else the material's.
+/// The particle's temperature where its body sets one (the column is then positive), else the material's.
 template <class T>
 T initial_temperature(const core::ColumnLayout& layout, const double* block, const StartRules& rules) {
   if (!layout.has(core::Column::temperature)) return rules.room_temperature;
@@ -24,7 +24,7 @@ T initial_temperature(const core::ColumnLayout& layout, const double* block, con
   return core::select(given > 0.0, given, T(rules.room_temperature));
 }
 
-/// The law at rest: no strain, no stress. What it says then of stiffness and strength holds at the start.
+/// The law at rest: no strain, no stress. Its stiffness and strength are those at the start.
 template <class T, class Law>
 StrengthPoint<T> rest(const Law& law, StrengthPoint<T> point) {
   point.dt = 1;
@@ -34,11 +34,10 @@ StrengthPoint<T> rest(const Law& law, StrengthPoint<T> point) {
   return point;
 }
 
-/// Energy and pressure of a particle placed at the point's volume. The energy is E0 at that volume, whatever
-/// the volume: how the body came to its density is the user's matter. Only the elastic bulk, which has no E0,
-/// starts with the work of the way there, so that a body released to the reference density ends with none.
-/// `heat` is what a body that starts at another temperature than the material's has more, as if heated in
-/// place.
+/// Energy and pressure of a particle placed at the point's volume. The energy is E0 at any volume: how the
+/// body reached its density is up to the user. Only the elastic bulk, which has no E0, starts with the work
+/// of reaching that density, so that a body released to the reference density ends with none. `heat` is the
+/// additional energy of a body that starts at another temperature than the material's, as if heated in place.
 template <class T, class Eos>
 LinearisedPressure<T> start(const Eos& eos, EosPoint<T>& point, double e0, const T& heat) {
   point.energy = e0;
@@ -51,8 +50,8 @@ LinearisedPressure<T> start(const Eos& eos, EosPoint<T>& point, double e0, const
   return line;
 }
 
-/// Fills the law's state, the temperature and the yield stress where the layout has them, and the rows of the
-/// shear modulus and of a law's own pressure.
+/// Initialises the law's state, the temperature and the yield stress where the layout has them, and the rows
+/// of the shear modulus and of a law's own pressure.
 template <class T, class Law>
 void initialise_strength(core::Batch& batch, const Law& law, const StartRules& rules) {
   using core::Column;
@@ -92,7 +91,7 @@ void initialise_strength(core::Batch& batch, const Law& law, const StartRules& r
   });
 }
 
-/// Fills the equation's state, pressure, energy, sound_speed and critical_speed.
+/// Initialises the equation's state, pressure, energy, sound_speed and critical_speed.
 template <class T, class Eos>
 void initialise_eos(core::Batch& batch, const Eos& eos, const StartRules& rules) {
   using core::Column;

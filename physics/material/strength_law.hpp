@@ -1,9 +1,9 @@
-// A strength model behind an interface that is called once per batch: what a material holds. StrengthOf<Law>
-// instantiates the stages for one law, whatever equation of state stands beside it: what passes between the
-// two lies in the rows of the batch and in plain structs, so that a law is compiled once and goes with all.
+// Type-erased strength model, called once per batch; a material holds one. StrengthOf<Law> instantiates the
+// stages for one law, independently of the equation of state: they communicate through rows of the batch and
+// plain structs, so that a law is compiled once and works with all.
 //
-// No type of vectors crosses the interface: a law may be compiled with other vector instructions than the
-// library that calls it.
+// No vector type crosses the interface: a law may be compiled for other vector instructions than the library
+// that calls it.
 #pragma once
 
 #include <memory>
@@ -18,21 +18,21 @@
 
 namespace mpm::physics {
 
-/// What a strength model says of itself; members that a law may have and need not.
+/// Properties of a strength model; all of these members are optional in a law.
 struct StrengthTraits {
   bool sets_pressure = false;  ///< `sets_pressure`: it computes the pressure with the deviator
   bool own_pressure = false;   ///< `own_pressure` or sets_pressure: no equation of state beside it
   bool rigid = false;          ///< `rigid`
   bool uniaxial = false;       ///< `uniaxial`: a bar's stress, along x
-  /// Unless `linear_elasticity` is false or `hyperelastic` true: energy as of a linear deviator.
+  /// Unless `linear_elasticity` is false or `hyperelastic` true: energy of a linear elastic deviator.
   bool linear_elasticity = true;
-  bool follows_strain_rate = false;  ///< `follows_strain_rate`: strength follows the rate of the whole strain
-  bool heats = false;                ///< `plastic_work_coefficient`
-  bool viscous = false;              ///< `is_viscous()`
-  TensionRules tension;              ///< `tension_rules()`
-  std::optional<double> bulk;        ///< `bulk`, stress
-  std::optional<double> failing_damage;    ///< `fails_by_damage()`, `failing_damage()`: fails from there on
-  bool erodes_by_damage = false;           ///< `erodes_by_damage()`
+  bool follows_strain_rate = false;      ///< `follows_strain_rate`: strength depends on the total strain rate
+  bool heats = false;                    ///< `plastic_work_coefficient`
+  bool viscous = false;                  ///< `is_viscous()`
+  TensionRules tension;                  ///< `tension_rules()`
+  std::optional<double> bulk;            ///< `bulk`, stress
+  std::optional<double> failing_damage;  ///< `fails_by_damage()`, `failing_damage()`: damage at failure
+  bool erodes_by_damage = false;         ///< `erodes_by_damage()`
   std::optional<double> compression_burn;  ///< `compression_burn` (physics/eos/burning.hpp): an explosive
 };
 
@@ -45,14 +45,14 @@ class StrengthLaw {
 
   virtual StrengthTraits traits() const = 0;
   virtual core::ColumnSet columns() const = 0;
-  /// Hands over the places of lighting, and tells the law of the equation of state beside it, where it asks.
-  /// What is wrong with them, or nothing.
+  /// Passes the points of ignition to the law, and the traits of the equation of state, where it needs them.
+  /// Returns the errors, or an empty text.
   virtual std::string light(const std::vector<core::DetonationItem>& detonations) = 0;
   virtual std::string couple(const EosTraits& eos) = 0;
-  /// The equation of state that the law brings with it (`own_eos()`); null where it brings none.
+  /// The equation of state that the law provides (`own_eos()`); null if it provides none.
   virtual std::unique_ptr<EosLaw> own_eos() const = 0;
 
-  /// Of the point's density and temperature, at the reference density.
+  /// At the point's density and temperature, from the reference density.
   virtual StrengthPoint<double> at_rest(const StrengthPoint<double>& point) const = 0;
   virtual void initialise(core::Batch& batch, const StartRules& rules) const = 0;
   virtual void update(core::Batch& batch, const StrengthRules& rules, Instance instance) const = 0;
@@ -122,7 +122,7 @@ class StrengthOf final : public StrengthLaw {
   Law law_;
 };
 
-/// The law behind the interface, where it is of that type; else null.
+/// Downcast to a law of that type; null if it is of another type.
 template <class Law>
 const Law* law_cast(const StrengthLaw& strength) {
   const auto* const of = dynamic_cast<const StrengthOf<Law>*>(&strength);

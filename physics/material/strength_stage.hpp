@@ -1,9 +1,8 @@
-// Second stage: the deviatoric stress. The old stress is turned by the mid-point rule for the step's spin
-// (Hughes and Winget 1980; orthogonal to round-off, in the place of thesis 2-81). The strain increment
-// belongs to the middle of the step and is turned by the other half, to first order in the angle: with that
-// the whole is of second order, where an unturned increment leaves it of first
-// (tests/physics/laws_test.cpp). Then the law. Failed particles have the stress of a fluid, s = 2
-// FailViscosity D', and their state rests.
+// Second stage: the deviatoric stress. The old stress is rotated by the mid-point rule for the step's spin
+// (Hughes and Winget 1980; orthogonal to round-off, instead of thesis 2-81). The strain increment belongs to
+// midstep and is rotated by the other half, to first order in the angle: the whole update is then of second
+// order, with an unrotated increment of first (tests/physics/laws_test.cpp). Then the law is applied. Failed
+// particles have the stress of a fluid, s = 2 FailViscosity D', and their state is frozen.
 #pragma once
 
 #include "physics/eos/strength_pressure.hpp"
@@ -15,8 +14,8 @@ namespace mpm::physics {
 
 struct StrengthRules {
   double fail_viscosity = 0;
-  double specific_heat = 0;  ///< 0: nothing heats
-  bool viscous = false;      ///< the law or what has failed has shear viscosity
+  double specific_heat = 0;  ///< 0: no heating
+  bool viscous = false;      ///< the law or the failed material has shear viscosity
 };
 
 /// Axial vector of the spin increment.
@@ -38,7 +37,7 @@ core::Sym3<T> rotate_deviator(const core::Mat3<T>& r, const core::Sym3<T>& a) {
   return {xx, yy, -(xx + yy), dot(x, ry), dot(y, rz), dot(x, rz)};
 }
 
-/// a + H a - a H for the skew tensor H of the axial vector h: a turned by h, to first order.
+/// a + H a - a H for the skew tensor H of the axial vector h: a rotated by h, to first order.
 template <class T>
 core::Sym3<T> turn_slightly(const core::Vec3<T>& h, const core::Sym3<T>& a) {
   const T x = h.x * a.yz, y = h.y * a.xz, z = h.z * a.xy;
@@ -50,7 +49,7 @@ core::Sym3<T> turn_slightly(const core::Vec3<T>& h, const core::Sym3<T>& a) {
           a.xz + h.y * (a.zz - a.xx) + h.x * a.xy - h.z * a.yz};
 }
 
-/// What the law is given, but for its state: strain increment, pressure, density and the turned stress.
+/// Input of the law other than its state: strain increment, pressure, density and the rotated stress.
 template <class T>
 StrengthPoint<T> strength_point(const core::Batch& batch, const double* block, int row) {
   using core::Column;
@@ -71,7 +70,7 @@ StrengthPoint<T> strength_point(const core::Batch& batch, const double* block, i
   return point;
 }
 
-/// The lanes of `failed` become a viscous fluid; their state goes back to what it was.
+/// The lanes of `failed` become a viscous fluid; their state is restored.
 template <class T, class Law>
 void hold_failed(StrengthPoint<T>& point, const History<Law, StrengthPoint<T>>& history, const double* block,
                  const StrengthRules& rules, core::MaskOf<T> failed) {
@@ -83,7 +82,7 @@ void hold_failed(StrengthPoint<T>& point, const History<Law, StrengthPoint<T>>& 
   history.restore(block, point, failed);
 }
 
-/// Fills deviatoric_work, shear_modulus and shear_viscosity of the batch, and the rows of a law's own
+/// Computes deviatoric_work, shear_modulus and shear_viscosity of the batch, and the rows of a law's own
 /// pressure; updates s, the law's state and, where the layout has it, the temperature (thesis 2-119).
 template <class T, class Law>
 [[gnu::noinline, gnu::flatten]] void update_strength(core::Batch& batch, const Law& law,

@@ -1,16 +1,16 @@
-// The batch as the stages of the update walk it: one vector of particles after another, T = double or Lanes.
+// Iteration over a batch in the stages of the update: one vector of particles at a time, T = double or Lanes.
 #pragma once
 
 #include "core/material/batch.hpp"
 
 namespace mpm::physics {
 
-/// How the work of an update is spread over its stages.
+/// Distribution of an update's work over its stages.
 inline constexpr int parts_of_kinematics = 1, parts_of_strength = 8, parts_of_pressure = 7;
 static_assert(parts_of_kinematics + parts_of_strength + parts_of_pressure == core::parts_of_update);
 
-/// f(block, row): `block + layout.offset(column)` is where the vector's values of a column lie, `row` its
-/// place in the rows of the batch. `parts`: of the update's work that the stage does.
+/// f(block, row): the vector's values of a column are at `block + layout.offset(column)`, `row` is its index
+/// in the rows of the batch. `parts`: the stage's share of the update's work.
 template <class T, int parts = 0, class B, class F>
 inline void for_each_vector(B& batch, F f) {
   for (int b = 0; b < batch.blocks; ++b) {
@@ -21,7 +21,7 @@ inline void for_each_vector(B& batch, F f) {
   }
 }
 
-/// Lanes of `mask` that hold particles, for a vector at `row` of a batch with `particles`.
+/// Lanes of `mask` with particles, for a vector at `row` of a batch with `particles`.
 template <class T>
 [[gnu::noinline, gnu::cold]] long count(core::MaskOf<T> mask, int row, int particles) {
   if constexpr (core::LaneTraits<T>::width == 1) {

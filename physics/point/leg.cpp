@@ -26,7 +26,7 @@ Leg leg(std::string kind, const Mat3<double>& direction, const Sym3<double>& mea
 
 constexpr Mat3<double> axial{1, 0, 0, 0, 0, 0, 0, 0, 0};
 constexpr Sym3<double> along_x{1, 0, 0, 0, 0, 0};
-// Two equal lateral directions are one unknown, measured by their mean.
+// Two equal lateral directions form one unknown, measured by their mean.
 constexpr StressControl lateral{{0, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0.5, 0.5, 0, 0, 0}, 0, false};
 
 }  // namespace

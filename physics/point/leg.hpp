@@ -1,4 +1,4 @@
-// A leg of a loading path: what of the strain and of the stress it prescribes, and the legs of the usual
+// A leg of a loading path: the components of strain and stress that it prescribes, and the legs of the usual
 // laboratory tests.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace mpm::physics {
 /// gamma_xy.
 double weighted(const core::Sym3<double>& weights, const core::Sym3<double>& tensor);
 
-/// A stress that is prescribed, and the rate of deformation that is free to reach it.
+/// A prescribed stress, and the free rate of deformation that achieves it.
 struct StressControl {
   core::Mat3<double> mode;    ///< velocity gradient per unit of the unknown rate
   core::Sym3<double> weight;  ///< of the Cauchy stress
@@ -31,8 +31,8 @@ struct DeformationRow {
 struct Leg {
   std::string kind;
   core::Mat3<double> direction{};  ///< velocity gradient per unit rate of the measure
-  core::Sym3<double> measure{};    ///< which strain the leg counts, by weights of the accumulated strain
-  bool from_zero = false;          ///< the measure is counted from the beginning of this leg on
+  core::Sym3<double> measure{};    ///< the strain that the leg controls, by weights of the accumulated strain
+  bool from_zero = false;          ///< the measure starts at zero with this leg
   std::optional<double> strain;  ///< value of the measure at the end; without: stress alone drives, or a hold
   std::optional<double> time;    ///< duration; without: from the rate
   bool whole = false;            ///< direction is the strain of the whole leg, not per unit of the measure
@@ -42,7 +42,7 @@ struct Leg {
   std::vector<DeformationRow> table;  ///< F over time, linear between its rows, each in `steps` steps
 };
 
-/// The legs of the usual tests; x is the axis. Each counts from where the run of legs of its kind began.
+/// The legs of the usual tests; x is the axis. Each counts from the start of the run of legs of its kind.
 namespace legs {
 Leg uniaxial_strain(double strain);
 Leg uniaxial_stress(double strain);
@@ -50,7 +50,7 @@ Leg uniaxial_stress(double strain);
 Leg triaxial(double strain, double confining_pressure);
 /// Plane strain: z is held, y carries the confining pressure.
 Leg biaxial(double strain, double confining_pressure);
-/// x and y are strained alike, z is free.
+/// x and y are strained equally, z is free.
 Leg equibiaxial(double strain);
 Leg simple_shear(double gamma);
 /// Volumetric strain, equal in all directions.

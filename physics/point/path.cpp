@@ -62,7 +62,7 @@ class Walker {
     }
   }
 
-  /// From one fraction of the leg to another; in halves where the whole does not converge.
+  /// From one fraction of the leg to another; halved where the whole does not converge.
   bool part(const Leg& leg, const Mat3<double>& known, const ControlVector& start, double duration,
             double from, double to, ControlVector& rates, int depth) {
     const double dt = (to - from) * duration;
@@ -89,7 +89,7 @@ class Walker {
         part(leg, known, start, duration, middle, to, rates, depth + 1))
       return true;
     if (end_.reached) {
-      // What drives is what cannot be reached; what must stay at a value only follows.
+      // Reports the driving stress as unreachable; stresses held constant only follow.
       const auto ramp = std::ranges::find(leg.controls, true, &StressControl::ramp);
       end_.reached = false;
       end_.wanted = ramp != leg.controls.end() ? ramp->target : step.worst().second;

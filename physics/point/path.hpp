@@ -1,5 +1,5 @@
-// Loading paths for one particle: legs one after the other, each of which prescribes some components of the
-// strain and some of the stress, as a laboratory does. Shown by tests/physics/path_test.cpp.
+// Loading paths for one particle: a sequence of legs, each of which prescribes some components of the strain
+// and some of the stress, as in a laboratory. Shown by tests/physics/path_test.cpp.
 #pragma once
 
 #include <functional>
@@ -11,19 +11,19 @@
 
 namespace mpm::physics {
 
-/// Where the walk stands; for output.
+/// Current point of the walk, for output.
 struct PathPoint {
   int leg = 0;
   double strain = 0;                ///< of the leg's measure
   core::Sym3<double> total_strain;  ///< integral of the rate of deformation
 };
 
-/// How a walk ended. Where a stress could not be reached the state is that of the last good step.
+/// Result of a walk. Where a stress could not be reached the state is that of the last good step.
 struct PathEnd {
   bool reached = true;
   int leg = 0;
-  double wanted = 0;  ///< the stress that drives the leg, else the one that is to stay
-  double found = 0;   ///< how near the walk came
+  double wanted = 0;  ///< the driving stress of the leg, or else the one to be held
+  double found = 0;   ///< the closest value reached
 };
 
 /// Walks the legs; `visit` is called before the first and after every step.

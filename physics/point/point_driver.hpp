@@ -1,5 +1,5 @@
-// One particle of a material, driven along a path without a grid: through the same batch update as in a run.
-// For calibration (mpm_point) and for the tests of the laws. No input or output here.
+// One particle of a material, driven along a path without a grid, by the same batch update as in a run. For
+// calibration (mpm_point) and for the tests of the laws. No input or output here.
 #pragma once
 
 #include <functional>
@@ -18,16 +18,16 @@ class PointDriver {
     double temperature = 0;  ///< at the start; 0: the material's
     double cell_size = 0;    ///< length of the artificial viscosity; 0: none
     core::UpdateOptions update{};
-    core::ColumnSet extra_columns{};  ///< beyond what the material carries, e.g. yield_stress
+    core::ColumnSet extra_columns{};  ///< in addition to the material's, e.g. yield_stress
   };
 
   PointDriver(const core::ConstitutiveModel& model, const Options& options);
-  /// With another update in the place of model.update, for the comparison of value types.
+  /// With another update instead of model.update, for the comparison of value types.
   PointDriver(const core::ConstitutiveModel& model, const Options& options, Update update);
   PointDriver(const PointDriver&) = delete;  // the batch points into the particle's block
   PointDriver& operator=(const PointDriver&) = delete;
 
-  /// One step with the velocity gradient of its middle. Unit 1/time and time.
+  /// One step with the velocity gradient at midstep. Units 1/time and time.
   void step(const core::Mat3<double>& gradient, double dt);
 
   bool has(core::Column column) const { return layout_.has(column); }
@@ -47,7 +47,7 @@ class PointDriver {
   double critical_speed() const { return batch_.critical_speed[0]; }
   const core::MaterialEvents& events() const { return batch_.events; }
 
-  /// All that a step changes, to go back to.
+  /// Everything that a step changes, for restoring.
   struct State {
     std::vector<double> block;
     double time = 0;
@@ -65,7 +65,7 @@ class PointDriver {
   double initial_volume_ = 1;
 };
 
-/// How the velocity gradient follows from one number, the rate; x is the axis.
+/// How the velocity gradient follows from one scalar, the rate; x is the axis.
 enum class PathKind {
   uniaxial_strain,  ///< rate of D_xx
   uniaxial_stress,  ///< rate of D_xx, the lateral rates such that the lateral stresses vanish
@@ -77,7 +77,7 @@ enum class PathKind {
 struct Path {
   PathKind kind = PathKind::uniaxial_strain;
   double rate = 1;              ///< > 0, 1/time
-  std::vector<double> targets;  ///< values of the integral of the rate, reached one after the other from 0
+  std::vector<double> targets;  ///< values of the integral of the rate, reached in sequence from 0
   int steps = 100;              ///< per target
   core::Mat3<double> gradient{};
 };

@@ -82,7 +82,7 @@ ControlVector StressStep::residual(const ControlVector& rates) {
 double StressStep::tolerance() const { return 1e-9 * std::max(stress_scale_, stiffness_ * strain_scale_); }
 
 bool StressStep::newton_step(const ControlVector& x, const ControlVector& r, ControlVector& step) {
-  // The difference is small beside the step and far above the laws' own round-off.
+  // The difference is small relative to the step and far above the laws' round-off.
   const double missing = stiffness_ > 0 ? norm(r) / stiffness_ : 0;
   const double h = 1e-4 * std::max({strain_scale_, missing, 1e-12}) / dt_;
   ControlMatrix jacobian(x.size(), x.size());
@@ -106,7 +106,7 @@ bool StressStep::newton(ControlVector& x) {
     if (!std::isfinite(norm(r))) return false;
     ControlVector step;
     if (!newton_step(x, r, step)) return false;
-    // No trial strains by more than a tenth beyond the last.
+    // Trial strains exceed the last by at most a tenth.
     const double longest = dt_ * norm(step);
     double part = std::min(1.0, 0.1 / std::max(longest, 1e-300));
     const double old_norm = norm(r);

@@ -1,7 +1,7 @@
-// One step in which some stresses are prescribed and the strain rates that give them are sought: through the
-// material's own update, which is a black box here. Newton's method on trial steps, each from the saved
-// state, with the derivatives from differences of trial steps and, for one unknown, a bracketing where
-// Newton's method fails. Shown by tests/physics/path_test.cpp.
+// One step with some stresses prescribed, which finds the strain rates that produce them, using the
+// material's own update as a black box. Newton's method on trial steps, each from the saved state, with
+// derivatives from differences of trial steps and, for one unknown, bracketing where Newton's method fails.
+// Shown by tests/physics/path_test.cpp.
 #pragma once
 
 #include <utility>
@@ -14,40 +14,40 @@
 
 namespace mpm::physics {
 
-/// As many controls as the stress has components, at most.
+/// At most one control per stress component.
 inline constexpr int most_controls = 6;
-/// A number per control of a leg.
+/// One value per control of a leg.
 using ControlVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_controls, 1>;
 
 /// The rate of deformation.
 core::Sym3<double> symmetric(const core::Mat3<double>& a);
 
-/// One step whose controlled stresses are to be `targets` at its end.
+/// One step whose controlled stresses equal `targets` at its end.
 class StressStep {
  public:
   /// `known`: the part of the velocity gradient that does not depend on the unknown rates. Point and controls
-  /// outlive the step.
+  /// must outlive the step.
   StressStep(PointDriver& point, const std::vector<StressControl>& controls, const core::Mat3<double>& known);
 
-  /// `rates` are the first guess, and the answer. Where false the point is as before the step.
+  /// `rates` holds the first guess, and on return the solution. On false the point is unchanged.
   bool run(double dt, const ControlVector& targets, ControlVector& rates);
 
-  /// Stress of the control that was furthest from its target in the last trial, and that target.
+  /// Stress of the control farthest from its target in the last trial, and that target.
   std::pair<double, double> worst() const { return worst_; }
   /// The velocity gradient with these rates.
   core::Mat3<double> gradient(const ControlVector& rates) const;
 
  private:
-  /// A trial step; the state is left at its end.
+  /// A trial step; the state remains at its end.
   ControlVector residual(const ControlVector& rates);
   /// Round-off of the laws, 1e-12 of a stress, times a thousand; of an unloaded body, of its elastic stress.
   double tolerance() const;
   bool newton(ControlVector& x);
-  /// The step of Newton's method from x, where the residual is r; false where the stresses do not tell the
-  /// rates apart.
+  /// The step of Newton's method from x, where the residual is r; false where the stresses do not distinguish
+  /// the rates.
   bool newton_step(const ControlVector& x, const ControlVector& r, ControlVector& step);
-  /// One unknown whose stress grows with it: bracket, then the secant with bisection as the safeguard. For
-  /// the kinks at which Newton's method swings.
+  /// One unknown whose stress increases with it: bracket, then the secant method safeguarded by bisection.
+  /// For kinks at which Newton's method oscillates.
   bool bracket(ControlVector& x);
 
   PointDriver& point_;

@@ -1,9 +1,9 @@
-// What the brittle solids share (HJC, RHT, JH2): the rate of the whole strain in their strength, powers of
-// pressures that may be negative, the radial return to a strength that is known before it, and damage as the
-// sum of plastic strain over strain to fracture.
+// Common part of the brittle solids (HJC, RHT, JH2): the total strain rate in their strength, powers of
+// pressures that may be negative, the radial return to a given strength, and damage as the sum of plastic
+// strain over strain to fracture.
 //
-// Pressure and damage in the strength are those of the beginning of the step, as in every explicit code: the
-// error is of first order in the step.
+// The strength uses pressure and damage at the beginning of the step, as in every explicit code: the error is
+// of first order in the step.
 #pragma once
 
 #include "core/simd/math.hpp"
@@ -26,14 +26,14 @@ struct BrittlePlasticity : MisesPlasticity {
     return 1.0 + c * log(core::max(rate, 1.0));
   }
 
-  /// x^y, with a negative x as zero.
+  /// x^y, with negative x treated as zero.
   template <class T>
   static T power(const T& x, double y) {
     using core::pow;
     return pow(core::max(x, 0.0), y);
   }
 
-  /// Plastic strain increment by which the trial stress lies beyond `strength`, and the return to it.
+  /// Plastic strain increment for a trial stress above `strength`, and the return to it.
   template <class T>
   static T return_at_once(StrengthPoint<T>& point, const T& strength, const T& shear_modulus) {
     const T trial = mises(point.s);
@@ -42,7 +42,7 @@ struct BrittlePlasticity : MisesPlasticity {
     return increment;
   }
 
-  /// A strain to fracture of zero breaks at the first flow.
+  /// With a strain to fracture of zero, the material breaks at the first flow.
   template <class T>
   static void add_damage(StrengthPoint<T>& point, const T& increment, const T& fracture_strain) {
     const T damage = core::min(point.damage + increment / core::max(fracture_strain, 1e-30), 1.0);
@@ -50,8 +50,7 @@ struct BrittlePlasticity : MisesPlasticity {
   }
 };
 
-/// As plastic_parameters, with the yield stress that the language asks for and these strengths have no use
-/// for.
+/// As plastic_parameters, with the yield stress that the input format requires and these laws ignore.
 template <class Law>
 constexpr auto brittle_parameters() {
   auto table = plastic_parameters<Law>();
@@ -63,7 +62,7 @@ constexpr auto brittle_parameters() {
   return table;
 }
 
-/// A number that must be given, of at least zero unless `min` says otherwise.
+/// A required parameter, at least zero unless `min` is given.
 template <class Law>
 constexpr Parameter<Law> constant(double Law::*member, std::string_view name, std::string_view dimension,
                                   std::string_view meaning, double min = 0, bool min_open = false) {
@@ -76,7 +75,7 @@ constexpr Parameter<Law> constant(double Law::*member, std::string_view name, st
            .meaning = meaning}};
 }
 
-/// A switch, off unless `preset` says otherwise.
+/// A switch, off unless `preset` is set.
 template <class Law>
 constexpr Parameter<Law> flag(double Law::*member, std::string_view name, std::string_view meaning,
                               double preset = 0) {

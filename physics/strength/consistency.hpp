@@ -1,8 +1,8 @@
-// The plastic strain increment of a law whose yield stress depends on it through rate, heat or a curved
+// The plastic strain increment of a law whose yield stress depends on it through rate, heat or nonlinear
 // hardening:
 //   f(x) = trial - 3 G x - sigma_y(x) = 0,   0 <= x <= trial/(3 G)
-// Newton's method held in a shrinking bracket, all lanes at once; a lane that has converged is left alone, so
-// its result does not depend on its neighbours. Converged means |f| below 1e-12 of the yield stress.
+// Newton's method safeguarded by a shrinking bracket, all lanes at once; converged lanes no longer change, so
+// their result does not depend on their neighbours. Converged means |f| below 1e-12 of the yield stress.
 #pragma once
 
 #include "core/simd/math.hpp"
@@ -17,8 +17,8 @@ struct FlowStress {
 };
 
 /// `threshold` is the yield stress for a vanishing increment: where the trial stress does not exceed it the
-/// answer is zero. `start` is the stress at which flow starts: the greater of the threshold and the stress
-/// before the step; from there a steady flow is found at once.
+/// result is zero. `start` is the stress at which flow starts: the greater of the threshold and the stress
+/// before the step; with it a steady flow is found at once.
 template <class T, class Flow>
 T plastic_increment(const T& trial, const T& threshold, const T& start, double shear, const Flow& flow) {
   using core::abs;

@@ -2,10 +2,10 @@
 // Hopperstad, Berstad, Langseth, 8th International LS-DYNA Users Conference, 2004):
 //   hat^2 = (sigma_e^2 + alfa^2 sigma_m^2)/(1 + (alfa/3)^2) = Y^2,   associated flow
 //   Y = Yield0 + gama r + alal ln(1/(1 - r^bebe)),   r = hat_eps/epsud
-// hat_eps is the strain conjugate to hat: in uniaxial stress both are the axial ones. It is found from the
-// consistency condition with stress and Y of the end of the step. The logarithm locks the foam at r = 1; r is
-// held below 1 - 1e-12, and from there Y stays. Fails where ln(V/V0) reaches vole, which 0 switches off.
-// The pressure is the law's own: no EquationOfState. Shown by tests/physics/foam_test.cpp.
+// hat_eps is the strain conjugate to hat: in uniaxial stress both are the axial ones. It follows from the
+// consistency condition with stress and Y at the end of the step. The logarithm locks the foam at r = 1; r is
+// limited to 1 - 1e-12, above which Y is constant. Fails where ln(V/V0) reaches vole; 0 disables this. The
+// law computes its own pressure: no EquationOfState. Shown by tests/physics/foam_test.cpp.
 #pragma once
 
 #include <cmath>
@@ -111,9 +111,9 @@ struct DFFoam : MisesPlasticity {  // yield0 is sigma_p
             core::select(strain < locking * (1 - 1e-12), slope, 0.0)};
   }
 
-  /// The increment d of hat_eps: hat(d) - Y = 0, where the radial flow leaves of the trial stress
+  /// The increment d of hat_eps: hat(d) - Y = 0, where the radial flow reduces the trial stress to
   ///   sigma_e/(1 + 3 G d/(k Y)),  sigma_m/(1 + K alfa^2 d/(k Y)),  k = 1 + (alfa/3)^2.
-  /// Newton's method in a shrinking bracket, each lane for itself, as plastic_increment.
+  /// Newton's method in a shrinking bracket, independently per lane, as plastic_increment.
   template <class T>
   T flow(const T& trial_e, const T& trial_m, const T& strain, const T& start) const {
     using core::abs;

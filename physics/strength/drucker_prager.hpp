@@ -1,14 +1,14 @@
 // Drucker-Prager plasticity with a tension cut-off (manual 3.2.1.16, thesis 6.2). With tau = sqrt(J2):
 //   shear    f = tau + qfai sigma_m - kfai,   g = tau + qpsi sigma_m       (6-6, 6-9)
 //   tension  f = sigma_m - ten_f, associated                               (6-7, 6-10)
-// The trial stress returns to the surface along the flow of the end of the step, which for these straight
-// lines is exact: to the cone, to the cut-off, or to the edge between them, where both mechanisms flow
-// (Koiter). The thesis divides the two by a diagonal h (6-11) instead, which near the edge leaves stress
-// outside the one or the other surface. Equivalent plastic strain: (6-39) and (6-48) in one. The Mohr-Coulomb
-// constants phi, c, psi in the place of qfai, kfai, qpsi are matched by (6-50) to (6-58). ten_f may not
-// exceed the apex kfai/qfai (6-8), and qpsi not qfai: flow would then give energy back. Where qfai = 0 there
-// is no apex and ten_f stays as given, where the thesis sets it to zero (6-49). The pressure is the law's
-// own: no EquationOfState. Shown by tests/physics/drucker_prager_test.cpp.
+// The trial stress returns to the surface along the flow at the end of the step, which is exact for these
+// straight lines: to the cone, to the cut-off, or to the edge between them, where both mechanisms flow
+// (Koiter). The thesis instead separates the two by a diagonal h (6-11), which near the edge leaves stress
+// outside one of the surfaces. Equivalent plastic strain: (6-39) and (6-48) combined. The Mohr-Coulomb
+// constants phi, c, psi as an alternative to qfai, kfai, qpsi are matched by (6-50) to (6-58). ten_f may not
+// exceed the apex kfai/qfai (6-8), nor qpsi qfai: flow would then release energy. Where qfai = 0 there is no
+// apex and ten_f is used as given; the thesis sets it to zero (6-49). The law computes its own pressure: no
+// EquationOfState. Shown by tests/physics/drucker_prager_test.cpp.
 #pragma once
 
 #include <cmath>
@@ -35,8 +35,8 @@ struct DruckerPrager : IsotropicElasticity {
   double match = 2;
   double plastic_work_coefficient = 0;
   /// Derived: by how much the tangent along a direction n may exceed K + 4/3 G where the cone is reached.
-  /// Flow that is not associated takes (G s_nn/tau + K qfai)(G s_nn/tau + K qpsi)/(G + K qfai qpsi) off that
-  /// modulus, which is negative between the two roots.
+  /// Non-associated flow reduces that modulus by (G s_nn/tau + K qfai)(G s_nn/tau + K qpsi)/(G + K qfai
+  /// qpsi), which is negative between the two roots.
   double stiffening = 0;
 
   static constexpr auto parameters() {
@@ -126,8 +126,8 @@ struct DruckerPrager : IsotropicElasticity {
     using core::select;
     elastic_step_with_pressure(point);
     const T tau = sqrt(0.5 * contract(point.s, point.s)), mean = -point.pressure;
-    // Shear alone (6-34); where that leaves the mean stress beyond the cut-off, the tension mechanism is
-    // active too and takes what exceeds it, and shear flows only as far as the edge (or not at all).
+    // Shear alone (6-34); where the mean stress then exceeds the cut-off, the tension mechanism is active too
+    // and removes the excess, and shear flows only up to the edge (or not at all).
     const double edge = cohesion - friction * tension;
     const T alone = max(tau + friction * mean - cohesion, 0.0) * (1 / (shear + bulk * friction * dilation));
     const core::MaskOf<T> torn = mean - (bulk * dilation) * alone > tension;
@@ -144,7 +144,7 @@ struct DruckerPrager : IsotropicElasticity {
   }
 
  private:
-  /// How far ten_f may exceed the apex by the rounding of printed constants; it then is the apex. The thesis'
+  /// How far ten_f may exceed the apex because of rounded constants; it is then set to the apex. The thesis'
   /// own table 6.5 gives 112.21 kPa for an apex of 112.207 kPa.
   static constexpr double rounding = 1e-3;
 

@@ -1,5 +1,5 @@
-// Isotropic linear elasticity of the deviator, the base of most strength laws: Young and Poisson, the moduli
-// that follow, and the trial stress s + 2 G de' of the Jaumann rate form (thesis 2-93 to 2-95, 2-100).
+// Isotropic linear elasticity of the deviator, the base of most strength laws: Young and Poisson, the derived
+// moduli, and the trial stress s + 2 G de' of the Jaumann rate form (thesis 2-93 to 2-95, 2-100).
 #pragma once
 
 #include <array>
@@ -21,14 +21,14 @@ struct IsotropicElasticity {
     bulk = young / (3 * (1 - 2 * poisson));
   }
 
-  /// s becomes the trial stress.
+  /// Replaces s by the trial stress.
   template <class T>
   void elastic_step(StrengthPoint<T>& point) const {
     point.s = point.s + T(2 * shear) * point.strain;
     point.shear_modulus = shear;
   }
 
-  /// The same and the pressure's trial value (2-97), for laws with `sets_pressure`.
+  /// The same, and the trial pressure (2-97), for laws with `sets_pressure`.
   template <class T>
   void elastic_step_with_pressure(StrengthPoint<T>& point) const {
     elastic_step(point);
@@ -36,8 +36,8 @@ struct IsotropicElasticity {
     point.bulk_modulus = bulk;
   }
 
-  /// For laws with `sets_pressure`: gives a new particle of relative volume v = V/V0 its pressure and returns
-  /// its energy, the elastic work of bringing it there (as ElasticBulk does).
+  /// For laws with `sets_pressure`: sets the pressure of a new particle of relative volume v = V/V0 and
+  /// returns its energy, the elastic work from the reference volume (as ElasticBulk does).
   template <class T>
   T place(StrengthPoint<T>& point, const T& v) const {
     using core::log;

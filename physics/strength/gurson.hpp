@@ -5,14 +5,14 @@
 //   df = (1 - f) d eps_v + A(e) de,  A the normal distribution fN, eN, sN                       (3.39 - 3.42)
 //   (1 - f) M de = sigma : d eps_p,   M(e) the stress of the matrix:
 //   TangMod: linear;  N_hard: Yield0 (1 + Young e/Yield0)^(1/N_hard);  B n C epso: Johnson-Cook without heat
-// The plastic increment has the direction of the stress reached, with f* and M of the start in its
-// proportions, and ends on the surface of the f and M reached, with Phi to 1e-12 (1e-9 in steps of 1 %):
-// first order. Voids that pressure closes, to f < 1e-12, are gone. Fails by TEPLA-F (3.43), kept as damage:
-// (f/ff)^2 + (eps_p/epmax)^2 >= 1, without epmax by f alone; eps_p is the deviatoric plastic strain, e that
-// of the matrix. With Gauss_sn, a standard deviation, the initial f of each particle is drawn from its
-// identity: normal with mean Gauss_f0 (f0 where that is absent), cut to [0, ff). The pressure is the law's
-// own: no EquationOfState. Limit: steps of more than some 5 % of strain, or first voids that nucleate under a
-// tension of more than some 15 M, may end inside the surface, without deviator; they are counted. Shown by
+// The plastic increment has the direction of the final stress, with f* and M of the start in its proportions,
+// and ends on the surface of the final f and M, with Phi to 1e-12 (1e-9 in steps of 1 %): first order. Voids
+// closed by pressure, to f < 1e-12, are set to zero. Fails by TEPLA-F (3.43), stored as damage: (f/ff)^2 +
+// (eps_p/epmax)^2 >= 1, without epmax by f alone; eps_p is the deviatoric plastic strain, e that of the
+// matrix. With Gauss_sn, a standard deviation, the initial f of each particle is drawn from its identity:
+// normal with mean Gauss_f0 (f0 if absent), truncated to [0, ff). The law computes its own pressure: no
+// EquationOfState. Limit: steps of more than some 5 % of strain, or first voids that nucleate under a tension
+// of more than some 15 M, may end inside the surface, without deviator; they are counted. Shown by
 // tests/physics/gurson_test.cpp.
 #pragma once
 
@@ -212,13 +212,13 @@ struct Gurson : MisesPlasticity {
     }
     return {yield0 + hardening * reached, hardening};
   }
-  /// The plastic strain of the matrix of which x M(x) = work.
+  /// The plastic strain x of the matrix with x M(x) = work.
   template <class T>
   T matrix_increment(const Step<T>& step, const T& work, double dt) const {
     T x = work / step.matrix;
     for (int newton = 0; newton < 2; ++newton) {
       const FlowStress<T> m = matrix(step.strain, x, dt);
-      // Where work is zero x is, and the slope of a power may be without bound.
+      // x is zero where work is; the slope of a power may be unbounded there.
       x = core::select(x > 0.0, (work + x * x * m.slope) / (m.value + x * m.slope), 0.0);
     }
     return x;
@@ -235,7 +235,7 @@ struct Gurson : MisesPlasticity {
     return (fn / (sn * std::sqrt(2 * std::acos(-1.0)))) * exp(-0.5 * z * z);
   }
 
-  /// sinh and cosh within the numbers' range; sinh by its series where e^y - e^-y would cancel.
+  /// sinh and cosh without overflow; sinh by its series where e^y - e^-y would cancel.
   template <class T>
   static T hyperbolic_sine(const T& y) {
     using core::exp;
@@ -252,10 +252,10 @@ struct Gurson : MisesPlasticity {
     return 0.5 * (e + 1.0 / e);
   }
   static constexpr double largest_argument = 300;
-  static constexpr double closed = 1e-12;  ///< a void fraction below it is none
+  static constexpr double closed = 1e-12;  ///< a smaller void fraction counts as none
 
-  /// The root y of y + b sinh(y) = z for b, z >= 0. Convex and started above the root: Newton's method comes
-  /// down to it without a bracket.
+  /// The root y of y + b sinh(y) = z for b, z >= 0. The function is convex and the start is above the root:
+  /// Newton's method converges without a bracket.
   template <class T>
   static T pulled_back(const T& z, const T& b) {
     using core::log;
@@ -270,12 +270,12 @@ struct Gurson : MisesPlasticity {
     return y;
   }
 
-  /// What a plastic multiplier gives, stated as `shrink`, the part by which it shortens the deviator.
+  /// Result of a plastic multiplier, expressed as `shrink`, the fraction by which it reduces the deviator.
   template <class T>
   Reached<T> reach(const Step<T>& step, const T& shrink, double dt) const {
     const T k = (1.5 * q2) / step.matrix, z = k * core::abs(step.mean);
     const T b_end = shrink / (1.0 - shrink) * (0.75 * bulk / shear * q1 * q2 * q2) * step.effective;
-    // Without voids the mean stress stays to the last bit: round-off would count as voids that grow.
+    // Without voids the mean stress stays bitwise unchanged: round-off would count as void growth.
     const T size = core::select(b_end > 0.0, pulled_back(z, b_end) / k, core::abs(step.mean));
     Reached<T> end;
     end.shrink = shrink;
@@ -296,8 +296,8 @@ struct Gurson : MisesPlasticity {
     return end;
   }
 
-  /// Phi = 0 in 0 <= shrink < 1, at whose upper end no stress is left and Phi = -(1 - q1 f*)^2: the secant,
-  /// held in a shrinking bracket, each lane for itself.
+  /// Phi = 0 in 0 <= shrink < 1, at whose upper end the stress is zero and Phi = -(1 - q1 f*)^2: the secant
+  /// method in a shrinking bracket, independently per lane.
   template <class T>
   Reached<T> flow(const Step<T>& step, double dt) const {
     using core::abs;
@@ -326,15 +326,15 @@ struct Gurson : MisesPlasticity {
       last_phi = select(open, now.phi, last_phi);
       x = select(open, next, x);
     }
-    // Where voids close or open wholly within one step the surface is too steep for the numbers: such a lane
-    // takes the bracket's inner end.
+    // Where voids close or open entirely within one step the surface is too steep for double precision: such
+    // a lane takes the bracket's inner end.
     const core::MaskOf<T> steep = plastic & (abs(end.phi) > 1e4 * tolerance);
     if (core::any(steep)) end = choose<T>(steep, reach(step, high, dt), end);
     return where_plastic(plastic, end, step);
   }
   static constexpr double tolerance = 1e-13;  ///< of Phi
 
-  /// Lanes that do not flow keep what they have, to the last bit.
+  /// Lanes that do not flow keep their values bitwise.
   template <class T>
   static Reached<T> where_plastic(core::MaskOf<T> plastic, const Reached<T>& end, const Step<T>& step) {
     return choose<T>(plastic, end, {T(0.0), step.mean, T(0.0), T(0.0), step.f, step.matrix, T(0.0), end.phi});

@@ -1,12 +1,12 @@
-// High explosive: a fluid whose equation of state acts with the burn fraction F (manual 3-9 to 3-13):
+// High explosive: a fluid whose pressure is scaled by the burn fraction F (manual 3-9 to 3-13):
 //   F = max(F1, F2) <= 1,   F1 = (t - tL) D/(1.5 h) from tL on,   F2 = (1 - V) rho0 D^2/PCJ = (1 - V)/(1 -
 //   V_CJ)
 // by beta: 2 programmed burn F1 alone, 1 beta burn F2 alone, 0 both. h is the cell size, t the end of the
-// step. The lighting time tL is the earliest arrival, at the speed D and on straight lines, from any point or
-// rectangle of the input; all explosives share these. What has burnt stays burnt: F never falls, also where
-// beta burn alone has begun and the volume grows again (the manual leaves that open). Limits: lines of sight
-// pass through everything; unlit explosive has no stiffness at all. s = 2 mu D' as in Null. Shown by
-// tests/physics/burn_test.cpp and tests/validation/detonation.py.
+// step. The lighting time tL is the earliest arrival, at the speed D along straight lines, from any point or
+// rectangle of the input; all explosives share these. F never decreases, even where only beta burn has begun
+// and the volume grows again (the manual leaves that open). Limits: lines of sight pass through obstacles;
+// unlit explosive has no stiffness. s = 2 mu D' as in Null. Shown by tests/physics/burn_test.cpp and
+// tests/validation/detonation.py.
 #pragma once
 
 #include <limits>
@@ -75,7 +75,7 @@ struct HighExpBurn {
     compression_burn = beta == 2 ? 0 : density * detonation_velocity * detonation_velocity / pcj;
   }
 
-  /// Takes the places of lighting; returns what is wrong with them: nothing can ever light it.
+  /// Takes the points of ignition; returns an error if nothing can ever ignite the explosive.
   std::string light(const std::vector<core::DetonationItem>& detonations) {
     sources = detonations;
     if (beta != 2 || !sources.empty()) return {};
@@ -85,7 +85,7 @@ struct HighExpBurn {
   bool is_viscous() const { return mu > 0; }
   bool carries(core::Column column) const { return column != core::Column::lighting_time || programmed(); }
 
-  /// When a front that starts at the source's time and runs at D arrives.
+  /// Arrival time of a front that starts at the source's time and moves at D.
   template <class T>
   T arrival(const core::DetonationItem& source, const core::Vec3<T>& x) const {
     using core::max;
@@ -103,7 +103,7 @@ struct HighExpBurn {
     return source.time + sqrt(dot(way, way)) * (1 / detonation_velocity);
   }
 
-  /// A new particle at x.
+  /// Initialises a new particle at x.
   template <class T>
   void initialise(StrengthPoint<T>& point, const core::Vec3<T>& x) const {
     if (!programmed()) return;
@@ -121,7 +121,7 @@ struct HighExpBurn {
     T fraction = max(point.burn_fraction, compression_burn * (1.0 - reference_density / point.density));
     if (programmed()) {
       const T run = detonation_velocity * max(point.time - point.lighting_time, 0.0);
-      // Without a length (a point without a grid) the front has no width.
+      // Without a cell size (a point without a grid) the front has no width.
       const double width = std::max(1.5 * point.cell_size, std::numeric_limits<double>::min());
       fraction = max(fraction, run / max(run, width));
     }

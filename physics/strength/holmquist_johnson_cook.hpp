@@ -3,10 +3,10 @@
 //   D = sum of (d epef + d mu_p)/max(D1 (p* + T*)^D2, EFMin),   T* = T/fc,   pressure no lower than -T (1 -
 //   D)
 // The manual leaves p < 0 open: A (1 - D)(1 + p/T)(1 + C ln rate*), as in the IMPETUS manual
-// (MAT_HJC_CONCRETE). The rate factor is 1 below epso. mu_p is what the equation of state of the same name
-// has crushed by the end of the step before; other equations crush nothing. D = 1 leaves rubble with the
-// strength B p*^N: it fails only by DamageToFail (at FailureDamageThreshold) or ErosionByDamage.
-// Shown by tests/physics/holmquist_johnson_cook_test.cpp.
+// (MAT_HJC_CONCRETE). The rate factor is 1 below epso. mu_p is the plastic compression that the equation of
+// state of the same name has recorded up to the end of the previous step; with other equations it is zero.
+// Material with D = 1 is rubble with the strength B p*^N: it fails only by DamageToFail (at
+// FailureDamageThreshold) or ErosionByDamage. Shown by tests/physics/holmquist_johnson_cook_test.cpp.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct HolmquistJohnsonCook : BrittlePlasticity {
   double epso = 0;  ///< 1/time
   double tensile_failure = 0, threshold = 0, erosion_by_damage = 0, erosion_by_pressure = 0;
   double tensile_damage = 0, damage_to_fail = 0, failure_damage = 1;
-  bool crushes = false;  ///< the equation of state ledger plastic volumetric strain
+  bool crushes = false;  ///< the equation of state records plastic volumetric strain
 
   static constexpr auto parameters() {
     using P = HolmquistJohnsonCook;
@@ -69,7 +69,7 @@ struct HolmquistJohnsonCook : BrittlePlasticity {
   }
   void prepare() { derive_moduli(); }
 
-  /// What the other half of the material says: whether it crushes.
+  /// Reads from the equation of state's traits whether it crushes.
   std::string couple(const EosTraits& eos) {
     crushes = eos.columns.has(core::Column::plastic_volumetric_strain);
     return {};

@@ -3,10 +3,9 @@
 //   sigma_y = Shel [(1 - D) A (P* + T*)^N f + D min(B P*^M f, SFMax)],   D = sum of d epef/(D1 (P* + T*)^D2)
 //   p = K1 mu + K2 mu^2 + K3 mu^3 + dP  (mu < 0: K1 mu + dP), no lower than -T (1 - D), K1 = the bulk modulus
 //   dP <- sqrt((K1 mu + dP)^2 + 2 beta K1 dU) - K1 mu,  dU = (sigma_y^2 before - after)/(6 G)
-// for the strength that damage takes in the step. dP stays when the material expands; it grows in
-// compression only. The manual gives no limit of tension beyond T's name: T (1 - D) is that of its HJC.
-// The pressure is CeramicBulk's, so an EquationOfState beside it is refused. Shown by
-// tests/physics/jh2_test.cpp.
+// where dU is for the strength lost to damage in the step. dP is constant in expansion and grows in
+// compression only. The manual limits the tension only through the name of T: T (1 - D) is the limit of its
+// HJC. The pressure is CeramicBulk's, so an EquationOfState is rejected. Shown by tests/physics/jh2_test.cpp.
 #pragma once
 
 #include <string_view>
@@ -104,8 +103,8 @@ struct JH2 : BrittlePlasticity {
   }
 
  private:
-  /// Part of the energy of distortion that the strength can no longer hold becomes pressure. Without new
-  /// damage there is none, whatever round-off says: its root would be many times as large.
+  /// Part of the elastic shear energy released by the loss of strength becomes pressure. Zero without new
+  /// damage, despite round-off: the square root would amplify it.
   template <class T>
   void bulk_up(StrengthPoint<T>& point, core::MaskOf<T> damaged, const T& before, const T& after) const {
     const T elastic = bulk * (point.density * (1 / reference_density) - 1.0);  // K1 mu

@@ -3,8 +3,8 @@
 //   eps_f = (D1 + D2 exp(D3 sigma_m/sigma_eq))(1 + D4 ln(rate/epso))(1 + D5 T*^m),  damage = sum of d
 //   epef/eps_f
 // Rate factors are 1 below epso. The increment solves the consistency condition with its own rate and
-// adiabatic temperature. Molten (T* = 1) means no shear strength. Damage 1 fails the particle; it weakens
-// nothing before. The exponent m in the last factor is the manual's. Shown by
+// adiabatic temperature. Molten material (T* = 1) has no shear strength. The particle fails at damage 1;
+// smaller damage does not weaken it. The exponent m in the last factor is the manual's. Shown by
 // tests/physics/johnson_cook_test.cpp.
 #pragma once
 
@@ -94,7 +94,7 @@ struct JohnsonCook : JohnsonCookPlasticity {
   T softening(const T& temperature) const {
     return 1.0 - homologous_power(homologous_temperature(temperature, roomt, melt), m);
   }
-  /// With the slope along a path on which the temperature changes at the rate `heating`.
+  /// With the derivative along a path on which the temperature changes at the rate `heating`.
   template <class T>
   FlowStress<T> softening(const T& temperature, const T& heating) const {
     const T homologous = homologous_temperature(temperature, roomt, melt);
@@ -107,14 +107,13 @@ struct JohnsonCook : JohnsonCookPlasticity {
     using core::exp;
     using core::max;
     using core::min;
-    // A molten particle has no stress to divide by; any flow under tension then breaks it, under pressure it
-    // does not.
+    // A molten particle has no stress to divide by; any flow breaks it under tension, but not under pressure.
     const T triaxiality = -point.pressure / max(point.yield_stress, 1e-6 * yield0);
     const T homologous = homologous_temperature(point.temperature, roomt, melt);
     const T failure_strain = (d1 + d2 * exp(d3 * triaxiality)) *
                              rate_factor(d4, increment, epso * point.dt).value *
                              (1.0 + d5 * homologous_power(homologous, m));
-    // Parameters that give no positive failure strain mean failure at the first flow.
+    // Parameters without a positive failure strain cause failure at the first flow.
     const T damage = point.damage + increment / max(failure_strain, 1e-6);
     point.damage = core::select(increment > 0.0, min(damage, 1.0), point.damage);
   }

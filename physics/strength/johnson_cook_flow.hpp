@@ -1,8 +1,8 @@
 // The factors of the Johnson-Cook flow stress (manual 3-2, thesis 2-116), each with its derivative with
 // respect to the plastic strain increment x of a step:
 //   hardening A + B (epef + x)^n,   rate 1 + C ln(max(x/(dt epso), 1)),   heat 1 - T*^m
-// Below the reference rate epso the rate factor is 1: the logarithm would otherwise make a slow material
-// weaker than A and, at rest, of no strength at all.
+// Below the reference rate epso the rate factor is 1: otherwise the logarithm would make a slow material
+// weaker than A and, at rest, remove its strength.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ FlowStress<T> power_hardening(double a, double b, double n, const T& strain) {
   using core::exp;
   using core::log;
   using core::max;
-  // x^n as exp(n ln x); at zero strain the term vanishes and its slope, infinite for n < 1, is not asked for.
+  // x^n as exp(n ln x); at zero strain the term vanishes and its slope, infinite for n < 1, is not used.
   const T held = max(strain, 1e-300);
   const T term = core::select(strain > 0.0, b * exp(n * log(held)), n > 0 ? 0.0 : b);
   return {a + term, n * term / held};
@@ -59,7 +59,7 @@ FlowStress<T> rate_factor(double c, const T& increment, double reference_increme
           core::select(increment > reference_increment, c / held, 0.0)};
 }
 
-/// (T - T_room)/(T_melt - T_room) within 0 and 1.
+/// (T - T_room)/(T_melt - T_room), limited to [0, 1].
 template <class T>
 T homologous_temperature(const T& temperature, double room, double melt) {
   return core::min(core::max((temperature - room) * (1 / (melt - room)), 0.0), 1.0);

@@ -1,12 +1,12 @@
-// Rubber of Mooney and Rivlin, hyperelastic (manual 3.2.1.12). With the invariants I1, I2, I3 of B = F F^T:
+// Hyperelastic rubber of Mooney and Rivlin (manual 3.2.1.12). With the invariants I1, I2, I3 of B = F F^T:
 //   W = A (I1 - 3) + B (I2 - 3) + C (1/I3^2 - 1) + D (I3 - 1)^2                                      (3.18)
 //   C = A/2 + B,   D = (A (5 nu - 2) + B (11 nu - 5))/(2 (1 - 2 nu))                          (3.19, 3.20)
 //   sigma = 2/J ((A + B I1) B - B B^2 + I3 W,3 I),   J = det F
-// so that at rest G = 2 (A + B), K = 2 G (1 + nu)/(3 (1 - 2 nu)). F is the one that the material follows
-// (physics/material/deformation.hpp); J is its determinant, not that of the volume column, which the scene's
-// volume update may let drift.
-// Limit: below nu = (2 A + 5 B)/(5 A + 11 B), 0.40 to 0.45, D is negative and a large expansion not resisted.
-// No EquationOfState: the pressure is the law's own. Shown by tests/physics/rubber_test.cpp.
+// so that at rest G = 2 (A + B), K = 2 G (1 + nu)/(3 (1 - 2 nu)). F is the material's deformation gradient
+// (physics/material/deformation.hpp); J is its determinant, not that of the volume column, which may drift
+// with the scene's volume update. Limit: below nu = (2 A + 5 B)/(5 A + 11 B), 0.40 to 0.45, D is negative and
+// large expansion is not resisted. The law computes its own pressure: no EquationOfState. Shown by
+// tests/physics/rubber_test.cpp.
 #pragma once
 
 #include <string>
@@ -49,7 +49,7 @@ struct MooneyRivlin {
     bulk = 2 * shear * (1 + poisson) / (3 * (1 - 2 * poisson));
   }
 
-  /// A new particle is stretched alike in all directions to the volume that it has.
+  /// A new particle is stretched equally in all directions to its volume.
   template <class T>
   T place(StrengthPoint<T>& point, const T& relative_volume) const {
     using core::exp;
@@ -81,9 +81,9 @@ struct MooneyRivlin {
   }
 
  private:
-  /// Half J times the largest longitudinal modulus d(sigma_nn)/d(eps_nn). It lies along a principal
+  /// Half J times the largest longitudinal modulus d(sigma_nn)/d(eps_nn). It occurs along a principal
   /// direction, where with b1 the square of its stretch it is A b1 + B (I2 - I3/b1) + I3 W,3 + 2 I3^2 W,33;
-  /// for b1 stand bounds of the largest and the smallest, which are exact where two stretches are equal.
+  /// b1 is replaced by bounds of the largest and the smallest, which are exact where two stretches are equal.
   template <class T>
   T stiffness(const T& i1, const T& i2, const T& i3, const T& w3) const {
     using core::max;
@@ -96,7 +96,7 @@ struct MooneyRivlin {
            2.0 * i3 * i3 * w33;
   }
 
-  /// The deviator, by differences: exactly zero where all stretches are equal.
+  /// The deviator, from differences: exactly zero where all stretches are equal.
   template <class T>
   static core::Sym3<T> differences(const core::Sym3<T>& m) {
     const T xy = (1.0 / 3) * (m.xx - m.yy), yz = (1.0 / 3) * (m.yy - m.zz), zx = (1.0 / 3) * (m.zz - m.xx);

@@ -1,8 +1,8 @@
 // Fluids: no elastic shear stress, pressure from the equation of state (manual 3.2.1.8).
 //   ck = 0: Newtonian, tau = mu * rate in simple shear;  ck > 0: power law, tau = ck * rate^nn
-// As tensors s = 2 eta D' with eta = mu or ck g^(nn - 1), g = sqrt(2 D':D') the shear rate. The manual prints
-// s = mu D' (3-7) and calls mu the dynamic viscosity: with the shear components counted as g that is the
-// same. Limit: where nn < 1 the viscosity of a fluid almost at rest is that of the rate 1e-8/dt. Shown by
+// In tensor form s = 2 eta D' with eta = mu or ck g^(nn - 1), g = sqrt(2 D':D') the shear rate. The manual
+// prints s = mu D' (3-7) and calls mu the dynamic viscosity, which is the same if its shear components mean
+// g. Limit: for nn < 1 the viscosity of a fluid almost at rest is that of the rate 1e-8/dt. Shown by
 // tests/physics/fluid_test.cpp.
 #pragma once
 

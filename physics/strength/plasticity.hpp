@@ -1,4 +1,4 @@
-// What the plastic laws of von Mises type share: yield stress and heat as parameters, and the radial return.
+// Common part of the von Mises laws: yield stress and heating as parameters, and the radial return.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@ struct MisesPlasticity : IsotropicElasticity {
   double yield0 = 0;                    ///< initial yield stress
   double plastic_work_coefficient = 0;  ///< part of the plastic work that becomes heat
 
-  /// Ledger the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112
+  /// Records the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112
   /// to 2-120). `before` and `after` are the yield stress at the ends of the plastic part of the step; where
-  /// the increment is zero the trial stress stays as it is.
+  /// the increment is zero the trial stress is unchanged.
   template <class T>
   static void radial_return(StrengthPoint<T>& point, const T& trial, const T& before, const T& after,
                             const T& increment) {

@@ -1,4 +1,4 @@
-// What a strength law sees: one vector of particles, in the frame of the middle of the step.
+// Input and result of a strength law: one vector of particles, in the frame of midstep.
 #pragma once
 
 #include <array>
@@ -25,16 +25,16 @@ struct StrengthPoint {
   core::Sym3<T> s;  ///< deviatoric stress
 
   // --- given only to laws that say so --------------------------------------------------------------------
-  T deviate = 0.0;  ///< standard normal, the particle's own; to `place` of laws that scatter
+  T deviate = 0.0;  ///< standard normal, the particle's own; for `place` of laws that scatter
 
   // --- results beside the stress; laws that have none leave them ----------------------------------------
-  T shear_modulus = 0.0;  ///< for the wave speed
-  T bulk_modulus = 0.0;   ///< likewise; read from laws with `sets_pressure`
-  T viscosity = 0.0;      ///< shear viscosity reached, s = 2 viscosity D', for the critical step
-  T yield_stress = 0.0;   ///< for output
-  T plastic_work = 0.0;   ///< of this step, per current volume: what heats
-  T unresolved = 0.0;     ///< read from laws with `may_not_resolve`: 1 where the step was too large for them
-  T lowest_pressure = 0.0;  ///< read from laws with tension_rules(): the pressure is held at or above it
+  T shear_modulus = 0.0;    ///< for the wave speed
+  T bulk_modulus = 0.0;     ///< the same; used for laws with `sets_pressure`
+  T viscosity = 0.0;        ///< current shear viscosity, s = 2 viscosity D', for the critical step
+  T yield_stress = 0.0;     ///< for output
+  T plastic_work = 0.0;     ///< of this step, per current volume: the source of heat
+  T unresolved = 0.0;       ///< used for laws with `may_not_resolve`: 1 where the step was too large for them
+  T lowest_pressure = 0.0;  ///< used for laws with tension_rules(): lower limit of the pressure
 
   // --- state: only the columns that the law names in `state` are loaded and stored -----------------------
   T effective_plastic_strain = 0.0;

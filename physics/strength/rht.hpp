@@ -131,7 +131,7 @@ struct RHT : BrittlePlasticity {
     return core::max(
         core::select(p < 1.0 / 3, core::select(p < 0.0, tension, shear_to_compression), compression), 0.0);
   }
-  /// From `tensile` at p = -ft/3 to `compressive` at fc/3, constant beyond.
+  /// From `tensile` at p = -ft/3 to `compressive` at fc/3, constant outside.
   template <class T>
   T between(const T& p, const T& tensile, const T& compressive) const {
     const T share = core::min(core::max((3.0 * p + ft) * (1 / (1 + ft)), 0.0), 1.0);
@@ -168,7 +168,7 @@ struct RHT : BrittlePlasticity {
   struct Surfaces {
     T elastic, failure, residual, tip;  ///< tip: the pressure where the failure surface ends
   };
-  /// For the pressure, the direction of s (of the von Mises stress `equivalent`) and the rate over epso.
+  /// For the pressure, the direction of s (with von Mises stress `equivalent`) and the rate over epso.
   template <class T>
   Surfaces<T> surfaces(const T& pressure, const core::Sym3<T>& s, const T& equivalent, const T& rate) const {
     const T p = pressure * (1 / fc);
@@ -194,7 +194,8 @@ struct RHT : BrittlePlasticity {
     const T trial = mises(point.s);
     const Surfaces<T> y = surfaces(point.pressure, point.s, trial, rate_over(point, epso));
 
-    // Hardening 3 G/PREFACT up to the failure surface, then down from it: damaged as the step begins.
+    // Hardening 3 G/PREFACT up to the failure surface, then softening, with the damage at the beginning of
+    // the step.
     const double hardening = 3 * shear / prefact;
     const T before = core::min(y.elastic + hardening * point.effective_plastic_strain, y.failure);
     const T hardened = max(trial - before, 0.0) * (1 / (3 * shear + hardening));

@@ -1,6 +1,6 @@
-// A rigid body (manual 3.2.1.13): no stress and no deformation, so a wave speed of zero, which leaves it out
-// of the critical step but for its velocity. Its volume and energy stay as they are. How it moves is the
-// step's matter: straight on under gravity, or as prescribed. Shown by tests/physics/rigid_test.cpp.
+// A rigid body (manual 3.2.1.13): no stress and no deformation, so a wave speed of zero; only its velocity
+// enters the critical step. Its volume and energy are constant. The step determines its motion: free under
+// gravity, or prescribed. Shown by tests/physics/rigid_test.cpp.
 #pragma once
 
 #include <array>

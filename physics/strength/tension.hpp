@@ -1,6 +1,5 @@
-// The largest tension that a strength model bears (StrengthPoint::lowest_pressure), and what reaching it
-// means besides that the pressure stays there. A law that limits the tension states the rules as
-// tension_rules().
+// The largest tension that a strength model allows (StrengthPoint::lowest_pressure), and the consequences of
+// reaching it besides the limited pressure. A law that limits the tension defines them in tension_rules().
 #pragma once
 
 #include <limits>
@@ -16,7 +15,7 @@ struct TensionRules {
   bool fails() const { return verdict > 0 || erosion < std::numeric_limits<double>::infinity(); }
 };
 
-/// The pressure held at or above `lowest`; `sentence` becomes what the rules say of one that would be below.
+/// The pressure limited to at least `lowest`; `sentence` is set by the rules where it would be below.
 template <class T>
 T limit_tension(const TensionRules& rules, const T& pressure, const T& lowest, T& sentence) {
   sentence = core::select(pressure <= lowest, rules.verdict, sentence);

@@ -1,9 +1,9 @@
 // Bars (manual 3.2.1.2, 3.2.1.5): the stress along the bar alone, sigma = sigma + Young d_eps, and with
 // linear isotropic hardening |sigma| <= Yield0 + E_p epef, E_p = Young TangMod/(Young - TangMod) as for
-// IsoHarden. x is the bar's own axis: whoever owns bars gives D_xx as the axial strain rate and takes
-// sigma_xx; a bar has no spin of its own. The wave speed is sqrt(Young/rho). Poisson is accepted and has no
-// effect. As the Cauchy stress is s - p I, s = sigma diag(2, -1, -1)/3 and p = -sigma/3. A bar of another
-// density is not prestressed. Shown by tests/physics/bar_law_test.cpp.
+// IsoHarden. x is the bar's own axis: the caller passes D_xx as the axial strain rate and reads sigma_xx; a
+// bar has no spin. The wave speed is sqrt(Young/rho). Poisson is accepted and has no effect. As the Cauchy
+// stress is s - p I, s = sigma diag(2, -1, -1)/3 and p = -sigma/3. A bar of another density is not
+// prestressed. Shown by tests/physics/bar_law_test.cpp.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct UniaxialElasticity {
   static constexpr bool uniaxial = true;
 
   double young = 0;                  ///< stress
-  static constexpr double bulk = 0;  ///< a broken bar carries nothing, whatever its density
+  static constexpr double bulk = 0;  ///< a broken bar has no stress at any density
 
   template <class T>
   T place(StrengthPoint<T>& point, const T&) const {
