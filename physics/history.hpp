@@ -24,7 +24,7 @@ consteval auto member_of(core::Column column) {
   for (const auto& entry : Point::columns()) {
     if (entry.column == column) return entry.member;
   }
-  throw "this kind of law cannot carry the column: add it to the point's table";
+  throw "this family of laws cannot carry the column: add it to the point's table";
 }
 
 /// Whether a law of this configuration carries one of the columns of its `state`; all by default.

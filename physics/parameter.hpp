@@ -36,7 +36,7 @@ void read_parameters(Law& law, const core::LawInput& input) {
     if (input.has(info.name)) {
       law.*member = input.at(info.name);
     } else if (info.required) {
-      throw std::logic_error(input.type + " reached its law without " + std::string(info.name));
+      throw std::logic_error(input.type + " was created without its parameter " + std::string(info.name));
     } else if (!std::isnan(info.default_value)) {
       law.*member = info.default_value;
     }

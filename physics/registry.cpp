@@ -24,12 +24,12 @@ std::vector<std::string> faults_of(const core::ParameterInfo& p) {
   std::vector<std::string> faults;
   if (!is_word(p.name)) faults.emplace_back("its name is not a word of letters, digits, - and _");
   if (p.name == "type" || p.name == "Erosion")
-    faults.emplace_back("the language has an attribute of this name already: choose another");
+    faults.emplace_back("the input format already has an attribute of this name: choose another");
   if (p.meaning.empty()) faults.emplace_back("no meaning: add .meaning, one line for the keyword reference");
   const bool bounded = std::isfinite(p.min) || std::isfinite(p.max);
   if (!bounded && !p.any_number)
     faults.emplace_back(
-        "no range: add .min, .max or both, or .any_number = true if every finite number makes sense");
+        "no range: add .min, .max or both, or .any_number = true if every finite number is valid");
   if (std::isnan(p.min) || std::isnan(p.max) || p.min > p.max ||
       (p.min == p.max && (p.min_open || p.max_open)))
     faults.emplace_back("no number lies in its range");
@@ -48,8 +48,8 @@ std::vector<std::string> faults_of(const core::TypeInfo& info, const BuildTraits
   std::vector<std::string> faults;
   if (build != BuildTraits::here())
     faults.emplace_back(
-        ": it was compiled with headers or definitions that are not those of the library (MPM_SIMD_LANES, "
-        "MPM_ASSERTIONS, version): link the CMake target mpm::mpm and build anew");
+        ": it was compiled with headers or definitions other than the library's (MPM_SIMD_LANES, "
+        "MPM_ASSERTIONS, version): link the CMake target mpm::mpm and rebuild");
   if (!is_word(info.name))
     faults.emplace_back(": the name is not a word of letters, digits, - and _, as in type=\"MyLaw\"");
   if (info.summary.empty()) faults.emplace_back(": no summary, one line for the keyword reference");

@@ -123,15 +123,15 @@ class Registry {
         "`core::MaskOf<T> fails(const FailurePoint<T>&) const`");
     static_assert(
         requires { std::string_view(Law::name), std::string_view(Law::summary); },
-        "a law has its word in the input and one line for the keyword reference: static constexpr "
+        "a law defines its name in the input and one line for the keyword reference: static constexpr "
         "std::string_view name, summary");
     static_assert(
         requires { Law::state.size(); },
-        "a law names the columns that it keeps: static constexpr std::array state{...}, or "
+        "a law lists the columns of its state: static constexpr std::array state{...}, or "
         "std::array<core::Column, 0> state{}");
     static_assert(
         requires { Law::parameters().size(); },
-        "a law states its parameters: static constexpr auto parameters(), a std::array of "
+        "a law defines its parameters: static constexpr auto parameters(), a std::array of "
         "physics::Parameter");
     take(entry_of<Law>(), BuildTraits::here());
     return *this;

@@ -110,7 +110,7 @@ void PointFile::seek(const LinePlace& place) {
     begin_ += static_cast<std::size_t>(ahead);
   } else {
     if (gzseek(file_.get(), static_cast<z_off_t>(place.offset), SEEK_SET) != place.offset)
-      throw std::runtime_error("the file can no longer be read from its middle");
+      throw std::runtime_error("the file can no longer be repositioned");
     begin_ = end_ = 0;
     exhausted_ = false;
   }

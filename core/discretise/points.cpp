@@ -108,7 +108,7 @@ void FilePoints::generate(std::uint64_t first_unit, std::uint64_t last_unit, std
 void FilePoints::append_lines(std::uint64_t first, std::uint64_t last, std::vector<Seed>& out) const {
   std::string_view line;
   for (std::uint64_t i = first; i < last;) {
-    if (!file_.next(line)) throw std::runtime_error("it is shorter now");
+    if (!file_.next(line)) throw std::runtime_error("it has become shorter");
     const ParsedLine parsed = parse_point_line(line);
     if (parsed.kind == LineKind::wrong) throw std::runtime_error(parsed.message);
     if (parsed.kind == LineKind::blank) continue;

@@ -1,6 +1,5 @@
 #pragma once
-// What a scene may ask for at most, wherever it comes from: the reader, the programs and the set-up look
-// here.
+// Upper limits of a scene, used by the reader, the programs and the set-up.
 
 #include <cstdint>
 
@@ -9,7 +8,7 @@ namespace mpm::core {
 /// Bricks of four cells, whose coordinates have 21 bits, one of them spare.
 inline constexpr std::int64_t most_cells_per_axis = std::int64_t{4} << 20;
 
-/// Threads per rank; the system refuses very many by ending the program.
+/// Threads per rank; with very many the system ends the program.
 inline constexpr int most_threads = 1024;
 
 }  // namespace mpm::core

@@ -1,6 +1,6 @@
 #pragma once
-// Materials as the input states them: the names and values of each law's parameters, checked, defaults filled
-// in. Units are the user's own and consistent throughout.
+// Materials from the input: the names and values of each law's parameters, checked, with defaults filled in.
+// Units are the user's own and consistent throughout.
 
 #include <cstddef>
 #include <map>
@@ -13,17 +13,17 @@
 
 namespace mpm::core {
 
-/// Values by the attribute's spelling in the input. Holds every attribute that was given or has a default.
+/// Values by attribute name. Contains every attribute that was given or has a default.
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
 /// A strength model, equation of state or failure model: its type and its parameters.
 struct LawInput {
-  std::string type;  ///< the word of the input: "JohnsonCook", "Gruneisen", "PlaStrain" ...
+  std::string type;  ///< as in the input: "JohnsonCook", "Gruneisen", "PlaStrain" ...
   ParameterValues values;
   SourceLocation source;
 
   bool has(std::string_view name) const { return values.find(name) != values.end(); }
-  /// The value, which must be there: reading the input made sure of required ones and of defaults.
+  /// The value, which must exist: the reader ensures required values and defaults.
   double at(std::string_view name) const;
   double value_or(std::string_view name, double otherwise) const;
 };
@@ -54,7 +54,7 @@ struct MaterialInput {
   double reference_density = 0;  ///< mass/length^3, > 0
   LawInput strength;
   std::optional<LawInput> eos;
-  std::vector<FailureInput> failures;  ///< at most ten; `none` leaves no entry
+  std::vector<FailureInput> failures;  ///< at most ten; `none` adds no entry
   RandomFailureInput random_failure;
   SourceLocation source;
 };

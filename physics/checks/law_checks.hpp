@@ -25,7 +25,7 @@ struct LawSample {
 };
 
 struct LawCheck {
-  std::string_view name;       ///< a word
+  std::string_view name;       ///< one word
   std::string_view statement;  ///< the property
   /// The violations, one sentence each. Throws core::InputErrors where the sample's values are rejected.
   std::vector<std::string> (*failures)(const LawSample& sample, const Registry& registry);

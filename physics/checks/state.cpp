@@ -59,7 +59,7 @@ Failures rest_stays(const LawSample& sample, const Registry& registry) {
   // 1 + mu comes from a division, so mu at rest is zero to round-off.
   c.at_most(std::abs(point.value(Column::pressure) - p), 4e-16 * c.stiffness(), "change of the pressure");
   c.at_most(std::abs(point.energy() - e), 0, "change of the energy");
-  c.require(point.events().not_finite == 0, "the state is not a number");
+  c.require(point.events().not_finite == 0, "the state is not finite");
   return c.failures;
 }
 

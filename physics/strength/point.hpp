@@ -27,7 +27,7 @@ struct StrengthPoint {
   // --- given only to laws that say so --------------------------------------------------------------------
   T deviate = 0.0;  ///< standard normal, the particle's own; for `place` of laws that scatter
 
-  // --- results beside the stress; laws that have none leave them ----------------------------------------
+  // --- results besides the stress; laws without them leave them unchanged -------------------------------
   T shear_modulus = 0.0;    ///< for the wave speed
   T bulk_modulus = 0.0;     ///< the same; used for laws with `sets_pressure`
   T viscosity = 0.0;        ///< current shear viscosity, s = 2 viscosity D', for the critical step

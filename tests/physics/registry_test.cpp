@@ -243,7 +243,7 @@ TEST_CASE("what cannot be a law is refused by name", "[physics][registry]") {
   using Catch::Matchers::Equals;
   CHECK_THAT(refusal<0>(),
              Equals("StrengthModel 'Faulty', parameter 'wear': no range: add .min, .max or both, "
-                    "or .any_number = true if every finite number makes sense\n"));
+                    "or .any_number = true if every finite number is valid\n"));
   CHECK_THAT(refusal<1>(), Equals("StrengthModel 'Faulty', parameter 'wear': no meaning: add .meaning, one "
                                   "line for the keyword reference\n"));
   CHECK_THAT(refusal<2>(), Contains("parameter 'wear': its default lies outside of its range"));
