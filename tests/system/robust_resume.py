@@ -176,7 +176,7 @@ class Damaged(Resume):
         outcome = self.run_in("elsewhere", [self.out / "case.pe", "-rt", self.case])
         self.assertEqual(outcome.state, self.state)
         self.assertNotIn("warning", outcome.out)
-        self.assertIn("not all files that the run wrote before are in this folder",
+        self.assertIn("some files of the earlier run are missing in this folder",
                       (self.folder / "elsewhere/case.out").read_text())
 
 
