@@ -128,7 +128,7 @@ class Damaged(Resume):
             for damage, words in ((lambda data: b"", r"is empty; it had \d+ row\(s\) up to step \d+"),
                                   (lambda data: None, r"is missing; it had \d+ row\(s\) up to step \d+"),
                                   (cut, r"has 5 row\(s\) up to step \d+, but had \d+ row\(s\) up to step \d+"),
-                                  (changed, "has been changed: its first .* do not have the checksum")):
+                                  (changed, "has been changed: its first .* do not match the checksum")):
                 with self.subTest(name, words=words):
                     self.assertRegex(self.go_on_after(name, damage), f"{name}' {words}")
                     steps = _mpm.table(self.out / name)["step"]
