@@ -1,7 +1,7 @@
-// mpm_hjc --fc STRESS [--tension STRESS] ...: the parameters of Holmquist-Johnson-Cook concrete that follow
-// from others (manual 5.2), with P* = 1/3 the pressure of unconfined compression over fc:
+// mpm_hjc --fc STRESS [--tension STRESS] ...: derived parameters of Holmquist-Johnson-Cook concrete
+// (manual 5.2), with P* = 1/3 the pressure of unconfined compression over fc:
 //   T* = T/fc (5.1),   D1 = ep/(P* + T*) (5.2),   PCrush = fc/3 (5.3),   MuCrush = PCrush/Kel (5.4)
-// and Kel, G of Young's modulus and Poisson's ratio (6.1). Exit code 0 done, 2 wrong input.
+// and Kel, G from Young's modulus and Poisson's ratio (6.1). Exit code 0 done, 2 wrong input.
 
 #include <cmath>
 #include <cstdio>
@@ -31,7 +31,7 @@ struct Elasticity {
   double young, poisson, bulk, shear;
 };
 
-/// All four constants of any two; nothing where none is given.
+/// All four constants from any two; nullopt if none is given.
 std::optional<Elasticity> elasticity(const Settings& s) {
   const int given = (s.young ? 1 : 0) + (s.poisson ? 1 : 0) + (s.bulk ? 1 : 0) + (s.shear ? 1 : 0);
   if (given == 0) return {};
@@ -62,7 +62,7 @@ void print(const char* name, double value, const char* meaning) {
 
 void convert(const Settings& s) {
   if (s.fracture_strain && !s.tension) {
-    throw CLI::ValidationError("--fracture-strain", "D1 needs --tension besides");
+    throw CLI::ValidationError("--fracture-strain", "D1 needs --tension as well");
   }
   const std::optional<Elasticity> elastic = elasticity(s);
   const double p_crush = s.fc / 3;
@@ -98,8 +98,8 @@ void convert(const Settings& s) {
 int main(int argc, char** argv) {
   Settings settings;
   CLI::App app(
-      "Parameters of Holmquist-Johnson-Cook concrete that follow from others. Stresses in any one unit; what "
-      "is not given is not computed with.");
+      "Derived parameters of Holmquist-Johnson-Cook concrete. All stresses in the same unit; parameters that "
+      "need a value not given are omitted.");
   const auto positive = [&](const char* name, std::optional<double>& value, const char* meaning) {
     app.add_option(name, value, meaning)->check(positive_number);
   };
@@ -107,11 +107,11 @@ int main(int argc, char** argv) {
   positive("--tension", settings.tension, "tensile strength T: gives T*");
   positive("--fracture-strain", settings.fracture_strain,
            "plastic strain to fracture in unconfined compression: gives D1, with --tension");
-  positive("--bulk", settings.bulk, "elastic bulk modulus: gives MuCrush, as any two elastic constants do");
+  positive("--bulk", settings.bulk, "elastic bulk modulus: gives MuCrush, as do any two elastic constants");
   positive("--shear", settings.shear, "shear modulus");
   positive("--young", settings.young, "Young's modulus");
   app.add_option("--poisson", settings.poisson, "Poisson's ratio")->check(CLI::Range(-1.0, 0.5));
-  app.add_flag("--attributes", settings.attributes, "as attributes of an input file");
+  app.add_flag("--attributes", settings.attributes, "print as attributes of an input file");
   try {
     app.parse(argc, argv);
     convert(settings);

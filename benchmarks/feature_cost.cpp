@@ -1,16 +1,13 @@
-// What each law and each optional feature adds to a step, in bytes per particle and in nanoseconds per
-// particle-step: the copper Taylor bar with it and without it, in one process, stepped in turn.
+// Cost of each law and each optional feature, in bytes per particle and nanoseconds per particle-step: the
+// copper Taylor bar with and without it, in one process, stepped alternately. Times are CPU times of this
+// thread. The scenes alternate every twenty steps, A B A B ... A. Each B is compared with the mean of the A
+// before and after it, so that a drift of the machine cancels; the result is the median of these differences
+// with its standard error. The row "the same scene twice" shows the noise of the method. Settings without
+// effect must cost nothing: the same bytes and a bitwise identical state after the same steps; otherwise the
+// program exits with code 1.
 //
-// Time is the processor's of this thread. Twenty steps of the one scene follow twenty of the other, A B A B
-// ... A: a difference is that of B from the mean of the A before and after it, so that a drift of the machine
-// cancels; the median of the differences counts, and its standard error stands beside it. The row "the same
-// scene twice" shows what the method sees where there is nothing.
-//
-// What is spelled out but asks for nothing must cost nothing: the same bytes and the same bits of the state
-// after the same steps, or the program ends with 1.
-//
-// The laws are those of the catalogue, with the parameters of tests/physics/samples.cpp. A law also has its
-// time alone: Material::update on batches that stay in the cache.
+// The laws are those of the catalogue, with the parameters of tests/physics/samples.cpp. Each law is also
+// timed alone: Material::update on batches in cache.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -40,7 +37,7 @@ struct Options {
   std::string csv;
 };
 
-/// Two scenes, the second of which has more; and the law alone where that is what it has.
+/// Two scenes, the second with the feature; for a law also the law alone.
 struct Case {
   std::string family, name, against;
   std::function<core::Scene()> without, with;
@@ -58,8 +55,8 @@ struct Row {
   double law_ns = std::nan("");
 };
 
-/// The bar of another material, thrown at a twentieth of its sound speed, at most 190 m/s; `like` sets the
-/// speed. An explosive has been lit at the foot.
+/// The bar of another material with an impact velocity of a twentieth of its sound speed, at most 190 m/s;
+/// `like` sets the velocity. An explosive is lit at the foot.
 core::Scene bar_of(const core::MaterialInput& si, const core::MaterialInput& like, double particles) {
   core::Scene scene = BarInput{.particles = particles}.scene();
   const core::MaterialInput material = tests::convert(si, tests::mm_g_ms);
@@ -72,7 +69,7 @@ core::Scene bar_of(const core::MaterialInput& si, const core::MaterialInput& lik
   return scene;
 }
 
-/// What a law is compared with: the first of these that is a material.
+/// Reference for a law: the first of these that is a valid material.
 struct Base {
   core::MaterialInput input;
   std::string name;
@@ -95,7 +92,7 @@ std::vector<Case> law_cases(double particles) {
   std::map<std::string, std::set<Key>> seen;
   std::vector<Case> cases;
   for (const tests::Sample& s : tests::samples()) {
-    if (!s.solid) continue;  // bars and rigid bodies are no bar of particles
+    if (!s.solid) continue;  // not a bar of particles
     const auto add = [&](const std::string& family, const core::LawInput& law,
                          const std::vector<Base>& bases) {
       if (!seen[family].insert({law.type, law.values}).second) return;
@@ -119,8 +116,7 @@ std::vector<Case> law_cases(double particles) {
   return cases;
 }
 
-/// Material::update alone, ns per particle: 1024 particles in the second-level cache, deformed to and fro by
-/// 2 %.
+/// Material::update alone, ns per particle: 1024 particles in the L2 cache under cyclic deformation of 2 %.
 double time_of_law(const core::MaterialInput& si) {
   constexpr int batches = 16, sweeps = 50;
   const auto model = tests::make(tests::convert(si, tests::mm_g_ms));
@@ -172,7 +168,7 @@ double time_of_law(const core::MaterialInput& si) {
   return ns.best();
 }
 
-/// A scene that is stepped in turn with another.
+/// A scene that alternates with another.
 class Contestant {
  public:
   Contestant(core::Scene scene, int warm_up) : bar_(endless(std::move(scene))) {

@@ -1,12 +1,11 @@
 """All benchmarks by one command: throughput, scaling, feature costs, and error against run time.
 
-Leaves in the output folder: a CSV file per table, the programs' own words (.txt), all tables in benchmarks.md,
-and pictures (.png). --docs also puts the tables into docs/benchmarks.md, between their marks. Tables and pictures
-are made of every CSV file that the folder holds, so parts may be measured one at a time, and `--parts` alone only
-draws.
+Writes to the output folder: a CSV file per table, the output of the programs (.txt), all tables in benchmarks.md, and
+plots (.png). --docs also writes the tables into docs/benchmarks.md, between their marks. Tables and plots are made from
+every CSV file in the folder, so parts may be measured one at a time, and `--parts` alone only renders them.
 
-  run_all.py --quick        some minutes, small sizes: to see that all works
-  run_all.py --docs         about twenty minutes, on a machine that does nothing else"""
+  run_all.py --quick        a few minutes, small sizes: a functional check
+  run_all.py --docs         about twenty minutes, on an otherwise idle machine"""
 
 import argparse
 import os
@@ -169,7 +168,7 @@ def main():
     size.add_argument("--quick", dest="size", action="store_const", const="quick", default="full",
                       help="small sizes")
     size.add_argument("--tiny", dest="size", action="store_const", const="tiny",
-                      help="seconds; the numbers mean nothing")
+                      help="seconds; the results are meaningless")
     parser.add_argument("--docs", action="store_true", help="refresh the tables of docs/benchmarks.md")
     scaling.arguments(parser)
     options = parser.parse_args()

@@ -1,10 +1,9 @@
 // One case of a scaling study, under mpirun: the copper Taylor bar on the ranks given, as one line of JSON on
 // rank 0: time per step, the parts of communication in it, and how evenly the ranks compute. scaling.py
 // beside this file runs the list of cases and makes the tables.
-//
-// A rank computes for the time of its steps less that of the calls that communicate. Where ranks x threads
-// are more than the cores, the clock on the wall measures the queue for them: then the processor's time of
-// the busiest rank, per thread, stands for the step, as if there were cores enough and messages cost nothing.
+// The computing time of a rank is the time of its steps minus that of its communication calls. If ranks x
+// threads exceed the cores, wall time measures the scheduler; then the CPU time of the busiest rank per
+// thread is taken, as with enough cores and free communication.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -34,7 +33,7 @@ struct Options {
   int threads = 1, warm_up = 20, repeats = 5;
 };
 
-/// Of this machine, whichever of them the launcher has bound this rank to.
+/// Cores of this machine, regardless of binding.
 int cores() { return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)); }
 
 /// Ranks on this rank's machine. Collective.

@@ -35,14 +35,14 @@ def arguments(parser, cores=results.CORES):
     parser.add_argument("--ranks", type=int, nargs="*", default=doubling(cores), help="each with one thread")
     parser.add_argument("--threads", type=int, nargs="*", default=doubling(cores), help="each with one rank")
     parser.add_argument("--copies", type=int, nargs="*", default=[n for n in doubling(cores) if n <= results.CORES],
-                        help="programs beside each other on this machine")
+                        help="numbers of independent programs at the same time on this machine")
     parser.add_argument("--launcher", default="mpirun --oversubscribe --bind-to none -n {n}",
                         help="command that starts {n} ranks of {t} threads")
     parser.add_argument("--strong", type=float, default=1.3e6, help="particles of the strong studies; 0: none")
     parser.add_argument("--weak", type=float, default=200e3, help="particles per core of the weak ones; 0: none")
     parser.add_argument("--partitions", nargs="+", default=["metis", "uniform"], choices=["metis", "uniform"])
-    parser.add_argument("--scaling-repeats", type=int, default=5, help="of 20 steps; the best one counts")
-    parser.add_argument("--rounds", type=int, default=3, help="of all cases in turn; the best of each counts")
+    parser.add_argument("--scaling-repeats", type=int, default=5, help="of 20 steps; the best one is taken")
+    parser.add_argument("--rounds", type=int, default=3, help="over all cases in turn; the best of each is taken")
 
 
 def cases(options):
@@ -77,7 +77,7 @@ def copies(options, n, particles):
 
 def measure(options, partition, ranks, threads, particles):
     launcher = options.launcher.format(n=ranks, t=threads).split()
-    # Where another needs the core, who waits must not hold it.
+    # Waiting processes must yield the core to others.
     crowded = ranks * threads > results.CORES
     waiting = {"OMP_WAIT_POLICY": "passive", "OMPI_MCA_mpi_yield_when_idle": "1"} if crowded else {}
     return results.last_json(results.run(
@@ -86,13 +86,13 @@ def measure(options, partition, ranks, threads, particles):
 
 
 def key_of(name, partition, ranks, threads, particles):
-    """What tells cases apart: one rank has no partition, and one copy is one rank."""
+    """Key of a case: one rank has no partition, and one copy is one rank."""
     apart = name == "copies" and ranks > 1
     return "copies" if apart else partition if ranks > 1 else "", ranks, threads, particles
 
 
 def measure_in_turn(options):
-    """The best of several rounds of every case: what else the machine does comes and goes, and meets all of them."""
+    """The best of several rounds of every case: varying other load on the machine affects all cases alike."""
     best = {}
     for _ in range(options.rounds):
         seen = set()

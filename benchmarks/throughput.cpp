@@ -1,4 +1,4 @@
-// How fast the explicit step is, and how near to what the machine allows: particle-steps per second and core,
+// Speed of the explicit step relative to the limits of the machine: particle-steps per second and core,
 // bytes of state and of traffic per particle-step, shares of the memory and arithmetic ceilings, the ratio to
 // the naive reference stepper, seconds per phase and peak memory, for each scheme and size, all measured in
 // one run. The same bar in a larger box of empty space follows.
@@ -29,8 +29,8 @@ struct Options {
   int threads = 1;
   int warm_up = 20;
   int repeats = 5;
-  double seconds = 3;            ///< repeats go on until so much time is measured
-  double reference_limit = 2e6;  ///< particles; a dense grid of structs takes its time
+  double seconds = 3;            ///< minimum time of all repeats
+  double reference_limit = 2e6;  ///< particles; the reference is slow
   double empty_space = 200e3;    ///< particles of that comparison; 0: none
   std::string csv, phases_csv;
 };
@@ -51,8 +51,8 @@ Ceilings measure_ceilings_apart(int threads) {
   }));
 }
 
-/// Steps of a run with the time of each phase. A repeat is a whole number of tidy intervals, so that each
-/// pays its share of what is done only now and then.
+/// Steps of a run with the time of each phase. A repeat is a whole number of sorting intervals, so that each
+/// includes the periodic work.
 struct Stopwatch {
   explicit Stopwatch(const core::Stepper& s) : stepper(s), phases(s.phases().size()) {}
   Seconds run(int steps) {
@@ -73,7 +73,7 @@ struct Stopwatch {
   std::vector<Seconds> phases;  ///< of the last run
 };
 
-/// One case in this process: everything that is measured of it.
+/// All measurements of one case, in this process.
 Json measure(const BarInput& input, const Options& o) {
   omp_set_num_threads(o.threads);
   const double at_start = peak_memory();
@@ -153,7 +153,7 @@ Json measure_reference(const BarInput& input) {
   return {{"particles", n}, {"best_ns", ns.best()}, {"median_ns", ns.median()}};
 }
 
-/// A row of the results, with what follows from it.
+/// A row of the results with derived values.
 struct Row {
   std::string scheme;
   Json r;                         ///< of measure()
@@ -253,7 +253,7 @@ void write_phases_csv(const std::string& path, const Facts& facts, const std::ve
 void compare_empty_space(const Options& o) {
   Series ns[2], memory[2];
   constexpr double boxes[2] = {1, 10};
-  for (int pair = 0; pair < 3; ++pair) {  // A B A B, so that a drift of the machine meets both
+  for (int pair = 0; pair < 3; ++pair) {  // alternating, so that a drift of the machine affects both
     for (int b = 0; b < 2; ++b) {
       const Json r = in_child([&] { return measure({.particles = o.empty_space, .box = boxes[b]}, o); });
       ns[b].add(r["best_ns"]);
@@ -312,7 +312,7 @@ int run(int argc, char** argv) {
       }
       std::fflush(stdout);
     }
-    // The machine may have a better moment later on.
+    // The machine may be faster later.
     ceilings.take_best(measure_ceilings_apart(o.threads));
   }
   print_tables(rows, ceilings, o.threads);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# build.sh PRESET [TARGET...]: installs what is missing, configures and builds build/PRESET, or only these targets of it.
+# build.sh PRESET [TARGET...]: installs missing packages, configures and builds build/PRESET, or only these targets.
 set -eu
 cd "$(dirname "$0")/.."
 preset=$1
@@ -7,7 +7,7 @@ shift
 
 sh cmake/setup.sh
 
-# A compiler at work may take 1.5 GB; on machines with many cores and little memory, memory is the limit.
+# A compiler process may need 1.5 GB; with many cores and little memory, memory limits the number of jobs.
 jobs=$(nproc)
 memory_kb=$(awk '/^MemAvailable/ { print $2 }' /proc/meminfo)
 fitting=$((memory_kb / 1500000))

@@ -24,7 +24,7 @@ endif()
 if(MPM_TESTS)
   find_package(Catch2 2.13 REQUIRED)
 endif()
-# The Debian one by its path: another Python first on PATH may lack numpy, h5py and matplotlib.
+# Debian's Python by its path: another Python on PATH may lack numpy, h5py and matplotlib.
 find_program(MPM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(MPM_PYTHON python3 REQUIRED)
 mark_as_advanced(MPM_PYTHON)

@@ -1,4 +1,4 @@
-# What a user may choose, and the compiler flags that follow from it.
+# User options and the resulting compiler flags.
 
 set(MPM_ARCH native CACHE STRING "Value of -march; empty: the compiler's baseline")
 set(MPM_SIMD_LANES auto CACHE STRING "Doubles per SIMD vector: 1, 2, 4, 8, or auto for the widest that MPM_ARCH has")
@@ -27,7 +27,7 @@ mark_as_advanced(CCACHE_PROGRAM)
 if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
   if(MPM_PRECOMPILE)
-    # Without these ccache passes over every source that starts from precompiled headers.
+    # Without these ccache does not cache sources that use precompiled headers.
     list(PREPEND CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros)
   endif()
 endif()
@@ -58,8 +58,8 @@ else()
 endif()
 
 # Everything that changes the value of a result is PUBLIC on mpm_core. Contraction is spelled out because compilers
-# differ in its default; reassociation (-ffast-math) would end the same bits on any number of ranks. Projects that use
-# the installed library get all of it but -march, which is theirs to choose: no vector crosses the library's boundary
+# differ in its default; reassociation (-ffast-math) would break bitwise reproducibility. Projects that use the
+# installed library get all of it but -march, which is theirs to choose: no vector crosses the library's boundary
 # (apps/CMakeLists.txt), so g++'s notes on how vectors are passed do not concern them.
 set(mpm_value_options -ffp-contract=fast -fno-math-errno -fno-trapping-math)
 set(mpm_public_options ${mpm_arch_flags} ${mpm_value_options})
@@ -90,10 +90,10 @@ if(MPM_FUZZ)
 endif()
 
 if(MPM_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # g++ 12 forgets that precompiled lines are the system's; the preset dev warns of ours.
+  # g++ 12 treats precompiled system headers as ours; the preset dev reports our warnings.
   list(APPEND mpm_private_options -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 else()
-  set(MPM_PRECOMPILE OFF)  # clang takes them only where every option and definition is the same
+  set(MPM_PRECOMPILE OFF)  # clang requires identical options and definitions
 endif()
 
 message(STATUS "mpm: ${CMAKE_BUILD_TYPE}, arch '${MPM_ARCH}', ${mpm_simd_lanes} SIMD lanes, "

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what building, testing and plotting need on Debian 12. Does nothing where all of it is there.
+# Installs the packages for building, testing and plotting on Debian 12. Does nothing if all are installed.
 set -eu
 
 packages="build-essential g++ cmake ninja-build ccache git pkg-config

@@ -52,7 +52,7 @@ function(mpm_helpers target)
   endif()
 endfunction()
 
-# Warnings and the like, for our own sources only.
+# Warnings, for our own sources only.
 function(mpm_compile target)
   target_compile_options(${target} PRIVATE ${mpm_private_options})
   get_target_property(type ${target} TYPE)
@@ -61,7 +61,7 @@ function(mpm_compile target)
   endif()
 endfunction()
 
-# mpm_optimise_little(source...): for sources that run once or that check: short compilation before speed.
+# mpm_optimise_little(source...): for sources that run once or only check: favours compile time over speed.
 function(mpm_optimise_little)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O1>")

@@ -1,14 +1,14 @@
 #!/bin/sh
-# taylor_bar.sh [RANKS]: installs what is missing, builds the programs that a user needs first, runs the copper Taylor
-# bar (on 2 ranks) in out/taylor_bar and reports it against the experiment.
+# taylor_bar.sh [RANKS]: installs missing packages, builds the main programs, runs the copper Taylor bar (default: 2
+# ranks) in out/taylor_bar and compares it with the experiment.
 set -eu
 cd "$(dirname "$0")/.."
 ranks=${1:-2}
 
 sh cmake/build.sh release mpm_run mpm_check mpm_point
 
-# Root in a container and more ranks than cores are normal here. Single-copy messages need ptrace rights, which
-# containers withhold.
+# Root in a container and more ranks than cores are normal here. Single-copy messages need ptrace permission, which
+# containers lack.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_btl_vader_single_copy_mechanism=none
 export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}"

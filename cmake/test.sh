@@ -1,5 +1,5 @@
 #!/bin/sh
-# test.sh [ctest option...]: installs what is missing, builds with assertions and passes the whole test suite.
+# test.sh [ctest option...]: installs missing packages, builds with assertions and runs the whole test suite.
 set -eu
 cd "$(dirname "$0")/.."
 

@@ -1,8 +1,8 @@
 #!/bin/sh
-# test_builds.sh [BUILD...]: what test.sh cannot see, each in a build of its own, all of them or those named:
+# test_builds.sh [BUILD...]: tests that test.sh does not cover, each in its own build; all of them or those named:
 #   lanes1 lanes2 lanes4   the unit tests of core and physics with vectors of other widths
 #   sanitize               all unit tests under the address and undefined-behaviour sanitizers
-#   clang                  all unit tests by another compiler, every warning an error, every file with its own includes
+#   clang                  all unit tests with clang, warnings as errors, every file with its own includes
 #   race                   data races between the threads of a rank
 set -eu
 cd "$(dirname "$0")/.."

@@ -18,8 +18,8 @@ namespace {
 
 bool is_restart(const std::string& job) { return std::filesystem::path(job).extension() == ".pe"; }
 
-/// The file itself, or for `Job.pe`, which names no step, the newest one that is whole, once the run that
-/// writes them is over. Collective.
+/// The file itself or, for `Job.pe`, the newest complete restart file, after the run that writes them has
+/// ended. Collective.
 std::string find_restart(const RunOptions& options, const parallel::Communicator& world) {
   namespace fs = std::filesystem;
   const std::string& named = options.job;
@@ -86,8 +86,7 @@ core::BodyPlace place_of(const core::Scene& scene, const std::string& name) {
   return {};
 }
 
-/// A body's shape in the words of another scene: its operands by their places there. Nothing where that scene
-/// has no operand of the name.
+/// A body's shape with its operands at their places in another scene; nullopt if an operand is missing there.
 std::optional<core::Geometry> translated(const core::Geometry& geometry, const core::Scene& from,
                                          const core::Scene& to) {
   const auto* difference = std::get_if<core::BoolGeometry>(&geometry);
@@ -99,8 +98,8 @@ std::optional<core::Geometry> translated(const core::Geometry& geometry, const c
   return there;
 }
 
-/// What made the particles of a restart file is in them: another input that says otherwise asks for something
-/// that would not happen. Throws InputErrors.
+/// Refuses changes of the input with -rt that cannot take effect, since the particles already exist. Throws
+/// InputErrors.
 void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
   std::vector<core::Diagnostic> faults;
   core::Scene then = now;
@@ -109,14 +108,14 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
                            bool differs = false) {
     if (!differs && io::to_text(then) == text) return;
     faults.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
-                      "differs from the input of the restart file, where the particles have it from; -rt "
-                      "may change Grid, Solution, Output and Deactive: restore it"});
+                      "differs from the input of the restart file, which created the particles; -rt may "
+                      "change Grid, Solution, Output and Deactive: restore it"});
   };
   for (core::ComponentInput& component : then.components) {
     for (core::BodyInput& body : component.bodies) {
       const core::BodyInput* before = find_body(old, body.name);
       if (before == nullptr || body.deactivated) continue;
-      // Its loads, its outputs and its material's parameters hold from here on; these do not.
+      // New loads, outputs and material parameters take effect; these properties do not.
       const core::BodyInput stated = body;
       body.type = before->type;
       const std::optional<core::Geometry> geometry = translated(before->geometry, old, now);
@@ -130,7 +129,7 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
     }
   }
   then.detonations = old.detonations;
-  // One that is missing has no line; where it would stand is before the Grid.
+  // A missing Detonation has no line; it would precede the Grid.
   compare(now.detonations.empty() ? now.grid.source : now.detonations.front().source, "Detonation", "");
   if (!faults.empty()) throw core::InputErrors(faults);
 }

@@ -1,4 +1,4 @@
-// The case that the command line names: an input file, or a restart file with the input that it carries.
+// The case named on the command line: an input file, or a restart file with its embedded input.
 #pragma once
 
 #include <memory>
@@ -15,13 +15,13 @@ namespace mpm::apps {
 
 struct Case {
   std::shared_ptr<const core::Scene> scene;
-  std::string bytes;                    ///< of the input file, as every restart file will carry them
+  std::string bytes;                    ///< of the input file; stored in every restart file
   std::optional<std::string> restart;   ///< the file to continue from
   std::string restart_job;              ///< the job named in it
-  std::vector<core::Diagnostic> notes;  ///< what the input states without effect
+  std::vector<core::Diagnostic> notes;  ///< input settings without effect
 };
 
-/// A note as the log and mpm_check show it.
+/// A note as printed in the log and by mpm_check.
 std::string to_line(const core::Diagnostic& note);
 
 /// Rank 0 reads, every rank gets the same scene or the same InputErrors. Collective.

@@ -1,6 +1,6 @@
-// mpm_check FILE...: checks input files, and the particle files that they name, without running them: what a
-// run would refuse before its first step for reasons in the input, and what the input states without effect.
-// Prints every fault; exit code 0 when all files are right, 2 when any is not, 6 out of memory.
+// mpm_check FILE...: checks input files and the particle files that they name without running them. Reports
+// every input error that a run would find before its first step, and settings without effect. Exit code 0 if
+// all files are correct, 2 if any is not, 6 out of memory.
 
 #include <cstdio>
 #include <filesystem>
@@ -50,7 +50,7 @@ std::string summary(const core::Scene& scene) {
                      axes[2].cells, scene.solution.end_time);
 }
 
-/// What no description of the language says: materials, and all that a run sets up. Throws every fault.
+/// Checks beyond the input language: materials and everything that a run sets up. Throws all faults.
 double make_everything(const core::Scene& scene, const Registry& registry) {
   return core::check_setup(std::make_shared<const core::Scene>(scene),
                            physics::make_materials(scene, registry), io::columns_for(scene.output));
@@ -117,12 +117,12 @@ int run_check(int argc, char** argv, const Registry& registry) {
   apps::CommandLine line("Checks input files of mpm_run.");
   line.option("FILE", settings.files, "input files, with or without .xmp");
   line.option("--specification", settings.specification,
-              "check the files against this Specification.xml too (the manual's notation, 5.1); default: the "
-              "one beside the program, if there is one");
+              "also check the files against this Specification.xml (manual, 5.1); default: the one beside "
+              "the program, if any");
   line.flag("--reference", settings.reference, "print the keyword reference in Markdown");
-  line.flag("--echo", settings.echo, "print each file as it was understood, with all defaults");
+  line.flag("--echo", settings.echo, "print each file as interpreted, with all defaults");
   line.flag("--materials", settings.materials, "list the material library: laws, values, sources");
-  line.flag("--accept-later", settings.accept_later, "let pass what is known but not implemented yet");
+  line.flag("--accept-later", settings.accept_later, "accept input that is known but not implemented yet");
   if (const std::optional<int> code = line.parse(argc, argv)) return *code;
   if (settings.specification.empty()) settings.specification = specification_beside(argv[0]);
   if (settings.reference) fmt::print("{}", io::keyword_reference(registry.catalogue()));

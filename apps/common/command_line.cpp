@@ -9,7 +9,7 @@ namespace mpm::apps {
 
 namespace {
 
-/// CLI11's own prints the largest double in full.
+/// The check of CLI11 prints the largest double in full.
 const CLI::Validator& more_than_zero() {
   static const CLI::Validator validator(
       [](const std::string& word) {

@@ -1,4 +1,4 @@
-// What every program says of laws from outside that the registry has refused.
+// Reports the laws that the registry has refused.
 #pragma once
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 namespace mpm::apps {
 
-/// Prints what is wrong with the registry's laws; true where anything is.
+/// Prints the faults of the registry's laws; true if there are any.
 inline bool say_faults(const physics::Registry& registry, bool speak) {
   if (speak) {
     for (const std::string& fault : registry.faults()) std::fprintf(stderr, "%s\n", fault.c_str());

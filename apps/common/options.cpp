@@ -8,7 +8,7 @@
 namespace mpm::apps {
 
 ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
-  // The manual's options have one dash and several letters, which CLI11 would read as letters.
+  // The manual's options have one dash and several letters, which CLI11 would read as single-letter flags.
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     std::string word = argv[i];
@@ -22,21 +22,22 @@ ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
   RunOptions& o = parsed.options;
   CommandLine line("Material point method for extreme deformation.", "mpm_run");
   line.footer(
-      "Exit codes: 0 done, 2 wrong input, 3 numerical failure, 4 stopped early (a restart file is there), 5 "
-      "file error (file descriptors that run out included), 6 out of memory or threads.\n"
-      "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and leave with exit code 4. Under mpirun take\n"
+      "Exit codes: 0 done, 2 wrong input, 3 numerical failure, 4 stopped early (a restart file was written), "
+      "5 file error (also: out of file descriptors), 6 out of memory or threads.\n"
+      "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and exit with code 4. Under mpirun use\n"
       "SIGUSR1, sent to mpirun, or --max-wall-time: after Ctrl+C or SIGTERM mpirun ends with exit code 1\n"
-      "and kills its ranks within seconds, whether or not they have written a restart file.");
+      "and kills its ranks within seconds, even if they have not finished the restart file.");
   line.version(std::string(core::version) + " (" + std::string(core::git_hash) + ")");
   line.required("job", o.job,
-                "input file Job.xmp (the ending may be left out) or restart file Job_<step>.pe");
+                "input file Job.xmp (the extension may be omitted) or restart file Job_<step>.pe");
   line.option("--output-dir", o.output_dir, "folder for all files", true);
-  line.flag("--dry-run", o.dry_run, "read, check, discretise, report what the run needs, and leave");
-  line.flag("--h5pt", o.to_h5part, "(-h5pt) convert a restart file to H5Part and leave");
-  line.flag("--lsdyna", o.lsdyna, "(-lsdyna) write the particles as LS-DYNA SPH data too");
+  line.flag("--dry-run", o.dry_run,
+            "read, check and discretise the input, report what the run needs, and exit");
+  line.flag("--h5pt", o.to_h5part, "(-h5pt) convert a restart file to H5Part and exit");
+  line.flag("--lsdyna", o.lsdyna, "(-lsdyna) also write the particles as LS-DYNA SPH data");
   line.option("--rt", o.restart_input,
-              "(-rt) restart with another Grid, Solution, Output, Deactive from this .xmp");
-  line.option("--nsteps", o.status_rows, "(-nsteps) stop after so many rows of the .sta file",
+              "(-rt) restart with the Grid, Solution, Output and Deactive of this .xmp file");
+  line.option("--nsteps", o.status_rows, "(-nsteps) stop after this many rows of the .sta file",
               Range::positive);
   line.option("--max-wall-time", o.max_wall_time,
               "seconds after which a restart file is written and the run stops", Range::positive);

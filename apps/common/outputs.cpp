@@ -27,7 +27,7 @@ std::string duration(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-// The endings of the files' names, by which a restart file knows them.
+// Suffixes of the file names; restart files use them as keys of the marks.
 constexpr const char* status_ending = ".sta";
 constexpr const char* history_ending = "_curv.dat";
 constexpr const char* h5part_ending = ".h5part";
@@ -43,8 +43,8 @@ io::TableContinuation table_from(const Continuation& from, const std::string& na
   return {last_step, io::TableMark::from(mark_named(from, name))};
 }
 
-/// Up to where a continued run keeps the rows of .sta. One that has nothing left to do writes its last again:
-/// it may have been killed before it could.
+/// The last row of .sta that a continued run keeps. A run with no steps left writes its last row again, since
+/// it may have been killed before writing it.
 std::int64_t last_status_step(const core::Model& model) {
   const core::Clock& clock = model.clock;
   const bool over = clock.time >= model.scene->solution.end_time * (1 - 1e-12);
@@ -61,7 +61,7 @@ std::optional<std::string> picture_from(const std::optional<Continuation>& from,
   return from ? std::optional(mark_named(*from, name)) : std::nullopt;
 }
 
-/// Histories have a row for every step; without them the file has one for each row of .sta.
+/// With histories the file has a row for every step; without, one for each row of .sta.
 std::optional<io::HistoryFile::Continuation> history_from(const std::optional<Continuation>& from,
                                                           const core::Model& model) {
   if (!from) return {};
@@ -83,11 +83,11 @@ std::string log_notice(const std::string& path, const Continuation& from) {
   if (expected.empty()) return {};
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  if (error) return fmt::format("'{}' is missing; it had {} bytes: it begins anew", path, expected);
+  if (error) return fmt::format("'{}' is missing; it had {} bytes: a new file begins", path, expected);
   if (bytes >= std::strtoull(expected.c_str(), nullptr, 10)) return {};
   return fmt::format(
-      "'{}' has {} bytes, but had {} when the restart file was written: what is missing is lost", path, bytes,
-      expected);
+      "'{}' has {} bytes, but had {} when the restart file was written: the missing part is lost", path,
+      bytes, expected);
 }
 
 double Interval::passed(double now) const { return std::floor(now / every_ * (1 + 1e-12)); }

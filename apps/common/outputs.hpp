@@ -1,5 +1,5 @@
-// Everything that a run writes while it goes on, each at its own interval of simulated time. What a scene
-// does not ask for is not created.
+// All output of a run, each kind at its own interval of simulated time. Output that the scene does not
+// request is not created.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@
 
 namespace mpm::apps {
 
-/// Something that happens every so much simulated time, after the first step that reaches the mark.
+/// A periodic event in simulated time, due after the first step that reaches its mark.
 class Interval {
  public:
   Interval() = default;
@@ -26,24 +26,23 @@ class Interval {
   void done(double now) { marks_ = passed(now); }
 
  private:
-  /// Marks up to `now`; a time that misses one by round-off has passed it.
+  /// Marks up to `now`, within round-off.
   double passed(double now) const;
   double every_ = 0;
   double marks_ = 0;
 };
 
-/// Where a continued run's files are to be taken up.
+/// Where a restarted run continues its files.
 struct Continuation {
-  std::vector<std::uint64_t> tracked;        ///< particles that the histories follow
-  std::map<std::string, std::string> marks;  ///< Outputs::marks() of the run that goes on
+  std::vector<std::uint64_t> tracked;        ///< particles tracked by histories
+  std::map<std::string, std::string> marks;  ///< Outputs::marks() of the original run
 };
 
-/// Of a run that goes on in another folder than its restart file's: files `<stem><ending>` that are not there
-/// begin anew, and their marks go. True if there are any. Collective.
+/// For a run that continues in another folder than its restart file's: removes the marks of files
+/// `<stem><ending>` that do not exist there, so that they begin anew. True if there are any. Collective.
 bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Reductions& ranks);
 
-/// What the user should know about the log that is to go on, before it is opened; mostly nothing. On one
-/// rank.
+/// Notice for the user about the log to be continued, before it is opened; usually empty. On one rank.
 std::string log_notice(const std::string& path, const Continuation& from);
 
 class Outputs {
@@ -51,22 +50,22 @@ class Outputs {
   Outputs(const std::string& folder, const core::Model& model, core::Reductions& ranks,
           const std::optional<Continuation>& from, io::Log& log);
 
-  /// After a step, or before the first one: whatever is due. Collective.
+  /// Writes whatever is due, after a step or before the first one. Collective.
   void after_step(const core::Model& model, core::Reductions& ranks);
-  /// The state's row in .sta and on the console, and what it was made from. Collective.
+  /// Writes the state's row to .sta and the console; returns its totals. Collective.
   const core::Totals& report(const core::Model& model, core::Reductions& ranks);
   bool report_due(const core::Model& model) const { return report_.due(model.clock.time); }
-  /// At the end, the state if it is not yet in the files; everything to the disk. Collective.
+  /// At the end: writes the state if it is not yet in the files, and syncs everything to disk. Collective.
   void finish(const core::Model& model, core::Reductions& ranks);
 
-  /// All that has been written so far to the disk itself, and where each file stands, for a restart file:
-  /// what a run that goes on does not write again is safe before the restart file counts. Collective.
+  /// Syncs all output to disk and returns the mark of each file for a restart file: output that a restarted
+  /// run does not write again must be on disk before the restart file becomes valid. Collective.
   std::map<std::string, std::string> marks(core::Reductions& ranks);
 
   std::int64_t status_rows() const { return status_.rows_added(); }
   std::vector<std::uint64_t> tracked() const;
   double seconds() const { return seconds_; }
-  /// Files for the eye, to be named at the end.
+  /// Files to open in a viewer, listed at the end of the log.
   std::vector<std::string> pictures() const;
 
  private:

@@ -31,13 +31,13 @@ constexpr std::array<Kind, 11> kinds{{
      "axial strain under constant lateral pressure P, which is applied first:\n"
      "      E < 0 compression, E > 0 extension"},
     {"biaxial", "E [E...] [confining P]", "axial strain, z held (plane strain), y under pressure P"},
-    {"equibiaxial", "E [E...]", "x and y strained alike, z free (a bulge test)"},
+    {"equibiaxial", "E [E...]", "equal strain in x and y, z free (a bulge test)"},
     {"simple_shear", "G [G...]", "shear gamma_xy = G"},
     {"hydrostatic", "E [E...]", "volumetric strain E, equal in all directions"},
-    {"pressure", "P [P...]", "to pressure P by equal strains"},
+    {"pressure", "P [P...]", "to pressure P by equal strains in all directions"},
     {"mixed", "e_xx=E s_yy=S ... time T",
      "each of xx, yy, zz, xy, yz, xz by its strain e or its stress s at the end; strains count from the\n"
-     "      leg's beginning, and what is not named does not strain"},
+     "      start of the leg, and components not named have zero strain"},
     {"hold", "time T", "no strain for a time T (relaxation)"},
     {"table", "FILE", "deformation gradient F over time: lines of time F11 F12 F13 F21 ... F33"},
 }};
@@ -77,7 +77,7 @@ core::Sym3<double> unit(double core::Sym3<double>::*member) {
   return s;
 }
 
-/// One leg of the text: its words, taken apart.
+/// Parses one leg of the text.
 class LegReader {
  public:
   LegReader(std::string_view text, const PathDefaults& defaults) : text_(text), defaults_(defaults) {
@@ -194,7 +194,7 @@ class LegReader {
   }
 
   std::vector<Leg> to_stress() const {
-    if (!numbers_.empty()) fail("ends at a strain or at a stress, not at both");
+    if (!numbers_.empty()) fail("ends at a strain or at a stress, not both");
     if (!rate_ && !time_) fail("a leg to a stress needs a time (or a rate of the stress)");
     Leg leg = kind_ == "uniaxial_stress" ? legs::uniaxial_stress(0) : legs::simple_shear(0);
     leg.strain.reset();
@@ -243,8 +243,8 @@ class LegReader {
                                  ? std::ranges::find(components, name.substr(2), &Component::name)
                                  : components.end();
       if (component == components.end() || name[1] != '_' || (name[0] != 'e' && name[0] != 's'))
-        fail(fmt::format("'{}' is no component; e_xx is a strain, s_xx a stress, of xx, yy, zz, xy, yz, xz",
-                         name));
+        fail(fmt::format(
+            "'{}' is not a component; e_xx is a strain, s_xx a stress, of xx, yy, zz, xy, yz, xz", name));
       if (std::ranges::find(seen, component->name) != seen.end())
         fail(fmt::format("{} is prescribed twice", component->name));
       seen.push_back(component->name);
@@ -260,8 +260,7 @@ class LegReader {
         for (const auto entry : entries) total.*entry += value * component->direction.*entry;
       }
     }
-    // The measure is the first component; all strains grow with the time, so the drive is one unit of the
-    // leg.
+    // The first component is the measure; all strains grow with time, so the drive is one unit of the leg.
     leg.direction = total;
     leg.whole = true;
     return leg;
@@ -277,7 +276,7 @@ class LegReader {
   std::optional<int> steps_;
 };
 
-/// Whether b goes on counting where a stands.
+/// Whether the strains of b count from the start of the run of legs that a belongs to.
 bool same_run(const Leg& a, const Leg& b) {
   if (a.kind != b.kind || a.kind == "mixed" || a.kind == "table") return false;
   const bool confined = a.kind == "triaxial" || a.kind == "biaxial";
@@ -288,17 +287,17 @@ bool same_run(const Leg& a, const Leg& b) {
 
 std::vector<Leg> parse_path(std::string_view text, const PathDefaults& defaults) {
   std::vector<Leg> all;
-  std::optional<Leg> last;  // that was no hold
+  std::optional<Leg> last;  // other than hold
   for (int round = 0; round < defaults.repeat; ++round) {
     for (const std::string_view part : io::split(text, ';')) {
       if (part.empty()) continue;  // a semicolon at the end
       const LegReader reader(part, defaults);
       std::vector<Leg> legs = reader.read();
-      // The pressure before a confined leg is there already where that leg goes on with the same one.
+      // A confined leg that continues at the same pressure needs no leg to reach it.
       if (legs.size() > 1 && legs[0].kind != legs[1].kind && last && same_run(*last, legs[1]))
         legs.erase(legs.begin());
       for (Leg& leg : legs) {
-        if (leg.kind == "hold") {  // stands in the run that it interrupts
+        if (leg.kind == "hold") {  // belongs to the run of legs that it interrupts
           if (last) leg.measure = last->measure;
         } else {
           leg.from_zero = !last || !same_run(*last, leg);
@@ -327,12 +326,13 @@ std::vector<physics::DeformationRow> read_deformation(const std::string& file) {
     if (words.size() != v.size()) fail(fmt::format("{} numbers, expected time and nine of F", words.size()));
     for (std::size_t i = 0; i < v.size(); ++i) {
       const std::optional<double> value = io::parse_real(words[i]);
-      if (!value) fail(fmt::format("'{}' is no number", words[i]));
+      if (!value) fail(fmt::format("'{}' is not a number", words[i]));
       v[i] = *value;
     }
     rows.push_back({v[0], {v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9]}});
     if (!(determinant(rows.back().gradient) > 0)) fail("the determinant of F is not positive");
-    if (rows.size() > 1 && !(rows.back().time > rows[rows.size() - 2].time)) fail("the time does not grow");
+    if (rows.size() > 1 && !(rows.back().time > rows[rows.size() - 2].time))
+      fail("the time does not increase");
   }
   if (rows.size() < 2) throw PathError(fmt::format("table {}: fewer than two rows of numbers", file));
   return rows;
@@ -347,15 +347,15 @@ std::string path_help() {
   text +=
       "\nStrains are logarithmic and rates true; pressure is positive in compression, strain and stress in "
       "tension.\n"
-      "Several numbers are reached one after the other; they count from where the run of legs of one kind "
-      "began.\n"
-      "'stress S time T' in place of the strain ends a uniaxial_stress or simple_shear leg at that "
+      "Several numbers are reached in turn; they count from the start of the run of legs of the same kind.\n"
+      "'stress S time T' instead of the strain ends a uniaxial_stress or simple_shear leg at that "
       "stress.\n\n"
       "  --path \"uniaxial_stress 0.2 rate 1000\"\n"
       "  --path \"uniaxial_stress 0.01 -0.01\" --repeat 5                     five cycles\n"
       "  --path \"triaxial -0.1 confining 10; triaxial -0.05 confining 10\"   compression and back\n"
       "  --path \"uniaxial_stress stress 100 time 1; hold time 5\"            load, then relaxation\n"
-      "  --path \"mixed e_xx=0.01 s_yy=-20 s_zz=0 time 1\"                    any six of strain and stress\n";
+      "  --path \"mixed e_xx=0.01 s_yy=-20 s_zz=0 time 1\"                    any mix of six strains and "
+      "stresses\n";
   return text;
 }
 

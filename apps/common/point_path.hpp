@@ -11,7 +11,7 @@
 
 namespace mpm::apps {
 
-/// A path that cannot be read; what() says which leg, what was expected, and offers the nearest word.
+/// A path that cannot be parsed; what() names the leg, the expectation and the nearest valid word.
 class PathError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -20,16 +20,16 @@ class PathError : public std::invalid_argument {
 struct PathDefaults {
   double rate = 1;
   int steps = 1000;
-  int repeat = 1;  ///< the whole path so many times
+  int repeat = 1;  ///< number of times the whole path is run
 };
 
 std::vector<physics::Leg> parse_path(std::string_view text, const PathDefaults& defaults);
 
-/// F(t) from a text file: time and nine components, row by row, per line; commas or blanks; lines that do not
-/// begin with a number are headings.
+/// F(t) from a text file: time and nine components, row by row, per line, separated by commas or blanks;
+/// lines that do not begin with a number are headings.
 std::vector<physics::DeformationRow> read_deformation(const std::string& file);
 
-/// What can be written, for --help.
+/// Description of the path language for --help.
 std::string path_help();
 
 }  // namespace mpm::apps

@@ -1,4 +1,4 @@
-// The picture of mpm_point: plain SVG, which every browser shows; needs no library.
+// The plot of mpm_point: plain SVG, written without a library.
 
 #include <algorithm>
 #include <cmath>
@@ -15,13 +15,13 @@ namespace {
 
 using Points = std::vector<std::pair<double, double>>;
 
-/// An axis from round number to round number with ticks of 1, 2 or 5 times a power of ten.
+/// An axis between round numbers with ticks of 1, 2 or 5 times a power of ten.
 struct Axis {
   double low = 0, high = 1, tick = 0.2;
 
   void cover(double least, double most) {
     const double size = std::max({std::abs(least), std::abs(most), 1e-300});
-    if (most - least < 1e-9 * size) {  // a constant: round-off is no curve
+    if (most - least < 1e-9 * size) {  // constant up to round-off
       least -= 0.5 * size;
       most += 0.5 * size;
     }
@@ -41,7 +41,7 @@ class Panel {
     cover(line, marks);
     std::string svg = frame();
     svg += "<polyline class=\"curve\" points=\"";
-    // More points than pixels make a large file and no better picture.
+    // More points than pixels enlarge the file without improving the plot.
     const std::size_t stride = std::max<std::size_t>(1, line.size() / 4000);
     for (std::size_t i = 0; i < line.size(); ++i)
       if (i % stride == 0 || i + 1 == line.size())

@@ -1,7 +1,6 @@
-// mpm_point: one particle of a material, of an input file or of the library, driven along a path of strains
-// and stresses as in a laboratory; prints the response as a table (CSV) and draws it (SVG). For calibration,
-// and to see what a law does. Exit code 0 done, 2 wrong input, 3 where the material gave no defined answer, 5
-// file error.
+// mpm_point: loads one particle of a material, from an input file or the library, along a path of strains and
+// stresses as in a laboratory test; prints the response as a table (CSV) and plots it (SVG). Exit code 0
+// done, 2 wrong input, 3 undefined response of the material, 5 file error.
 
 #include <cstdio>
 #include <exception>
@@ -49,7 +48,7 @@ io::MaterialChoice choose(Settings& settings, const Registry& registry) {
     return io::read_material(settings.input, registry.catalogue(), {settings.material, settings.set});
   if (settings.units.empty())
     throw std::invalid_argument(
-        "--units: library values are converted to units of yours, as in --units \"mm g ms\"");
+        "--units: library values are converted to your units, as in --units \"mm g ms\"");
   return io::library_material(settings.library, settings.units, registry.catalogue(), settings.set);
 }
 
@@ -59,7 +58,7 @@ bool write(const std::string& file, const std::string& text) {
          std::fflush(stream.get()) == 0;
 }
 
-/// Says on standard error what the table does not show; the exit code.
+/// Reports on standard error what the table does not show; returns the exit code.
 int report(const physics::PathEnd& end, const std::vector<physics::Leg>& legs,
            const physics::PointDriver& point, const std::string& stress_unit) {
   int code = 0;
@@ -73,19 +72,20 @@ int report(const physics::PathEnd& end, const std::vector<physics::Leg>& legs,
   }
   const core::MaterialEvents& events = point.events();
   if (events.not_finite > 0) {
-    fmt::print(stderr, "mpm_point: the state is no number in {} steps\n", events.not_finite);
+    fmt::print(stderr, "mpm_point: the state is not finite in {} steps\n", events.not_finite);
     code = 3;
   }
-  if (events.failed > 0) fmt::print(stderr, "mpm_point: the material failed on the way (column failed)\n");
+  if (events.failed > 0)
+    fmt::print(stderr, "mpm_point: the material failed along the path (column failed)\n");
   return code;
 }
 
-/// A time or length in SI, in the units of the input; where it names none, the number itself.
+/// Converts a time or length from SI to the units of the input; unchanged if the input names no units.
 double in_units_of(const io::MaterialChoice& choice, double si, const core::Dimension& dimension) {
   return choice.units ? si / choice.units->in_si(dimension) : si;
 }
 
-/// Puts the material through the tests that hold for every law.
+/// Runs the generic tests of a law on the material.
 int test(Settings& settings, const Registry& registry) {
   const io::MaterialChoice choice = choose(settings, registry);
   physics::LawSample sample{choice.material, choice.detonations};
@@ -126,7 +126,7 @@ int drive(Settings& settings, const Registry& registry) {
     if (shown) text += table.row(at);
     last = shown ? std::string() : table.row(at);
   });
-  text += last;  // the end of the path is always there
+  text += last;  // the end of the path is always printed
 
   if (settings.output.empty()) {
     fmt::print("{}", text);
@@ -156,43 +156,44 @@ int run_point(int argc, char** argv, const Registry& registry) {
   if (apps::say_faults(registry, true)) return 2;
   Settings settings;
   apps::CommandLine line(
-      "Drives one particle of a material along a path of strains and stresses: what a law does, without a "
+      "Loads one particle of a material along a path of strains and stresses: the response of a law without "
+      "a "
       "grid.\n\n"
       "  mpm_point --library OFHC-Cu-JC --units \"mm g ms\" --path \"uniaxial_stress 0.2 rate 1000\" --plot "
       "cu.svg\n"
       "  mpm_point case.xmp --material cu --path \"uniaxial_strain -0.1 rate 10\" -o cu.csv");
   line.option("INPUT", settings.input,
-              "input file with the material, with or without .xmp; materials alone will do");
-  line.option("-m,--material", settings.material, "its name; not needed where the file has only one");
+              "input file with the material, with or without .xmp; other elements may be missing");
+  line.option("-m,--material", settings.material,
+              "name of the material; not needed if the file has only one");
   line.option("-l,--library", settings.library, "material of the library; mpm_check --materials lists them");
   line.option("-u,--units", settings.units, "units of path and table with --library, as in \"mm g ms\"");
-  line.option("-s,--set", settings.set, "NAME=VALUE: sets one parameter anew; may be repeated");
+  line.option("-s,--set", settings.set, "NAME=VALUE: overrides one parameter; may be repeated");
   line.flag("--isothermal", settings.isothermal,
             "plastic work does not heat: --set PlasticWorkCoefficient=0");
   line.option("-p,--path", settings.path, "the path, see below");
   line.flag("--test", settings.test,
-            "in the place of a path: puts the material through the tests that hold for every law; exit "
-            "code 3 where it fails one");
-  line.option("--strain", settings.strain, "with --test: strain that the paths reach, beyond yield",
+            "instead of a path: runs the tests that hold for every law; exit code 3 if one fails");
+  line.option("--strain", settings.strain, "with --test: strain that the paths reach beyond yield",
               apps::Range::positive, true);
   line.option("--duration", settings.duration,
-              "with --test: time that a path takes; 2e-5 s, or 2e-5 where the input does not name its units",
+              "with --test: duration of a path; 2e-5 s, or 2e-5 if the input does not name its units",
               apps::Range::positive);
-  line.option("--repeat", settings.defaults.repeat, "the whole path so many times", apps::Range::positive);
-  line.option("-r,--rate", settings.defaults.rate, "strain rate of legs that name none",
-              apps::Range::positive, true);
-  line.option("-n,--steps", settings.defaults.steps, "steps of legs that name none", apps::Range::positive,
+  line.option("--repeat", settings.defaults.repeat, "number of times to run the whole path",
+              apps::Range::positive);
+  line.option("-r,--rate", settings.defaults.rate, "strain rate of legs without one", apps::Range::positive,
+              true);
+  line.option("-n,--steps", settings.defaults.steps, "steps of legs without a number", apps::Range::positive,
               true);
   line.option("--density", settings.density, "density at the start, if not the reference density",
               apps::Range::positive);
   line.option("--cell-size", settings.cell_size, "cell size, for the artificial viscosity; none without",
               apps::Range::positive);
-  line.option("--every", settings.every, "print every so many steps", apps::Range::positive);
-  line.option("-o,--output", settings.output, "file for the table; standard output without");
-  line.option("--plot", settings.plot,
-              "file for a picture (SVG): stress over strain, q over p, p over volume");
+  line.option("--every", settings.every, "print every N steps", apps::Range::positive);
+  line.option("-o,--output", settings.output, "file for the table; default: standard output");
+  line.option("--plot", settings.plot, "file for a plot (SVG): stress over strain, q over p, p over volume");
   line.option("--data", settings.data,
-              "measured strain and stress, two columns: drawn, and the difference is printed");
+              "file of measured strain and stress, two columns: plotted, and the difference is printed");
   line.footer(apps::path_help());
   if (const std::optional<int> code = line.parse(argc, argv)) return *code;
   try {

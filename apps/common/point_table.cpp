@@ -53,7 +53,7 @@ std::vector<PointTable::Column> PointTable::columns() const {
   all.push_back({"density", "density", [&p](At) { return p.density(); }});
   all.push_back({"internal_energy", "stress", [&p](At) { return p.energy(); }});
   all.push_back({"sound_speed", "velocity", [&p](At) { return p.sound_speed(); }});
-  // What laws carry beyond that, in the order of the columns.
+  // Further columns of the laws, in the order of the columns.
   using enum core::Column;
   for (const core::Column column : {effective_plastic_strain,
                                     yield_stress,

@@ -1,4 +1,4 @@
-// What mpm_point writes: a table of the response, and a picture of it.
+// Output of mpm_point: a table of the response and a plot.
 #pragma once
 
 #include <cstdio>
@@ -12,13 +12,13 @@
 
 namespace mpm::apps {
 
-/// Comma-separated: a line of names, a line of units, then a line per state. Units are names where the input
-/// has said them ("MPa"), else what they measure ("stress").
+/// Comma-separated: a line of names, a line of units, then a line per state. Units are names if the input
+/// gives them ("MPa"), else dimensions ("stress").
 class PointTable {
  public:
   PointTable(const physics::PointDriver& point, const std::optional<core::UnitSystem>& units);
 
-  /// Both lines, each ended.
+  /// Both lines, each with a newline.
   std::string heading() const;
   std::string row(const physics::PathPoint& at) const;
 
@@ -32,7 +32,7 @@ class PointTable {
   std::optional<core::UnitSystem> units_;
 };
 
-/// One state, for the picture and for the comparison with measurements.
+/// One state, for the plot and for the comparison with measurements.
 struct PointSample {
   core::Sym3<double> strain, stress;
   double pressure = 0;  ///< minus the mean stress
@@ -45,24 +45,23 @@ PointSample sample(const physics::PointDriver& point, const physics::PathPoint& 
 struct Measurement {
   double strain = 0, stress = 0;
 };
-/// Columns of numbers: those that a heading calls `strain` and `stress` (or `stress_xx`: a table of
-/// mpm_point), else the first two. Lines that do not begin with a number are headings. Throws
-/// std::runtime_error.
+/// The columns that a heading names `strain` and `stress` (or `stress_xx`, as in a table of mpm_point), else
+/// the first two. Lines that do not begin with a number are headings. Throws std::runtime_error.
 std::vector<Measurement> read_measurements(const std::string& file);
 
-/// The pair of components that the picture and the comparison show: axial or, where it is larger, shear
-/// (gamma).
+/// The components that the plot and the comparison show: axial or, if larger, shear (gamma).
 struct Curve {
   bool shear = false;
   std::vector<Measurement> points;
 };
 Curve stress_strain(const std::vector<PointSample>& samples);
 
-/// Root mean square difference between measured stress and the curve's first way through the strains.
+/// Root mean square difference between the measured stress and the first pass of the curve through the
+/// strains.
 struct Misfit {
   double rms = 0;
   double largest = 0;  ///< measured stress
-  int points = 0;      ///< that the curve reaches
+  int points = 0;      ///< points within reach of the curve
 };
 Misfit misfit(const Curve& curve, const std::vector<Measurement>& measured);
 

@@ -1,4 +1,4 @@
-// Whether the system gives a rank what it asks for, tried before a library ends the program for want of it.
+// Tests whether system resources are available, before a library terminates the program for lack of them.
 #pragma once
 
 #include <stdexcept>
@@ -12,11 +12,12 @@ class NoThreads : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Starts `more` threads beside this one, all alive at once, and ends them. Empty, or the system's words.
-/// Their stacks are the system's usual ones; a larger OMP_STACKSIZE is not tried.
+/// Starts `more` additional threads at once and ends them. Returns an empty text or the system's message.
+/// They use the default stack size; a larger OMP_STACKSIZE is not tested.
 std::string why_no_threads(int more);
 
-/// Whether so many file descriptors can be opened as MPI and the output files may need. Empty, or what to do.
+/// Tests whether enough file descriptors for MPI and the output files can be opened. Empty, or a message with
+/// the remedy.
 std::string why_no_descriptors();
 
 }  // namespace mpm::apps

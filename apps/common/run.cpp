@@ -38,8 +38,8 @@ namespace mpm::apps {
 
 namespace {
 
-/// Threads per rank: the scene's word, else the environment's, else one; so many ranks on few cores stay
-/// quick.
+/// Threads per rank: from the scene, else from the environment, else one, so that many ranks on few cores
+/// stay efficient.
 int choose_threads(const core::Scene& scene) {
   const bool environment = std::getenv("OMP_NUM_THREADS") != nullptr;
   const int threads = scene.solution.threads.value_or(environment ? omp_get_max_threads() : 1);
@@ -52,15 +52,15 @@ int choose_threads(const core::Scene& scene) {
   return threads;
 }
 
-/// Starts the threads, all at once. OpenMP ends the program when the system refuses one, so it is asked
-/// first. Throws NoThreads on every rank if it refuses on any. Collective.
+/// Starts all threads at once. OpenMP terminates the program if the system refuses one, so this is tested
+/// first. Throws NoThreads on every rank if any rank is refused. Collective.
 void start_threads(int threads, core::Communication& communication) {
   const std::string refusal = why_no_threads(threads - 1);
   if (communication.reductions.any(!refusal.empty())) {
     for (const std::string& text : communication.reductions.gather(refusal)) {
       if (!text.empty())
         throw NoThreads(
-            fmt::format("the system refuses {} threads per rank: {}; ask for fewer with OpenMPSetting "
+            fmt::format("the system refuses {} threads per rank: {}; request fewer with OpenMPSetting "
                         "or OMP_NUM_THREADS, or raise the limit (ulimit -u, ulimit -v)",
                         threads, text));
     }
@@ -75,7 +75,7 @@ std::string bytes_in_words(double bytes) {
                        : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
-/// A line for each body; of very many, for the first ones.
+/// A line for each body, up to a maximum.
 void describe_bodies(const core::Model& model, io::Log& log) {
   constexpr std::size_t most = 100;
   const int common = core::ColumnSet::mechanics().size();
@@ -93,7 +93,7 @@ void describe_bodies(const core::Model& model, io::Log& log) {
   if (model.bodies.size() > most) log.say("body       {} more bodies", model.bodies.size() - most);
 }
 
-/// What the scene pays for, in the words of a dry run and of the log's head.
+/// Size and cost of the scene, for a dry run and the head of the log.
 void describe(const core::Model& model, const core::Stepper& stepper, core::Communication& communication,
               int threads, io::Log& log) {
   const core::GridGeometry& g = model.grid->geometry();
@@ -117,13 +117,13 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Comm
           model.scene->solution.end_time);
 }
 
-/// A body that starts hot at the density of a cold one is under the pressure of its heat: said, with the
-/// density (to first order) at which it would not be. Collective.
+/// A hot body at the density of a cold one starts under thermal pressure: a note with the density (to first
+/// order) that avoids it. Collective.
 void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log) {
   const std::vector<const core::BodyInput*> inputs = core::active_bodies(*model.scene);
   if (std::ranges::none_of(inputs, [](const auto* input) { return input->initial_temperature.has_value(); }))
     return;
-  std::vector<double> lowest(2 * model.bodies.size(), 0.0);  // of the pressure and of its negative
+  std::vector<double> lowest(2 * model.bodies.size(), 0.0);  // minima of the pressure and of its negative
   for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
     const auto b = static_cast<std::size_t>(block.body);
     if (!inputs[b]->initial_temperature) continue;
@@ -148,7 +148,7 @@ void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io
   }
 }
 
-/// Bodies that the restart file does not have come in now. What to say of them. Collective.
+/// Adds the bodies that the restart file does not have, with a note for each. Collective.
 std::vector<std::string> add_new_bodies(core::Model& model, const std::vector<std::size_t>& numbers,
                                         core::Communication& communication) {
   std::vector<std::string> notices;
@@ -157,13 +157,13 @@ std::vector<std::string> add_new_bodies(core::Model& model, const std::vector<st
   const core::Totals totals = core::compute_totals(model, communication);
   for (const std::size_t b : numbers) {
     notices.push_back(fmt::format(
-        "body '{}' was not in the restart file: its {} particles come in now, as its input states them",
+        "body '{}' was not in the restart file: its {} particles are added now, as the input states them",
         model.bodies[b].name, totals.bodies[b].particles));
   }
   return notices;
 }
 
-/// One run in its stages; the members are in the order in which they come to life.
+/// One run in its stages; the members are in the order of their construction.
 class Run {
  public:
   Run(const RunOptions& options, const parallel::Communicator& world, const physics::Registry& registry)
@@ -185,7 +185,7 @@ class Run {
     } else {
       core::build_model(model_, communication_);
     }
-    // Nothing is written before all that can be wrong with the input is known not to be.
+    // The input is checked completely before anything is written.
     open_log();
     for (const std::string& notice : notices) log_->warn("{}", notice);
     if (case_.restart)
@@ -233,7 +233,7 @@ class Run {
   }
 
  private:
-  /// From here on the files of the job are this run's.
+  /// Takes the job lock: from here on the files of the job belong to this run.
   void open_log() {
     io::together(communication_, [&] {
       if (communication_.reductions.rank() == 0) io::make_folder(options_.output_dir);
@@ -245,7 +245,8 @@ class Run {
       elsewhere = continuation_ && goes_on_elsewhere() &&
                   forget_what_is_elsewhere(file(""), *continuation_, communication_);
       if (communication_.reductions.rank() == 0) {
-        io::remove_file(file(".summary.json"));  // of an earlier run, should this one not get so far
+        io::remove_file(
+            file(".summary.json"));  // of an earlier run, in case this one ends before writing its own
         if (continuation_) cut = log_notice(file(".out"), *continuation_);
       }
     }
@@ -254,7 +255,7 @@ class Run {
     if (lock_ && !lock_->notice().empty()) log_->note("note       {}", lock_->notice());
     if (!cut.empty()) log_->warn("{}", cut);
     if (elsewhere)
-      log_->note("note       not all files that the run wrote before are in this folder: these begin here");
+      log_->note("note       some files of the earlier run are missing in this folder: they begin anew");
   }
 
   bool goes_on_elsewhere() {
@@ -271,8 +272,8 @@ class Run {
     return options_.output_dir + "/" + case_.scene->provenance.job_name + ending;
   }
 
-  /// A restart goes on with the job's own files; with the input of another job (-rt) it writes under that
-  /// one's name.
+  /// A restart continues the job's own files; with the input of another job (-rt) it writes under the name of
+  /// that job.
   bool continues_files() const {
     return case_.restart && !options_.dry_run &&
            (!options_.restart_input || case_.restart_job == case_.scene->provenance.job_name);
@@ -282,7 +283,7 @@ class Run {
     return options_.status_rows && outputs_->status_rows() >= *options_.status_rows;
   }
 
-  /// Runs to the end, or until something asks to stop: why, in words.
+  /// Runs to the end or until a stop is requested; returns the reason.
   std::string loop() {
     if (!case_.restart) {
       outputs_->after_step(model_, communication_);
@@ -323,7 +324,7 @@ class Run {
     save_seconds_ += clock_.seconds() - before;
   }
 
-  /// What had a defined answer instead of an ordinary one, in particles times steps. Collective.
+  /// Reports states that were corrected or limited, in particles times steps. Collective.
   void say_what_was_counted() {
     const core::MaterialEvents& events = model_.ledger.events;
     std::int64_t counts[] = {events.failed,         events.negative_volume, events.volume_limited,
@@ -363,7 +364,7 @@ class Run {
     if (totals.left_grid > 0 || totals.eroded > 0) {
       log_->say(
           "{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal "
-          "energy {:.6g} went with them",
+          "energy {:.6g} were removed with them",
           totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic,
           totals.removed_internal);
     }
@@ -384,7 +385,7 @@ class Run {
       log_->sync(communication_);
       lock_->release(communication_);
     } catch (const io::FileError&) {
-      if (status != "failed") throw;  // else the disk that ended the run takes no summary either
+      if (status != "failed") throw;  // else the disk error that ended the run also prevents the summary
     }
   }
 

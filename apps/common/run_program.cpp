@@ -15,7 +15,7 @@
 namespace mpm {
 
 int run(int argc, char** argv, const Registry& registry) {
-  // MPI ends the program, or crashes, where it can open no files.
+  // MPI terminates the program, or crashes, if it cannot open files.
   if (const std::string refusal = apps::why_no_descriptors(); !refusal.empty()) {
     std::fprintf(stderr, "mpm_run: %s\n", refusal.c_str());
     return apps::file_error;
@@ -28,7 +28,7 @@ int run(int argc, char** argv, const Registry& registry) {
   const auto [options, leave] = apps::parse_command_line(argc, argv, speak);
   if (leave) return *leave;
 
-  // Errors of the input and of files are thrown on every rank alike, so all leave here with one message.
+  // Input and file errors are thrown on all ranks together, so all return here and rank 0 prints the message.
   const auto failed = [&](const std::exception& e, apps::ExitCode code) {
     if (speak) std::fprintf(stderr, "%s\n", e.what());
     return code;
@@ -40,11 +40,11 @@ int run(int argc, char** argv, const Registry& registry) {
   } catch (const io::FileError& e) { return failed(e, apps::file_error); } catch (const apps::NoThreads& e) {
     return failed(e, apps::out_of_resources);
   } catch (const std::bad_alloc&) {
-    // On this rank; the others may wait for it.
+    // On this rank only; others may be waiting for it.
     std::fprintf(stderr, "rank %d: out of memory: use a larger dp, or more machines\n", world.rank());
     parallel::abort(apps::out_of_resources);
   } catch (const std::exception& e) {
-    // A bug, or memory that is gone, on one rank perhaps: the others must not wait for it.
+    // A bug or lack of memory, perhaps on one rank only: the others must not wait for it.
     std::fprintf(stderr, "rank %d: %s\n", world.rank(), e.what());
     parallel::abort(1);
   }

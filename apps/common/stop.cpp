@@ -21,8 +21,8 @@ void watch_signals() {
   action.sa_handler = note;
   action.sa_flags = SA_RESTART;
   for (int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // whoever reads the console may go, the run goes on
-  std::signal(SIGXFSZ, SIG_IGN);  // a file limit is then an error of the write, which says so
+  std::signal(SIGPIPE, SIG_IGN);  // the run continues if the reader of the console exits
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit becomes an error of the write
 }
 
 int noted_signal() { return noted; }

@@ -1,4 +1,4 @@
-// Requests to stop that come from outside: signals and the wall clock.
+// Requests to stop: signals and the wall clock.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// The scene's guards: Warn, EnergyFraction, near_boundary_stop, loads that end. Only those that it asks for
-// cost anything. What they say is the same on any ranks and threads.
+// The scene's guards: Warn, EnergyFraction, near_boundary_stop, loads that end. Only those that the scene
+// requests have a cost. Their messages are the same on any ranks and threads.
 #pragma once
 
 #include <map>
@@ -22,14 +22,14 @@ class Watch {
   /// exceeds EnergyFraction, on every rank. Collective.
   void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Reductions& ranks,
                   io::Log& log);
-  /// What level 1 has counted beyond the particles that it named.
+  /// Reports what level 1 has counted beyond the particles that it named.
   void conclude(io::Log& log) const;
-  /// True, on all ranks, if the scene wants to stop near the boundary and a particle is in the outermost
+  /// True, on all ranks, if the scene requests a stop near the boundary and a particle is in the outermost
   /// cells of an open face. Collective.
   bool near_boundary(const core::Model& model, core::Reductions& ranks) const;
 
  private:
-  /// Something unphysical that a particle may do.
+  /// A kind of unphysical incident of a particle.
   struct Kind {
     const char* words;
     std::set<double> named;      ///< identities, at level 1
@@ -44,7 +44,7 @@ class Watch {
   Kind kinds_[3] = {{"with internal energy below zero", {}, 0},
                     {"whose volume would have vanished", {}, 0},
                     {"left the grid", {}, 0}};
-  std::multimap<double, std::string> load_ends_;  ///< when a table of a load ends, and whose it is
+  std::multimap<double, std::string> load_ends_;  ///< end time of each load table, and its owner
 };
 
 }  // namespace mpm::apps

@@ -1,5 +1,5 @@
-// The copper Taylor bar (thesis 3.5.1, table 3.1) of about so many particles, eight per cell, as an input
-// text, and a run of it in memory. Units: mm, g, ms; stress MPa.
+// The copper Taylor bar (thesis 3.5.1, table 3.1) of a given approximate number of particles, eight per cell,
+// as an input text and as a run in memory. Units: mm, g, ms; stress MPa.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ namespace mpm::benchmarks {
 
 inline constexpr double bar_length = 25.4, bar_diameter = 7.6;
 
-/// Distance of particles in a bar of about so many.
+/// Particle spacing of a bar of about this many particles.
 inline double bar_spacing(double particles) {
   return std::cbrt(std::numbers::pi / 4 * bar_diameter * bar_diameter * bar_length / particles);
 }
@@ -35,7 +35,7 @@ inline constexpr const char* iso_harden =
 inline constexpr const char* gruneisen =
     R"(<EquationOfState type="Gruneisen" C0="3940" S1="1.49" gamma0="1.96"/>)";
 
-/// What the bar is made of and what is asked of the run; the elements of the input, each as it stands.
+/// Material of the bar and settings of the run, as elements of the input.
 struct BarInput {
   double particles = 20000;
   std::string scheme = "MUSL";

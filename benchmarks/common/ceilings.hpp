@@ -1,5 +1,5 @@
-// How fast the machine is at the two things that bound a time step: moving bytes to and from memory, and
-// multiplying and adding. Measured in the same run as what is compared with them.
+// The two ceilings of a time step: memory bandwidth and floating-point rate. Measured in the same run as the
+// results compared with them.
 //
 // triad      a = b + k c over arrays far larger than the caches; 24 bytes per element (the line of `a` that
 // is
@@ -25,7 +25,7 @@ struct Ceilings {
   double triad = 0;     ///< bytes/s, all threads together
   double in_place = 0;  ///< bytes/s, all threads together
   double flops = 0;     ///< 1/s, all threads together
-  /// What a step can hope for.
+  /// Upper bound for a step.
   double bandwidth() const { return std::max(triad, in_place); }
   void take_best(const Ceilings& o) {
     triad = std::max(triad, o.triad);

@@ -1,5 +1,5 @@
-// A measurement in a process of its own: its peak memory is its own, and when it dies only its row is
-// missing. The parent must not have started threads before.
+// A measurement in a separate process, for its own peak memory; a crash loses only its row. The parent must
+// not have started threads before.
 #pragma once
 
 #include <cstdio>
@@ -16,7 +16,7 @@ namespace mpm::benchmarks {
 
 using Json = nlohmann::ordered_json;
 
-/// f() -> Json, run in a child. Throws std::runtime_error with the child's own words when it fails.
+/// f() -> Json, run in a child. Throws std::runtime_error with the child's message on failure.
 template <class F>
 Json in_child(F f) {
   int ends[2];

@@ -1,8 +1,6 @@
-// Time as the benchmarks take it: of the processor and of the wall, several repeats, best and median.
-//
-// With one thread the processor's time of that thread counts, so a machine shared with others disturbs least.
-// With more, threads that wait may sleep or spin, and only the wall tells: a core's time is then wall times
-// threads.
+// Timing of the benchmarks: CPU and wall time, several repeats, best and median.
+// With one thread its CPU time is used, which other load disturbs least. With more, waiting threads may sleep
+// or spin, so only wall time is meaningful: core time is then wall time multiplied by threads.
 #pragma once
 
 #include <algorithm>
@@ -66,7 +64,7 @@ class Series {
   std::vector<double> values_;
 };
 
-/// Keeps the compiler from leaving out what made `x`.
+/// Prevents the compiler from eliminating the computation of `x`.
 template <class T>
 inline void keep(const T& x) {
   asm volatile("" : : "r"(&x) : "memory");

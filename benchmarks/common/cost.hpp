@@ -1,12 +1,12 @@
-// What each phase of a step moves to and from memory, and what it computes, per particle: counted by hand
-// from the passes (core/step/passes.cpp) and kept here so that whoever changes a pass changes the count.
+// Memory traffic and operations of each phase of a step per particle, counted by hand from the passes
+// (core/step/passes.cpp). A change of a pass must change the count.
 //
-// Bytes: a block's column is one cache line and travels whole, also where the block is not full. A column
+// Bytes: a block's column is one cache line and is moved as a whole, even if the block is not full. A column
 // counts once as read and once as written per pass, because a brick's particles stay in the cache while a
 // pass works on it, and the passes together are larger than any cache. Node arrays count the same way per
 // brick: a neighbour's records are still in the cache when they are summed. A line that is written before it
-// is read is fetched all the same; that fetch is not counted, nor is what is prefetched in vain, so the floor
-// that follows is a low one.
+// is read is fetched all the same; neither that fetch nor useless prefetches are counted, so the resulting
+// floor is a lower bound.
 //
 // Operations: + - * / and square root are one each, a fused multiply-add two; comparisons, conversions,
 // minima and selections none. One distinct cell per block is assumed, and a law is IsoHarden with Gruneisen.

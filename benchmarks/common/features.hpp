@@ -1,6 +1,6 @@
-// What a scene may ask for beside its laws, each as the same bar without and with it. Values are such that a
-// feature works at every particle and changes nothing else: a bound that is never reached, a load too small
-// to matter. What the program cannot do yet is left out with its own words, and appears when it can.
+// Optional features of a scene, each as the same bar without and with it. Values are chosen so that a feature
+// is active at every particle without changing the motion: a bound that is never reached, a negligible load.
+// Features not implemented yet are omitted with the message of the program.
 #pragma once
 
 #include <string>
@@ -94,7 +94,7 @@ inline std::vector<Feature> features() {
   return all;
 }
 
-/// Elements and attributes that ask for nothing, spelled out: the same state, bit by bit, in as many bytes.
+/// Elements and attributes without effect: the state must be bitwise identical and of the same size.
 inline std::vector<Feature> spelled_out() {
   using detail::iso_harden_and, detail::showing;
   const BarInput bar{};

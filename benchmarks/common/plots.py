@@ -1,4 +1,4 @@
-"""Pictures of the benchmarks' tables."""
+"""Plots of the benchmark tables."""
 
 import matplotlib
 
@@ -51,7 +51,7 @@ def scaling(rows, path):
             axes.plot(cores, [100 * r["efficiency"] for r in mine], "-", color=colour, label=label)
             if partition:
                 axes.plot(cores, [100 * r["computing_efficiency"] for r in mine], ":", color=colour, lw=1)
-            for r, n in zip(mine, cores):  # hollow: not measured on the wall
+            for r, n in zip(mine, cores):  # hollow: not wall time
                 face = "white" if r["oversubscribed"] else colour
                 axes.plot(n, 100 * r["efficiency"], "o", color=colour, markerfacecolor=face)
         mine = [r for r in rows if r["study"] == "copies"]
@@ -73,7 +73,7 @@ def scaling(rows, path):
 
 
 def costs(rows, path, title):
-    """Bars of added ns with their standard errors, and the added bytes as words."""
+    """Bars of added ns with their standard errors, and the added bytes as text."""
     figure, axes = plt.subplots(figsize=(6.8, 1.0 + 0.23 * len(rows)))
     families = list(dict.fromkeys(r["family"] for r in rows))
     palette = plt.get_cmap("tab10")

@@ -1,4 +1,4 @@
-"""What the benchmark scripts share: where the programs are, runs of them, tables in and out."""
+"""Shared by the benchmark scripts: paths and runs of the programs, reading and writing of tables."""
 
 import csv
 import json
@@ -15,15 +15,15 @@ CORES = os.cpu_count()
 
 
 def environment(**more):
-    """Root in a container, which is what root mostly means, must be allowed to, and has no right to copy
-    between processes."""
+    """Settings of Open MPI for root, usually in a container: allowed to run, and no copies between processes,
+    for which containers lack permission."""
     root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
             "OMPI_MCA_btl_vader_single_copy_mechanism": "none"} if os.geteuid() == 0 else {}
     return {**os.environ, **root, **more}
 
 
 def run(command, echo=False, **more):
-    """What the program says on its standard output; SystemExit with its words where it fails."""
+    """The standard output of the program; SystemExit with its message on failure."""
     command = [str(word) for word in command]
     print("$", " ".join(command), file=sys.stderr, flush=True)
     program = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment(**more))
@@ -42,7 +42,7 @@ def last_json(text):
 
 
 def number(word):
-    """A number where it is one, else the word."""
+    """A number if the text is one, else the text."""
     try:
         return float(word)
     except ValueError:
@@ -67,7 +67,7 @@ def write(path, rows, head=()):
 
 
 def markdown(rows, columns):
-    """columns: {heading: (function of a row, format)}; – where the function gives None or no number."""
+    """columns: {heading: (function of a row, format)}; – where the function gives None or NaN."""
 
     def cell(value, how):
         absent = value is None or value == "" or isinstance(value, float) and math.isnan(value)

@@ -1,4 +1,4 @@
-// A file of comma-separated values; the lines at its head that start with # say where the numbers come from.
+// A file of comma-separated values; the lines at its head that start with # give the provenance.
 #pragma once
 
 #include <cstdio>

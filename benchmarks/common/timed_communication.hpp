@@ -1,5 +1,4 @@
-// Communication with a stopwatch on what a step asks of the other ranks, for the parts of communication in
-// its time.
+// Communication that times each kind of call in a step.
 #pragma once
 
 #include <array>
@@ -12,7 +11,7 @@
 
 namespace mpm::benchmarks {
 
-/// Time by what a step asks for.
+/// Time by kind of communication.
 class CommunicationTimes {
  public:
   /// Sending contributions; waiting for the others'; the reductions that end a step; bricks that come and go;

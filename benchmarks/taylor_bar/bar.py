@@ -1,10 +1,10 @@
-"""What is measured on a Taylor bar: the place to which the surface of the bar that was thrown has gone.
+"""Shape of a Taylor bar, measured as the image of its initial surface.
 
-Particles carry matter, not a surface, and the outermost ones stand inside it by half a size that the impact has
-changed. So the measure is the image of the nominal surface (a cylinder of LENGTH and DIAMETER): near each of its
-points the motion x(X) is fitted by an affine map to the particles whose first places X lay within REACH spacings,
-and that map carries the point along. In the middle of the bar this adds half of the local particle spacing to the
-outermost centres; it also takes away the stairs of a lattice cut to a circle. The same for every model and scheme.
+The outermost particles are half a particle size inside the surface, and the impact changes that size. The measure is
+therefore the image of the nominal surface (a cylinder of LENGTH and DIAMETER): near each of its points the motion x(X)
+is fitted by an affine map to the particles with initial positions X within REACH spacings, and that map moves the
+point. In the middle of the bar this adds half of the local particle spacing to the outermost centres; it also smooths
+the steps of a lattice cut to a circle. The same for every model and scheme.
 
   L  height of the end face, mean over the face
   D  widest diameter near the foot, mean over the directions
@@ -27,7 +27,7 @@ REACH = 2.0  # spacings: a dozen particles even at the rim of the foot
 
 
 class Lattice:
-    """The particles by their first places, which are nodes of a cubic lattice."""
+    """The particles by their initial positions, which are nodes of a cubic lattice."""
 
     def __init__(self, first):
         self.first = first
@@ -41,11 +41,11 @@ class Lattice:
         self.index = index
 
     def at(self, index):
-        """Numbers of the particles at these lattice places, -1 where there is none."""
+        """Indices of the particles at these lattice sites, -1 where there is none."""
         return self.number[tuple(np.moveaxis(np.clip(index + 1, 0, self.shape + 1), -1, 0))]
 
     def carry(self, points, now, values=None):
-        """Where the motion takes these points of the first configuration; with values, those beside it (affine too)."""
+        """Current positions of points of the initial configuration; with values, also these (affine fit)."""
         fields = now if values is None else np.column_stack([now, values])
         centre = np.rint((points - self.low) / self.spacing).astype(int)
         span = np.arange(-3, 4)
@@ -73,7 +73,7 @@ def read_step(step, names):
 
 
 class Bar:
-    """The last state in a folder that mpm_run has filled."""
+    """The last state in an output folder of mpm_run."""
 
     def __init__(self, folder):
         folder = pathlib.Path(folder)
@@ -115,7 +115,7 @@ class Bar:
 
 
 def errors(sizes):
-    """Relative errors of L, D and W, and the mean of their sizes (thesis, table 5.1)."""
+    """Relative errors of L, D and W, and the mean of their absolute values (thesis, table 5.1)."""
     relative = {name: sizes[name] / EXPERIMENT[name] - 1 for name in EXPERIMENT}
     return relative, sum(abs(e) for e in relative.values()) / len(relative)
 

@@ -1,4 +1,4 @@
-"""report.py OUTDIR: the Taylor bar in OUTDIR against the experiment, as a table and a picture.
+"""report.py OUTDIR: the Taylor bar in OUTDIR compared with the experiment, as a table and a picture.
 
 How L, D and W are measured: bar.py beside this file."""
 
@@ -57,7 +57,7 @@ def section(bar):
     first = lattice.first[front]
     ends = first[:, None, :] + np.stack([corners[:, 0], np.zeros(4), corners[:, 1]], axis=-1)
     ends[..., 1] = 0
-    # A corner that lies outside the nominal bar is drawn back onto its surface.
+    # A corner outside the nominal bar is projected onto its surface.
     ends[..., 0] = np.clip(ends[..., 0], -taylor.DIAMETER / 2, taylor.DIAMETER / 2)
     ends[..., 2] = np.clip(ends[..., 2], 0, taylor.LENGTH)
     unique, place = np.unique(np.round(ends.reshape(-1, 3), 6), axis=0, return_inverse=True)
@@ -124,7 +124,7 @@ def surface_of(bar, directions=144):
 
 
 def draw_solid(axes, bar, top_strain):
-    """The surface from outside, in the colours of its plastic strain; the wall, and the first shape as lines."""
+    """The surface from outside, in the colours of its plastic strain; the wall, and the initial shape as lines."""
     eye = Eye()
     facets, strain = surface_of(bar)
     normal = np.cross(facets[:, 2] - facets[:, 0], facets[:, 3] - facets[:, 1])

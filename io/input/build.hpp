@@ -1,5 +1,5 @@
-// From the checked document to the scene, one function per part. Each adds faults about what the
-// Specification cannot say: names that do not resolve, bounds in the wrong order, shapes that are none.
+// From the checked document to the scene, one function per part. Each reports faults beyond the
+// Specification: unresolved names, bounds in the wrong order, invalid shapes.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ std::vector<core::WorkPlane> build_work_planes(const Node& root, const BuildCont
 /// Uses the materials, work planes, grid and contact of `scene`.
 std::vector<core::ComponentInput> build_components(const Node& root, const core::Scene& scene,
                                                    const BuildContext& context);
-/// Complains about what is wrong with the shapes of the bodies (core/discretise/shape_check.hpp).
+/// Reports invalid shapes of bodies (core/discretise/shape_check.hpp).
 void check_shapes(const Node& root, const core::Scene& scene, const BuildContext& context);
 /// All alternatives but BoolGeometry, whose operands are bodies.
 core::Geometry build_geometry(const Node& geometry, const BuildContext& context);
@@ -43,7 +43,8 @@ core::OutputInput build_output(const Node& root, double end_time, const BuildCon
 core::DecompositionInput build_decomposition(const Node& root, const BuildContext& context);
 core::FixedLayer build_fixed_layer(const Node& node, const BuildContext& context);
 
-/// Index of the name that the attribute of `node` refers to; complains, and returns nothing, without one.
+/// Index of the name that the attribute of `node` refers to; reports a fault and returns nullopt if there is
+/// none.
 std::optional<std::size_t> resolve(const Node& node, std::string_view attribute, std::string_view kind,
                                    const std::vector<std::string_view>& names, const BuildContext& context);
 
@@ -54,7 +55,7 @@ std::vector<std::string_view> names_of(const std::vector<Item>& items) {
   return names;
 }
 
-/// Complains about every item of `nodes` whose name an earlier one has.
+/// Reports every item of `nodes` whose name is already used.
 void check_unique_names(const std::vector<Node>& nodes, std::string_view kind, const BuildContext& context);
 
 }  // namespace mpm::io

@@ -26,7 +26,7 @@ core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) 
     node.report(context.diagnostics, "the axes (ex, ey, ez) and (a11, a21, a31) must not be zero");
     return plane;
   }
-  constexpr double tolerance = 1e-6;  // of the cosine: axes written with seven digits pass
+  constexpr double tolerance = 1e-6;  // of the cosine: accepts axes given with seven digits
   const double cosine = dot(z, x) / lengths;
   if (std::abs(cosine) > tolerance) {
     const double degrees = std::acos(std::clamp(cosine, -1., 1.)) * 180 / std::acos(-1.);
@@ -36,13 +36,13 @@ core::WorkPlane build_work_plane(const Node& node, const BuildContext& context) 
                             degrees));
   }
   plane.z_axis = (1 / std::sqrt(dot(z, z))) * z;
-  plane.y_axis = cross(plane.z_axis, x);  // exactly orthogonal, whatever the tolerance let through
+  plane.y_axis = cross(plane.z_axis, x);  // exactly orthogonal
   plane.y_axis = (1 / std::sqrt(dot(plane.y_axis, plane.y_axis))) * plane.y_axis;
   plane.x_axis = cross(plane.y_axis, plane.z_axis);
   return plane;
 }
 
-/// The last of `points`, which `node` has given, must come after the one before.
+/// The time of the last point, read from `node`, must exceed the previous one.
 template <class Point>
 void check_last_time(const std::vector<Point>& points, const Node& node, const BuildContext& context) {
   const std::size_t n = points.size();
@@ -122,7 +122,7 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
     body.fixed_layers.push_back(build_fixed_layer(layer, context));
 }
 
-/// Where the velocity is given, what would change it has nothing to act on.
+/// Refuses loads on a body with prescribed velocity, where they have no effect.
 void check_held(const core::BodyInput& body, const Node& node, const BuildContext& context) {
   const auto refuse = [&](std::string_view element, const std::string& why) {
     for (const Node& load : node.children(element)) load.report(context.diagnostics, why);
@@ -137,8 +137,8 @@ void check_held(const core::BodyInput& body, const Node& node, const BuildContex
     refuse("Traction", "has no effect on a body whose velocity is prescribed or held");
 }
 
-/// A rigid body acts on others through contact alone: in the one velocity field of all bodies it would push
-/// nothing, so it may not stand beside bodies that deform.
+/// A rigid body acts on others through contact only: in a single velocity field it would exert no force, so
+/// it may not be combined with deformable bodies.
 void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<Node>& nodes,
                  const core::Scene& scene, const BuildContext& context) {
   const auto takes_part = [](const core::BodyInput& b) { return !b.deactivated && !b.for_bool; };
@@ -184,7 +184,7 @@ core::BodyInput build_body(const Node& node, const core::Scene& scene, const Bui
   return body;
 }
 
-/// Finds bodies by name, in the same time however many there are.
+/// Finds bodies by name in constant time.
 class BodyNames {
  public:
   explicit BodyNames(const std::vector<core::ComponentInput>& components) {
@@ -193,12 +193,12 @@ class BodyNames {
         places_.emplace(components[c].bodies[b].name, core::BodyPlace{c, b});
   }
 
-  /// The body that an attribute names; complains, and returns the place of no body, where there is none.
+  /// The body that an attribute names; if there is none, reports a fault and returns an invalid place.
   core::BodyPlace resolve(const Node& node, std::string_view attribute, const BuildContext& context) {
     const std::string name = node.word(attribute);
     if (name.empty()) return {};
     if (const auto found = places_.find(name); found != places_.end()) return found->second;
-    constexpr int most_suggestions = 20;  // each looks at all names
+    constexpr int most_suggestions = 20;  // each searches all names
     std::vector<std::string_view> names;
     if (suggestions_++ < most_suggestions)
       for (const auto& [known, place] : places_) names.emplace_back(known);

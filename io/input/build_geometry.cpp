@@ -1,5 +1,4 @@
-// The shapes of bodies. Whether their numbers make a shape is checked when all bodies are known
-// (check_shapes).
+// The shapes of bodies. Their dimensions are checked when all bodies are known (check_shapes).
 
 #include <fmt/format.h>
 
@@ -10,7 +9,7 @@ namespace mpm::io {
 
 namespace {
 
-/// The file of a geometry against the input's folder; complains when it cannot be read.
+/// The file of a geometry relative to the input's folder; reports a fault if it cannot be read.
 std::string build_file(const Node& node, const BuildContext& context) {
   const std::string given = node.word("file");
   if (given.empty()) return {};

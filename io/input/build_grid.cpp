@@ -1,4 +1,4 @@
-// The background grid and its division among ranks.
+// The background grid and its partition among ranks.
 
 #include <algorithm>
 #include <cmath>
@@ -47,8 +47,8 @@ void read_segments(core::GridAxis& axis, const Node& cell, char letter, const Bu
                         fmt::format("the last segment must end at {}Max, {}", letter, axis.max));
 }
 
-/// The number of cells between two walls: whole, but for round-off; at a free face the last one may reach
-/// beyond.
+/// The number of cells between two walls: an integer up to round-off; at a free face the last cell may extend
+/// beyond it.
 void count_cells(core::GridAxis& axis, const Node& max, const Node& size, std::string_view attribute,
                  const BuildContext& context) {
   const double length = axis.max - axis.min;

@@ -1,4 +1,4 @@
-// Header, materials and friction; names and how they are resolved.
+// Header, materials and friction; resolution of names.
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-// Puts what core finds wrong with the shapes of bodies at the lines of the input.
+// Reports faults that core finds in the shapes of bodies at the lines of the input.
 
 #include "core/discretise/shape_check.hpp"
 #include "io/input/build.hpp"
@@ -29,8 +29,7 @@ class Elements {
   std::vector<Node> points_, elements_;
 };
 
-/// Whether the element states the attribute validly; what is not, or comes from elsewhere, was complained
-/// about.
+/// Whether the element has a valid value of the attribute; other faults have been reported.
 bool states(const Node& node, const std::string& attribute) {
   const XmlAttribute* given = node.find(attribute);
   const AttributeSpec* row = node.spec().attribute(attribute, node.type());

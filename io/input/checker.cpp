@@ -71,7 +71,7 @@ class Checker {
       later(node, *row, given);
   }
 
-  /// The type itself is wrong or missing, which was said once.
+  /// The type itself is wrong or missing, which has already been reported.
   static bool hangs_on_wrong_type(const Node& node, std::string_view name) {
     return node.type().empty() && std::ranges::any_of(node.spec().attributes,
                                                       [&](const AttributeSpec& a) { return a.name == name; });
@@ -188,7 +188,7 @@ class Checker {
   const bool accept_later_;
   Diagnostics& diagnostics_;
   std::vector<std::string>
-      misspelt_;  ///< what wrong names on the present element probably mean: not missing too
+      misspelt_;  ///< names probably meant by wrong names on this element; not reported as missing
 };
 
 }  // namespace

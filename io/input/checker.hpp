@@ -7,8 +7,8 @@
 
 namespace mpm::io {
 
-/// Adds a fault for everything that `language` does not allow. With `accept_later`, what is known but not
-/// implemented yet passes.
+/// Adds a fault for everything that `language` does not allow. `accept_later` accepts input that is known but
+/// not implemented yet.
 void check(const Document& document, const ElementSpec& language, bool accept_later,
            Diagnostics& diagnostics);
 

@@ -19,7 +19,7 @@ class Diagnostics {
   void add(int line, std::string_view element, std::string_view attribute, std::string_view value,
            std::string message);
 
-  /// Adds what `other` says about places that nothing was said about.
+  /// Adds the faults of `other` at places without a fault.
   void merge(const Diagnostics& other);
 
   bool empty() const { return found_.empty(); }
@@ -31,7 +31,7 @@ class Diagnostics {
  private:
   std::string file_;
   std::vector<core::Diagnostic> found_;
-  std::size_t left_out_ = 0;  ///< beyond the number that anyone would read
+  std::size_t left_out_ = 0;  ///< faults beyond the maximum number listed
 };
 
 }  // namespace mpm::io

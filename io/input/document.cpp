@@ -1,4 +1,4 @@
-// libxml2's streaming interface fills the tree, so that no second copy of a large input exists.
+// The streaming interface of libxml2 fills the tree, which avoids a second copy of a large input.
 
 #include "io/input/document.hpp"
 
@@ -145,7 +145,7 @@ class DocumentBuilder {
       const xmlChar* const value = raw[3];
       if (std::less_equal<>{}(at, value) &&
           std::less_equal<>{}(value,
-                              cursor)) {  // else: a copy, because it held a character reference or a tab
+                              cursor)) {  // else: a copy, because of a character reference or a tab
         at_line += newlines(at, value);
         at = value;
       }
@@ -187,7 +187,7 @@ class DocumentBuilder {
 
 namespace {
 
-/// The declared encoding where it has to be overridden: gb2312 files hold characters of its supersets.
+/// The encoding to use instead of the declared one: gb2312 files contain characters of its supersets.
 const char* override_encoding(std::string_view bytes) {
   std::string head(bytes.substr(0, std::min(bytes.find("?>"), std::size_t{200})));
   std::ranges::transform(head, head.begin(),
@@ -199,7 +199,7 @@ const char* override_encoding(std::string_view bytes) {
   return chinese ? "GB18030" : nullptr;
 }
 
-/// More attributes than this on one element is no input file; libxml2 compares each with each.
+/// Limit of attributes per element; the time of libxml2 is quadratic in their number.
 constexpr int most_attributes = 2000;
 
 /// Line of a tag with too many attributes, or 0. `unit(i)` is the i-th code unit of the text.
@@ -236,7 +236,7 @@ int overfull_tag(std::string_view bytes) {
                       [&](std::size_t i) { return bytes[2 * i + 1 - low] ? '?' : bytes[2 * i + low]; });
 }
 
-/// What forbids to parse the bytes at all.
+/// Reasons not to parse the bytes at all.
 std::optional<XmlError> refusal(std::string_view bytes) {
   using namespace std::string_view_literals;
   if (bytes.size() > largest_document)
@@ -283,7 +283,7 @@ Document parse_document(std::string_view bytes, std::optional<XmlError>& error) 
   if (!parser) throw std::bad_alloc();
   const ConversionWatch watch;
   DocumentBuilder builder(parser.get());
-  // NOENT makes &amp; and its kin plain characters; others cannot be declared without a document type.
+  // NOENT converts &amp; and the like to plain characters; other entities need a document type.
   xmlDocPtr unused =
       xmlCtxtReadMemory(parser.get(), bytes.data(), static_cast<int>(bytes.size()), nullptr,
                         override_encoding(bytes), XML_PARSE_NOENT | XML_PARSE_NONET | XML_PARSE_BIG_LINES);

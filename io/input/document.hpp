@@ -1,4 +1,4 @@
-// An XML file as a plain tree of names, values and lines; all that the reader keeps of libxml2.
+// An XML file as a plain tree of names, values and lines, independent of libxml2.
 // No network, no document type, no entities but the five of XML; gb2312 labels are read as GB18030.
 #pragma once
 
@@ -27,9 +27,9 @@ struct XmlElement {
   int line = 0;  ///< of its opening bracket
   std::uint32_t first_attribute = 0;
   std::uint32_t attribute_count = 0;
-  std::uint32_t first_child = 0;   ///< 0: none (the root is nobody's child)
+  std::uint32_t first_child = 0;   ///< 0: none (the root is not a child)
   std::uint32_t next_sibling = 0;  ///< 0: none
-  bool incomplete = false;         ///< what should complete it was wrong: nothing is missing in it
+  bool incomplete = false;         ///< its completion failed: do not report missing parts
 };
 
 class Document {
@@ -39,7 +39,7 @@ class Document {
   std::span<const XmlAttribute> attributes(const XmlElement& element) const {
     return std::span(attributes_).subspan(element.first_attribute, element.attribute_count);
   }
-  /// The first text that stands where only elements may, if any.
+  /// The first text where only elements are allowed, if any.
   struct StrayText {
     std::uint32_t element = 0;
     int line = 0;
@@ -47,8 +47,7 @@ class Document {
   };
   const std::vector<StrayText>& stray_texts() const { return stray_texts_; }
 
-  // What stands for something else (a name of the library) is filled in before the document is checked.
-  // Elements keep their numbers.
+  // Library references are resolved before the document is checked. Elements keep their numbers.
   /// Replaces the value where the element has the attribute.
   void set_attribute(std::uint32_t element, std::string_view name, std::string_view value, int line);
   std::uint32_t add_child(std::uint32_t parent, std::string_view name, int line);
@@ -68,14 +67,14 @@ class Document {
   char* block_next_ = nullptr;
 };
 
-/// What is wrong with a text that is not well-formed.
+/// The fault of a text that is not well-formed.
 struct XmlError {
   int line = 0;
   std::string message;
-  std::string repeated_attribute;  ///< set when an attribute stands twice on one element
+  std::string repeated_attribute;  ///< set if an element has an attribute twice
 };
 
-/// The largest input in bytes; more particles than fit belong into a file of their own.
+/// The largest input in bytes; larger sets of particles belong in a separate file.
 inline constexpr std::size_t largest_document = std::size_t{512} << 20;
 
 /// Never throws on the content of `bytes`. After an error the document is empty.

@@ -1,4 +1,4 @@
-// A scene written back in the input language, with every default spelled out: what `--dry-run` shows, and
+// A scene written in the input language with all defaults: what `--dry-run` shows, and
 // what a user compares when two inputs should be the same. Reading it again gives the same scene.
 #pragma once
 

@@ -17,7 +17,7 @@ namespace {
 using core::MaterialInput;
 using core::Scene;
 
-/// Where the walk through the input is: the element, and the material or body that it belongs to.
+/// Position in the traversal of the input: the element, and its material or body.
 struct Place {
   const Scene& scene;
   const Node& node;
@@ -57,7 +57,7 @@ bool unused_plane(const Place& at) {
 
 bool rigid(const MaterialInput& material) { return material.strength.type == "Rigid"; }
 
-/// Whether the law itself carries damage.
+/// Whether the law itself has damage.
 bool has_damage(const Place& at) {
   const std::string& type = at.strength().type;
   return type == "HolmquistJohnsonCook" || type == "RHT" || type == "JH2" ||
@@ -110,7 +110,7 @@ bool no_pictures(const Place& at) {
 using Random = core::RandomFailureInput;
 const Random& random(const Place& at) { return at.material->random_failure; }
 
-/// One kind of setting that may be without effect.
+/// A kind of setting that may have no effect.
 struct Rule {
   std::string_view path;  ///< of the element
   /// Any of these that is given with another value than its default; none: the element itself; "*": all but
@@ -330,7 +330,7 @@ class Walk {
         element(n, path.empty() ? child.name : path + "/" + child.name, material, body);
   }
 
-  /// One for each rule that found something: the first place, and how many there are.
+  /// One note for each rule that applies: the first place and the number of places.
   std::vector<core::Diagnostic> notes() {
     std::vector<core::Diagnostic> found;
     for (std::size_t i = 0; i < notes_.size(); ++i) {
@@ -372,7 +372,7 @@ class Walk {
   const core::ComponentInput* component_ = nullptr;
 };
 
-/// Two bodies of different components that are less than a cell apart at the start, as far as boxes tell.
+/// Two bodies of different components whose bounding boxes are less than a cell apart at the start.
 std::string touching(const Scene& scene) {
   struct Item {
     core::SolidBox box;
@@ -385,7 +385,7 @@ std::string touching(const Scene& scene) {
     if (!box.empty()) items.push_back({box, static_cast<std::size_t>(component), &body.name});
   });
   std::ranges::sort(items, {}, [](const Item& item) { return item.box.lower[0]; });
-  std::size_t left = 1'000'000;  // pairs to look at; of a larger scene the note names none
+  std::size_t left = 1'000'000;  // maximum number of pairs to test; in a larger scene the note names none
   for (std::size_t i = 0; i < items.size(); ++i) {
     for (std::size_t j = i + 1; j < items.size() && left-- > 0; ++j) {
       const auto apart = [&](std::size_t a) {
@@ -401,7 +401,7 @@ std::string touching(const Scene& scene) {
   return {};
 }
 
-/// What several components mean without contact between them.
+/// Consequences of several components without contact.
 void note_components(const Scene& scene, std::vector<core::Diagnostic>& notes) {
   if (scene.contact.enable) return;
   const core::ComponentInput* second = nullptr;

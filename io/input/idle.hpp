@@ -1,6 +1,5 @@
-// What an input states that makes no difference to the run, because the feature that would use it is off or
-// absent: one note for each kind, so that nobody waits for an effect. mpm_check prints the notes, a run's log
-// holds them.
+// Input settings without effect, because the feature that uses them is off or absent: one note for each kind.
+// mpm_check prints the notes, and the log of a run contains them.
 #pragma once
 
 #include <vector>
@@ -10,7 +9,7 @@
 
 namespace mpm::io {
 
-/// `scene` is what `root` became, without fault.
+/// `scene` was built from `root` without faults.
 std::vector<core::Diagnostic> idle_settings(const Node& root, const core::Scene& scene);
 
 }  // namespace mpm::io

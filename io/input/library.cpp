@@ -37,7 +37,7 @@ bool has(const LibraryEntry& entry, std::string_view element, std::string_view a
       entry.values, [&](const LibraryValue& v) { return v.element == element && v.attribute == attribute; });
 }
 
-/// What the first entry leaves out, from the second; a law of another type is another law.
+/// Completes the first entry from the second, except for a law of another type.
 void supplement(LibraryEntry& entry, const LibraryEntry& other) {
   const auto same_law = [](std::string& mine, const std::string& theirs) {
     if (mine.empty()) mine = theirs;
@@ -212,7 +212,8 @@ class Filler {
         continue;
       const std::uint32_t element = child(name);
       const std::optional<XmlAttribute> other = attribute(element, "type");
-      if (other && !type.empty() && other->value != type) continue;  // another law: nothing of this one
+      if (other && !type.empty() && other->value != type)
+        continue;  // another law: takes no value of this one
       if (!other && !type.empty()) document_.set_attribute(element, "type", type, line);
       for (const LibraryValue& v : entry.values) {
         if (v.element != name || attribute(element, v.attribute)) continue;
@@ -284,7 +285,7 @@ std::optional<core::UnitSystem> units_of(const Document& document) {
     if (units || document.elements()[i].name != "Material" || text.empty()) return;
     try {
       units = core::UnitSystem::parse(text);
-    } catch (const core::UnitError&) {}  // the filler complains
+    } catch (const core::UnitError&) {}  // reported when values are filled in
   });
   return units ? units : header_units(document);
 }

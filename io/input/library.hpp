@@ -1,5 +1,5 @@
-// The material library (Materials.xml): values of the literature with their units and sources, and how a
-// Material of an input names one.
+// The material library (Materials.xml): literature values with units and sources, and references to them from
+// a Material of an input.
 #pragma once
 
 #include <optional>
@@ -42,20 +42,21 @@ struct Library {
   const LibraryEntry* find(std::string_view name) const;
 };
 
-/// Reads the notation of Materials.xml; throws std::logic_error on a mistake, for it is part of the program.
+/// Reads the notation of Materials.xml; throws std::logic_error on a mistake, since the file is part of the
+/// program.
 Library parse_library(std::string_view xml);
 
 /// The built-in Materials.xml.
 const Library& library();
 
-/// Fills in what each Material with `library=` leaves out, converted to the units of the input. What cannot
-/// be filled in is complained about, and marked incomplete.
+/// Completes each Material with `library=` by values converted to the units of the input. Faults are
+/// reported, and the element is marked incomplete.
 void fill_in_from_library(Document& document, const Library& library, Diagnostics& diagnostics);
 
 /// The units of an input: of its first Material with `units`, else of Header / Unit where that names units.
 std::optional<core::UnitSystem> units_of(const Document& document);
 
-/// Every entry with its laws, values and sources, for people to read.
+/// Every entry with its laws, values and sources as readable text.
 std::string library_listing(const Library& library, const core::Catalogue& catalogue);
 
 /// The entries that `name` may have meant, as "; did you mean 'a', 'b'?", or nothing.

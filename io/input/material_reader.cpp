@@ -15,7 +15,7 @@ namespace mpm::io {
 
 namespace {
 
-/// The language with nothing required beside materials.
+/// The language with only materials required.
 ElementSpec language_of_materials(const core::Catalogue& catalogue) {
   ElementSpec root = language(catalogue);
   for (ElementSpec& child : root.children)
@@ -55,7 +55,7 @@ std::uint32_t choose(const Document& document, const std::string& name, const Di
           : fmt::format("it has no material '{}'{}; it has {}", name, did_you_mean(name, names), list));
 }
 
-/// Sets single values of a material in the document, so that they are checked like all others.
+/// Overrides single values of a material in the document, so that they are checked like all others.
 class Setter {
  public:
   Setter(Document& document, std::uint32_t material, const ElementSpec& language, Diagnostics& diagnostics)

@@ -1,5 +1,5 @@
-// One material, from an input file or by its name in the library, with single values set anew: what mpm_point
-// drives. An input of materials alone will do; Component, Grid and Solution may be missing.
+// One material for mpm_point, from an input file or by its name in the library, with overrides of single
+// values. The input may lack Component, Grid and Solution.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace mpm::io {
 
-/// Where the material is, and what to change.
+/// Source of the material and the values to change.
 struct MaterialRequest {
   std::string material;  ///< its name; empty where the input has only one
   /// "Yield0=120", "StrengthModel.Yield0=120", "Yield0=120 MPa", "ReferenceDensity=8.9e-3"

@@ -20,7 +20,7 @@ std::string expected(const AttributeSpec& a, std::string_view value) {
   return fmt::format("expected {}{}", expectation(a), did_you_mean(value, words));
 }
 
-/// Of a number that is written correctly: whether the words or the interval allow it.
+/// Whether the words or the interval allow a well-formed number.
 bool allowed(const AttributeSpec& a, double value) {
   if (a.range.words.empty()) return a.range.contains(value);
   return std::ranges::any_of(a.range.words, [&](const std::string& w) { return parse_real(w) == value; });

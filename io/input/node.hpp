@@ -1,6 +1,6 @@
 // An element of the input seen through its specification: typed values with defaults filled in.
-// Values that are missing or wrong were reported by the checker; here they read as NaN, 0, false or empty, so
-// that later checks can go on and stay silent about them.
+// Missing and wrong values have been reported by the checker; here they read as NaN, 0, false or empty, so
+// that later checks can continue without reporting them again.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace mpm::io {
 
-/// What is wrong with a value, or an empty text.
+/// The fault of a value, or an empty text.
 std::string fault(const AttributeSpec& attribute, std::string_view value);
 
 /// The word that the attribute's second spelling of a word stands for; otherwise the value, trimmed.
@@ -42,7 +42,7 @@ class Node {
   /// The attribute under its name or its second accepted spelling.
   const XmlAttribute* find(std::string_view attribute) const;
 
-  double real(std::string_view attribute) const;  ///< NaN when there is neither value nor default
+  double real(std::string_view attribute) const;  ///< NaN without value and default
   std::int64_t integer(std::string_view attribute) const;
   int small_integer(std::string_view attribute) const { return static_cast<int>(integer(attribute)); }
   bool boolean(std::string_view attribute) const { return integer(attribute) == 1; }

@@ -84,7 +84,7 @@ std::string read_bytes(const std::filesystem::path& file) {
     bytes.resize(held + piece);
     count = std::fread(bytes.data() + held, 1, piece, opened.get());
     bytes.resize(held + count);
-    if (bytes.size() > largest_document) break;  // parse_scene says so
+    if (bytes.size() > largest_document) break;  // parse_scene reports it
   }
   if (std::ferror(opened.get())) refuse(file, std::strerror(errno));
   return bytes;

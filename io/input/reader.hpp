@@ -1,5 +1,5 @@
-// Reads and checks an input file. Knows no ranks: one rank reads the bytes, all parse the same bytes alike.
-// Wrong input throws core::InputErrors, which holds every fault about the file.
+// Reads and checks an input file. Independent of MPI: one rank reads the bytes, and all ranks parse the same
+// bytes. Wrong input throws core::InputErrors, which holds every fault about the file.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ struct ReadOptions {
   bool accept_later = false;  ///< let pass what the language has and the program has not yet
   std::vector<core::Diagnostic>* notes = nullptr;  ///< gets what the input states without effect (idle.hpp)
   const UserSpecification* users = nullptr;        ///< what the input must conform to as well
-  /// Gets what `users` allows and this program has not; without it such names are complained about.
+  /// Receives names that `users` allows and this program does not have; without it they are faults.
   std::vector<core::Diagnostic>* foreign = nullptr;
 };
 
@@ -34,7 +34,7 @@ std::string read_bytes(const std::filesystem::path& file);
 core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file,
                         const core::Catalogue& catalogue, const ReadOptions& options = {});
 
-/// The same with a language that is ready (io::language), for programs that read many inputs.
+/// The same with a prepared language (io::language), for programs that read many inputs.
 core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& file,
                         const ElementSpec& language, const ReadOptions& options = {});
 

@@ -50,7 +50,7 @@ std::string meaning_column(const AttributeSpec& a) {
   return text;
 }
 
-/// Rows with a column of types where any has some.
+/// Rows, with a column of types if any row has types.
 std::string table(const std::vector<const AttributeSpec*>& rows, bool with_types) {
   if (rows.empty()) return {};
   const bool types =
@@ -74,7 +74,7 @@ std::string summary_of(const core::Catalogue& catalogue, LawFamily laws, std::st
   return found == list.end() ? "" : std::string(found->summary);
 }
 
-/// The types of a row in the language's order, or what is shorter: "all", "all but ...".
+/// The types of a row in the language's order, or the shorter "all", "all but ...".
 std::vector<std::string> shortest(const std::vector<std::string>& types,
                                   const std::vector<std::string>& all) {
   std::vector<std::string> with, without;
@@ -84,7 +84,7 @@ std::vector<std::string> shortest(const std::vector<std::string>& types,
   return without.size() < with.size() ? std::vector{"all but " + join(without, ", ")} : with;
 }
 
-/// Attributes that many types share, then one table for each type with what is its own.
+/// Attributes shared by many types, then a table of its own attributes for each type.
 std::string law_tables(const ElementSpec& element, const core::Catalogue& catalogue) {
   const std::vector<std::string>& all = element.attributes.front().range.words;
   const auto shared = [&](const AttributeSpec& a) { return a.for_types.empty() || a.for_types.size() >= 4; };

@@ -21,7 +21,7 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-/// Caught where the line is known.
+/// Caught by a caller that knows the line.
 class Mistake : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -152,7 +152,7 @@ void parse_key(ElementSpec& spec, std::string_view name, std::string_view value)
   const auto [key, number] = numbered(name);
   if (key == "attribute") {
     if (number != spec.attributes.size() + 1) mistake(name, "attributes are numbered from 1 without gaps");
-    spec.attributes.emplace_back();  // stays, so that a mistake in one brings none about the next
+    spec.attributes.emplace_back();  // kept, so that an error here causes none for the next attribute
     spec.attributes.back() = parse_attribute(value);
   } else if (key == "together") {
     const Items items(value);

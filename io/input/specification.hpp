@@ -1,5 +1,5 @@
-// The input language as data: what io/input/Specification.xml says, and the laws of the catalogue with their
-// parameters. The notation is described at the head of that file.
+// The input language as data: io/input/Specification.xml and the laws of the catalogue with their parameters.
+// The head of that file describes the notation.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@ namespace mpm::io {
 
 enum class ValueType { text, real, integer, boolean };
 
-/// The words that are allowed (any when empty) and the interval of numbers.
+/// The allowed words (any if empty) and the interval of numbers.
 struct Range {
   std::vector<std::string> words;
   double min = -std::numeric_limits<double>::infinity();
@@ -50,7 +50,7 @@ struct AttributeSpec {
   bool applies_to(std::string_view element_type) const;
 };
 
-/// Attributes that are given all or none.
+/// Attributes that must be given together.
 struct TogetherSpec {
   std::vector<std::string> names;
   std::vector<std::string> for_types;
@@ -78,7 +78,7 @@ struct ElementSpec {
   const AttributeSpec* attribute(std::string_view attribute_name, std::string_view element_type) const;
 };
 
-/// Reads the notation. Throws core::InputErrors with every mistake in it, which `file` is named for.
+/// Parses the notation. Throws core::InputErrors with every mistake; `file` is for messages.
 ElementSpec parse_specification(std::string_view xml, const std::string& file = "Specification.xml");
 
 /// The built-in Specification.xml, without the laws; the root is PeneBlast.

@@ -1,4 +1,4 @@
-// Small tools on the text of the input: numbers independent of the locale, lists, and the nearest right word.
+// Small tools on the text of the input: numbers independent of the locale, lists, and the nearest valid word.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ std::string_view trim(std::string_view text);
 /// The parts between `separator`, trimmed; an empty text has none.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-/// At most `bytes` of a UTF-8 text, whole characters, with ... where something is left out.
+/// At most `bytes` of a UTF-8 text in complete characters; ... marks the omission.
 std::string shortened(std::string_view text, std::size_t bytes);
 
 std::string join(const std::vector<std::string>& words, std::string_view separator);
@@ -31,15 +31,15 @@ bool is_written_real(std::string_view text);
 /// A whole number in decimal digits with an optional sign.
 std::optional<std::int64_t> parse_integer(std::string_view text);
 
-/// The candidate that `word` was probably meant to be: the same but for upper and lower case, else the
-/// nearest by edits when they are few for its length. Empty when none is near.
+/// The candidate probably meant by `word`: equal up to case, else the nearest by edit distance if that is
+/// small for its length. Empty if none is near.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 
 /// `; did you mean 'x'?`, or nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// 16 hexadecimal digits: FNV-1a, 64 bit, the public function, so that others can compute it of an input file
-/// too. What only we compare has the faster one of io/output/hash.hpp.
+/// 16 hexadecimal digits: FNV-1a, 64 bit, the public function, so that other programs can compute it for an
+/// input file. Internal checks use the faster hash of io/output/hash.hpp.
 std::string fnv1a_hex(std::string_view bytes);
 
 }  // namespace mpm::io

@@ -33,7 +33,7 @@ void add_words(AttributeSpec& ours, const AttributeSpec& theirs) {
   }
 }
 
-/// `new_types`: what the nearest type attribute further up can be by the user's Specification alone.
+/// `new_types`: values of the nearest type attribute further up that only the user's Specification has.
 void add(ElementSpec& ours, const ElementSpec& theirs, std::vector<std::string> new_types = {}) {
   std::vector<AttributeSpec> rows;
   for (const AttributeSpec& row : theirs.attributes) {
@@ -49,7 +49,7 @@ void add(ElementSpec& ours, const ElementSpec& theirs, std::vector<std::string> 
     addition.required = false;
     if (known && addition.for_types.empty()) {
       addition.for_types = new_types;
-    } else if (known) {  // for types that the program has not
+    } else if (known) {  // for types unknown to the program
       std::erase_if(addition.for_types, [&](const std::string& t) { return !contains(new_types, t); });
     }
     if (known && addition.for_types.empty()) continue;

@@ -1,6 +1,6 @@
 // A Specification.xml of the user's, in the notation of the manual's chapter 5.1. An input is checked against
-// it and against the program's own; names that only the user's has are let pass, and reported, so that a
-// keyword of another program needs no more than its line in the Specification.
+// it and against the program's own; names that only the user's Specification has are accepted and reported,
+// so that a keyword of another program needs only a line there.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,7 @@ UserSpecification read_user_specification(const std::filesystem::path& file,
 /// among an attribute's values.
 ElementSpec with_additions(ElementSpec ours, const ElementSpec& theirs);
 
-/// What of an input is known through such additions alone, one entry for each name.
+/// Names in an input that only these additions define, one entry each.
 std::vector<core::Diagnostic> foreign_names(const Node& root, const std::string& file);
 
 }  // namespace mpm::io

@@ -13,7 +13,7 @@ namespace mpm::io {
 
 class XmlWriter {
  public:
-  /// Opens an element; it is closed when the returned object dies.
+  /// Opens an element; it is closed when the returned object is destroyed.
   class Scope {
    public:
     explicit Scope(XmlWriter& writer, std::string_view name) : writer_(writer), name_(name) {}

@@ -1,5 +1,5 @@
-// Files by the system's own calls, so that an error is known with its reason: writing, replacing as a whole,
-// reserving space before it is needed.
+// File access by system calls, so that errors have a reason: writing, atomic replacement, reservation of
+// space.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@ struct Extent {
   std::uint64_t size = 0;
 };
 
-/// An open file. Every failure is a FileError.
+/// An open file. Every failure throws FileError.
 class File {
  public:
-  /// `fill` writes into what is there and never reads: what other machines write beside it is left alone.
+  /// `fill` writes into an existing file and never reads, so data written by other machines stays intact.
   enum class Mode { read, write_anew, append, change, fill };
   File(const std::string& path, Mode mode);
   ~File();
@@ -34,16 +34,16 @@ class File {
   void write_at(std::span<const std::byte> bytes, std::uint64_t offset) {
     write_at({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, offset);
   }
-  /// Exactly as many bytes as `into` holds; fewer in the file are an error.
+  /// Reads exactly as many bytes as `into` holds; a shorter file is an error.
   void read_at(std::span<std::byte> into, std::uint64_t offset) const;
   std::uint64_t size() const;
   void truncate(std::uint64_t size);
-  /// Make sure that the file may grow to `size` bytes, without changing what it holds. Where the file system
-  /// cannot promise that, the free space decides.
+  /// Ensures that the file can grow to `size` bytes, without changing its contents. If the file system cannot
+  /// reserve space, the free space is checked.
   void reserve(std::uint64_t size);
-  /// To the disk itself.
+  /// Syncs to disk.
   void sync();
-  /// A failure to close is a failure to write.
+  /// A failure to close counts as a failure to write.
   void close();
 
  private:
@@ -54,14 +54,14 @@ class File {
 
 std::string read_file(const std::string& path);
 
-/// The file holds these bytes, or what it held before; never a part. The folder must exist.
+/// Replaces the file atomically: it holds either these bytes or its previous contents. The folder must exist.
 void replace_file(const std::string& path, std::string_view bytes);
-/// Give a complete file its name, replacing whatever had it, and make that last.
+/// Renames a complete file, replacing any file of that name, and syncs the folder.
 void rename_file(const std::string& from, const std::string& to);
 /// Does nothing if there is no such file.
 void remove_file(const std::string& path) noexcept;
 void make_folder(const std::string& path);
-/// A name for a file under construction, in the same folder; `.part` at its end.
+/// Name of a file under construction, in the same folder; ends in `.part`.
 std::string part_name(const std::string& path);
 
 }  // namespace mpm::io

@@ -1,5 +1,5 @@
 // Errors of files: every rank throws the same one, or none does. The program that catches FileError prints
-// what() and leaves with exit code 5.
+// what() and exits with code 5.
 #pragma once
 
 #include <new>
@@ -16,15 +16,15 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `cannot <doing> <path>: <the system's words for `error`>`, with a remedy where there is one.
+/// `cannot <doing> <path>: <the system's message for `error`>`, with a remedy where there is one.
 FileError system_error(const std::string& doing, const std::string& path, int error);
 
 /// Throws the lowest rank's fault on every rank, if any rank has one. Collective.
 void throw_together(core::Reductions& ranks, const std::string& fault);
 
-/// Run f() on this rank; if it throws on any, every rank throws a FileError with that rank's text. There must
-/// be nothing collective in f. std::bad_alloc is thrown on the rank that has it alone, while the others wait:
-/// the answer is to end every rank. Collective.
+/// Runs f() on this rank; if it throws on any rank, every rank throws a FileError with that rank's message. f
+/// must not communicate. std::bad_alloc is thrown only on the rank where it occurs, while the others wait:
+/// the caller must then abort all ranks. Collective.
 template <class F>
 void together(core::Reductions& ranks, F f) {
   std::string fault;

@@ -19,10 +19,10 @@ using Field = H5PartWriter::Field;
 using Kind = Field::Kind;
 
 constexpr std::size_t particles_at_once = std::size_t{1} << 19;
-/// Generous: what a group, an attribute and a dataset add to the file beside their values.
+/// Generous bounds on the bytes that a group, an attribute and a dataset add to their values.
 constexpr std::uint64_t bytes_per_group = 16384;
 constexpr std::uint64_t bytes_per_field = 2048;
-/// Where a time is made before it has its name.
+/// Group of a time before it is renamed.
 constexpr const char* workshop = "unfinished";
 constexpr const char* work = "unfinished/step";
 /// Of a file without times.
@@ -69,7 +69,7 @@ std::vector<BodyFacts> facts_of_all(const core::Model& model) {
   return facts;
 }
 
-/// Returns how many values were cut.
+/// Returns the number of clipped values.
 template <class T>
 std::int64_t fill(const core::Model& model, const RowBatch& batch, const Field& field,
                   const std::vector<BodyFacts>& facts, std::byte* memory) {
@@ -119,14 +119,14 @@ bool H5PartWriter::go_on(core::Reductions& ranks) {
   const std::optional<H5PartMark> mark = H5PartMark::from(*settings_.continue_from);
   if (!ranks.any(ranks.rank() == 0 && std::filesystem::exists(path))) {
     if (mark && mark->times > 0)
-      notice_ = fmt::format("'{}' is missing; it had {} time(s): it begins anew", path, mark->times);
+      notice_ = fmt::format("'{}' is missing; it had {} time(s): a new file begins", path, mark->times);
     return false;
   }
   std::string aside = path + ".damaged", fault;
   if (mark) {
     fault = restore(path, *mark, ranks);
   } else {
-    fault = fmt::format("the restart file says nothing of '{}'", path);
+    fault = fmt::format("the restart file has no record of '{}'", path);
     aside = path + ".old";
   }
   if (fault.empty()) {
@@ -164,7 +164,7 @@ void H5PartWriter::add_step(const core::Clock& clock, std::int64_t particles) {
   hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
   {
     if (hdf5::has_link(file, work))
-      hdf5::check(H5Ldelete(file, work, H5P_DEFAULT), "drop what a failed attempt left");
+      hdf5::check(H5Ldelete(file, work, H5P_DEFAULT), "remove the remains of a failed attempt");
     const hdf5::Handle group = hdf5::create_group(file, work);
     hdf5::write_attribute(group, "TimeValue", clock.time);
     hdf5::write_attribute(group, "step", clock.step);
@@ -182,7 +182,7 @@ void H5PartWriter::write_fields(const core::Model& model, core::Reductions& rank
   const std::vector<BodyFacts> facts = facts_of_all(model);
   std::vector<std::uint64_t> checksums(fields_.size());
   std::vector<SharedRows> datasets;
-  // By field and batch: each may be filled more than once.
+  // By field and batch, since each may be filled more than once.
   std::vector<std::vector<std::int64_t>> cut(fields_.size(), std::vector<std::int64_t>(batches.size()));
   for (std::size_t f = 0; f < fields_.size(); ++f) {
     const Field& field = fields_[f];
@@ -263,7 +263,7 @@ void H5PartWriter::finish(core::Reductions& ranks) {
   together(ranks, [&] {
     if (ranks.rank() == 0) {
       hdf5::Handle file = hdf5::open_file(settings_.path, hdf5::Access::change);
-      hdf5::check(H5Ldelete(file, workshop, H5P_DEFAULT), "remove what is only needed while times are added");
+      hdf5::check(H5Ldelete(file, workshop, H5P_DEFAULT), "remove the temporary group");
       file.close("write '" + settings_.path + "'");
     }
   });

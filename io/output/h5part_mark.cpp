@@ -12,7 +12,7 @@ namespace mpm::io {
 namespace {
 
 constexpr std::size_t bytes_at_once = std::size_t{1} << 20;
-/// Rows that a rank checks even where nothing looks suspicious: a fraction of a second.
+/// Rows that a rank always checks; takes a fraction of a second.
 constexpr std::uint64_t cheap_bytes = std::uint64_t{1} << 28;
 
 struct Fixed {
@@ -46,7 +46,7 @@ std::uint64_t bytes_of_rows(const H5PartMark& mark) {
   return bytes;
 }
 
-/// Whether bytes beyond the head differ that no later time changes.
+/// Whether bytes beyond the head differ; writing later times does not change these.
 bool differs_beyond_head(const File& file, const H5PartMark& mark) {
   bool differs = false;
   std::string found;
@@ -155,7 +155,7 @@ std::string restore(const std::string& path, const H5PartMark& mark, core::Reduc
   const bool cheap = bytes_of_rows(mark) / static_cast<std::uint64_t>(ranks.size()) <= cheap_bytes;
   if ((cheap || both[0] == changed) && !rows_are_right(path, mark, ranks))
     return fmt::format(
-        "'{}' is damaged, or not the file that goes with the restart file: values fail their "
+        "'{}' is damaged, or does not belong to the restart file: values fail their "
         "checksum",
         path);
   together(ranks, [&] {

@@ -1,5 +1,5 @@
-// A fast 64-bit hash over words. A changed word always changes the result: every step is one-to-one in the
-// word and in what came before.
+// A fast 64-bit hash over words. A single changed word always changes the result: each step is bijective in
+// the word and in the previous state.
 #pragma once
 
 #include <bit>

@@ -23,15 +23,13 @@ Handle properties(hid_t cls) { return Handle(H5Pcreate(cls), H5Pclose, "make a p
 Handle access_properties(Failure& failure) {
   [[maybe_unused]] static const herr_t silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   Handle list = properties(H5P_FILE_ACCESS);
-  // Locks fail on some parallel file systems, and would keep viewers from reading a file that is being
-  // written.
+  // Locks fail on some parallel file systems and would prevent viewers from reading a file during writing.
   check(H5Pset_file_locking(list, false, true), "switch off file locks");
   use_driver(list, failure);
   return list;
 }
 
-/// Of groups whose links stay in their header. HDF5 does that only where the order of creation is to be
-/// known.
+/// Properties of groups with links in their header. HDF5 does this only if it tracks the order of creation.
 Handle group_properties() {
   constexpr unsigned most_links = 256;
   Handle list = properties(H5P_GROUP_CREATE);
@@ -159,7 +157,7 @@ Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::sp
   check(H5Pset_layout(list, H5D_CONTIGUOUS), "choose a contiguous layout");
   check(H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY), "choose early allocation");
   check(H5Pset_fill_time(list, H5D_FILL_TIME_NEVER), "choose not to fill");
-  // The same content, the same bytes: without the time at which a dataset was made.
+  // Without creation times, so that the same content gives the same bytes.
   check(H5Pset_obj_track_times(list, false), "leave out the times of datasets");
   return Handle(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose,
                 "make dataset '" + name + "'");

@@ -1,10 +1,8 @@
-// Thin owners over HDF5's C interface: handles that close themselves, attributes, datasets. On this rank
-// alone. Every return code is checked; a failure is a FileError with the system's reason or the library's
-// innermost message. What the library could not write is reported when the file is closed (hdf5_driver.hpp).
-//
-// A file is spoilt by a write that fails. So space is reserved (File::reserve) before HDF5 is let at it. HDF5
-// makes the structure and says where values lie; the particles' rows are written there by all ranks without
-// it (shared_rows.hpp).
+// Thin RAII wrappers of the C interface of HDF5: handles, attributes, datasets. On this rank only. Every
+// return code is checked; a failure is a FileError with the system's reason or the library's innermost
+// message. Failed writes are reported when the file is closed (hdf5_driver.hpp). A failed write corrupts a
+// file, so space is reserved (File::reserve) before HDF5 writes. HDF5 creates the structure and gives the
+// offsets of the values; all ranks write the particles' rows there without it (shared_rows.hpp).
 #pragma once
 
 #include <cstdint>
@@ -24,7 +22,7 @@ namespace mpm::io::hdf5 {
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
-  /// Throws if `id` is not valid; `doing` is what was tried: "open dataset 'x'".
+  /// Throws if `id` is not valid; `doing` describes the attempt: "open dataset 'x'".
   /// `failure`: of a file.
   Handle(hid_t id, Close closer, const std::string& doing, Failure failure = nullptr);
   Handle(Handle&& other) noexcept
@@ -33,7 +31,7 @@ class Handle {
   ~Handle() { reset(); }
 
   operator hid_t() const { return id_; }
-  /// Closing a file writes what is left. Throws what has failed since it was opened.
+  /// Closing a file writes the remaining data. Throws the first failure since it was opened.
   void close(const std::string& doing);
 
  private:
@@ -47,25 +45,25 @@ void check(herr_t status, const std::string& doing);
 
 enum class Access { read, change };
 Handle open_file(const std::string& path, Access access);
-/// A new file. With `links` there is room in the root group for about a thousand links, so that one more
-/// changes few places of the file and needs no new one.
+/// A new file. With `links` the root group has space for about a thousand links, so that another link changes
+/// few places of the file and needs no new space.
 Handle create_file(const std::string& path, hsize_t user_block = 0, bool links = false);
 
-/// The links in the group are kept in its own header.
+/// The links of the group are stored in its header.
 Handle create_group(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
-/// Contiguous, its place in the file fixed at once and not filled. `shape` has one or two entries.
+/// Contiguous, allocated at once and not filled. `shape` has one or two entries.
 Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::span<const hsize_t> shape);
 Handle open_dataset(hid_t parent, const std::string& name);
 std::vector<hsize_t> shape_of(hid_t dataset);
-/// Where a contiguous dataset's values lie in the file.
+/// Offset of a contiguous dataset's values in the file.
 Extent extent_of(hid_t dataset);
 
 bool has_link(hid_t parent, const std::string& name);
-/// Give an object another name, without looking into it.
+/// Renames an object without reading it.
 void rename_link(hid_t file, const std::string& from, const std::string& to);
 
-/// Whole datasets of one dimension, for data that one rank handles.
+/// Complete one-dimensional datasets, for data of one rank.
 void write_all(hid_t parent, const std::string& name, std::span<const std::uint64_t> values);
 void write_all(hid_t parent, const std::string& name, std::span<const std::int64_t> values);
 void write_all(hid_t parent, const std::string& name, std::span<const double> values);

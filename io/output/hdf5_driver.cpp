@@ -18,25 +18,25 @@ namespace {
 
 constexpr haddr_t largest_address = (haddr_t{1} << 63) - 1;
 
-/// What the access list carries to open().
+/// Settings that the access list passes to open().
 struct Settings {
   Failure* failure;
 };
 
-/// HDF5 keeps its own part, and hands it back at every call.
+/// HDF5 owns the base part and passes it to every call.
 struct OpenFile : H5FD_t {
   OpenFile(const char* path, File::Mode mode, Failure f)
       : H5FD_t{}, file(path, mode), failure(std::move(f)), end(file.size()) {}
   File file;
   Failure failure;
-  haddr_t end;            // of what is in the file
-  haddr_t allocated = 0;  // end of what HDF5 has given out
+  haddr_t end;            // end of the file's contents
+  haddr_t allocated = 0;  // end of the space that HDF5 has allocated
 };
 
 OpenFile& of(H5FD_t* file) { return *static_cast<OpenFile*>(file); }
 const OpenFile& of(const H5FD_t* file) { return *static_cast<const OpenFile*>(file); }
 
-/// Whether f() did not throw; the first that does is remembered.
+/// True if f() did not throw; the first exception is recorded.
 template <class F>
 bool succeeds(std::string& failure, F f) {
   try {
@@ -48,7 +48,7 @@ bool succeeds(std::string& failure, F f) {
   }
 }
 
-/// H5Fcreate tries first whether there is a file.
+/// H5Fcreate first tests whether the file exists.
 H5FD_t* open(const char* path, unsigned flags, hid_t access_list, haddr_t) {
   const Failure& failure = *static_cast<const Settings*>(H5Pget_driver_info(access_list))->failure;
   failure->clear();
@@ -67,7 +67,7 @@ herr_t close(H5FD_t* file) {
   return 0;
 }
 
-/// Buffers as for a plain file, and files that any other driver for one can read.
+/// Buffering as for a plain file; any other single-file driver can read the result.
 herr_t query(const H5FD_t*, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
@@ -81,7 +81,7 @@ herr_t allocate_to(H5FD_t* file, H5FD_mem_t, haddr_t end) {
 }
 haddr_t end_of_file(const H5FD_t* file, H5FD_mem_t) { return of(file).end; }
 
-/// What lies beyond the end is zero. A failure goes the way of HDF5's own.
+/// Bytes beyond the end read as zero. A failure is returned like HDF5's own.
 herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void* buffer) {
   const OpenFile& opened = of(file);
   const std::span<std::byte> into(static_cast<std::byte*>(buffer), size);
@@ -106,7 +106,8 @@ herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, cons
   return 0;
 }
 
-/// At its close a file ends where what HDF5 has given out ends; until then it keeps the room that it has.
+/// When closed, a file is truncated to the space that HDF5 has allocated; until then it keeps its reserved
+/// space.
 herr_t truncate(H5FD_t* file, hid_t, hbool_t closing) {
   OpenFile& opened = of(file);
   const bool right = closing ? opened.end == opened.allocated : opened.end >= opened.allocated;

@@ -22,15 +22,15 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int width = 24;
 
-// A target's record: found (0, or infinity on ranks that know nothing of it), the brick it is in, its
-// variables. The minimum over the ranks is what the one rank that knows has said.
+// Record of a target: found (0, or infinity on ranks that do not have it), its brick, its variables. The
+// minimum over the ranks gives the values of the rank that has it.
 constexpr std::size_t place_entry = 1;
 constexpr std::size_t first_value = 4;
 
-/// How far from where it was last a particle is looked for.
+/// Search distance from the last position of a particle.
 enum Reach { same_brick, neighbour_bricks, everywhere };
 
-/// A particle and the body that it is of.
+/// A particle and its body.
 struct Found {
   core::ConstParticle particle;
   int body = 0;
@@ -46,7 +46,7 @@ std::optional<Found> find_in(const core::Model& model, const core::Brick& brick,
   return std::nullopt;
 }
 
-/// Slots of ours where a particle last seen in brick `b` may be.
+/// Slots of this rank where a particle last seen in brick `b` may be.
 std::vector<core::Slot> candidates(const core::BrickGrid& grid, const std::optional<core::BrickCoord>& b,
                                    int reach) {
   std::vector<core::Slot> slots;
@@ -62,7 +62,7 @@ std::vector<core::Slot> candidates(const core::BrickGrid& grid, const std::optio
   return slots;
 }
 
-/// A ratio or a square may be beyond the range of numbers where what it is made of is not.
+/// A ratio or a square may overflow although its operands are finite.
 double finite(double value) {
   std::int64_t cut = 0;
   return narrowed<double>(value, cut);
@@ -89,7 +89,7 @@ HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
   file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(), rows, ranks);
 }
 
-/// False where it is not of these targets.
+/// False if it is not one of these targets.
 bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
   std::size_t length = 0;
   for (const Target& t : targets_) length += t.particle ? 2 + t.values.size() : 0;

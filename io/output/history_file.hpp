@@ -1,11 +1,11 @@
-// Job_curv.dat: rows of the total energies and of the histories that the scene asks for.
+// Job_curv.dat: rows of the total energies and of the histories that the scene requests.
 //
 // A `Particle` history follows the particle that is nearest to its point when the history starts (of several,
 // the one with the lowest identity) wherever it goes. Its last column, `present[particleN]`, is 1; once the
 // particle is eroded or has left the grid it is 0, and the others keep their last values. A `Point` history
 // is the average over the particles in the cell around the point, weighted by mass and by the cell's
-// trilinear function of their distance from the point; 0 while the cell is empty. The same bits on any ranks.
-// Shown by tests/io/output/history_file_test.cpp.
+// trilinear function of their distance from the point; 0 while the cell is empty. Bitwise identical on any
+// ranks. Tested by tests/io/output/history_file_test.cpp.
 #pragma once
 
 #include <optional>
@@ -20,36 +20,36 @@
 
 namespace mpm::io {
 
-/// What identities no particle has.
+/// Identity that no particle has.
 inline constexpr std::uint64_t no_identity = ~std::uint64_t{0};
 
 class HistoryFile {
  public:
   struct Continuation {
-    TableContinuation rows;              ///< those that are kept
+    TableContinuation rows;              ///< the rows that are kept
     std::vector<std::uint64_t> tracked;  ///< tracked() when the last of them was written
   };
   /// Throws FileError. Collective.
   HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
               core::Reductions& ranks);
 
-  /// With histories a row belongs to every step; without, the total energies do, as often as someone wants.
+  /// With histories every step has a row; without, the total energies are written on request.
   bool each_step() const { return !targets_.empty(); }
-  /// The row of the present state; it waits in memory. Throws core::NumericalFailure where that has no finite
-  /// energy. Collective.
+  /// Adds the row of the present state to the buffer. Throws core::NumericalFailure if an energy is not
+  /// finite. Collective.
   void add(const core::Model& model, core::Reductions& ranks);
-  /// The same, where the energies are known.
+  /// The same with known energies.
   void add(const core::Model& model, const core::Energies& energies, core::Reductions& ranks);
-  /// Particles that the last row does not find any more, a line each, for the log. The same on all ranks.
+  /// Particles that the last row no longer finds, one line each, for the log. The same on all ranks.
   const std::vector<std::string>& gone() const { return gone_; }
   /// Throws FileError. Collective.
   void flush(core::Reductions& ranks) { file_->flush(ranks); }
-  /// As flush(), and to the disk itself. Collective.
+  /// As flush(), and syncs to disk. Collective.
   void sync(core::Reductions& ranks) { file_->sync(ranks); }
   const TableMark& mark() const { return file_->mark(); }
   const std::string& notice() const { return file_->notice(); }
 
-  /// What histories remember, for restart files: of each particle its identity, whether it is present (0, 1)
+  /// State of the histories for restart files: for each particle its identity, whether it is present (0, 1)
   /// and the bits of its last values. The same on all ranks.
   std::vector<std::uint64_t> tracked() const;
 
@@ -59,7 +59,7 @@ class HistoryFile {
     bool particle = false;  ///< follows a particle; otherwise stays at the point
     std::vector<Variable> variables;
     std::size_t first = 0;  ///< of its record in the values exchanged
-    // Of a particle: who it is, and where it was last.
+    // For a particle: its identity and last position.
     std::uint64_t identity = no_identity;
     bool present = false;
     std::optional<core::BrickCoord> last;

@@ -54,7 +54,7 @@ Answer set_both(int handle) {
   return at_ranks;
 }
 
-/// Whether the path still leads to the open file: a run that ended may have removed it.
+/// Whether the path still refers to the open file: a run that ended may have removed it.
 bool leads_to(const std::string& path, int handle) {
   struct stat by_path {
   }, by_handle{};
@@ -79,14 +79,14 @@ void write_holder(int handle, int number_of_ranks) {
   const std::string text =
       fmt::format("process {} on {}, rank 0 of {}, since {:%Y-%m-%dT%H:%M:%SZ}\n", ::getpid(), host_name(),
                   number_of_ranks, fmt::gmtime(std::time(nullptr)));
-  // For people; without it the lock holds as well.
+  // For information only; the lock does not depend on it.
   if (::ftruncate(handle, 0) != 0 || ::pwrite(handle, text.data(), text.size(), 0) < 0) return;
 }
 
-/// Says once that it waits, if it is for long.
+/// Reports a long wait once.
 class Patience {
  public:
-  /// False when there is none left.
+  /// False when the time is over.
   bool wait(const std::string& path, const std::string& holder) {
     const auto left = end_ - std::chrono::steady_clock::now();
     if (left < 0s) return false;
@@ -111,14 +111,14 @@ JobLock::JobLock(const std::string& path, core::Reductions& ranks) : path_(path)
   together(ranks, [&] {
     if (first_) take(path, ranks.size());
   });
-  if (ranks.any(!notice_.empty())) return;  // no locks here
+  if (ranks.any(!notice_.empty())) return;  // locks are not supported here
   bool held = false;
   together(ranks, [&] {
     if (!first_) handle_ = open_lock(path, O_RDWR);
     if (handle_ < 0) throw system_error("write", path, errno);
     held = set(handle_, F_RDLCK, holders) != Answer::taken;
   });
-  // Rank 0 has the gate, so nobody else can have come between.
+  // Rank 0 holds the gate, so no other run can intervene.
   if (ranks.any(held) && first_)
     notice_ = fmt::format("'{}' is not locked on every machine: let only one run write here", path);
 }
@@ -144,7 +144,7 @@ void JobLock::take(const std::string& path, int number_of_ranks) {
     if (answer == Answer::held && !patience_left.wait(path, holder)) {
       throw FileError(fmt::format(
           "nothing was started: another run writes to this folder under the same job name, or ranks of a "
-          "killed one still live; '{}' is held by {}. Wait for its end, or stop it, or choose another folder "
+          "killed one still live; '{}' is held by {}. Wait for it to end, stop it, or choose another folder "
           "with --output-dir",
           path, holder));
     }
@@ -155,10 +155,10 @@ void JobLock::take(const std::string& path, int number_of_ranks) {
 
 void JobLock::release(core::Reductions& ranks) {
   if (!first_ && handle_ >= 0) ::close(std::exchange(handle_, -1));
-  ranks.any(false);  // every other rank is through
+  ranks.any(false);  // all other ranks have finished
   if (!first_ || handle_ < 0) return;
-  // Whoever has opened the file by now finds, once rank 0 lets go, that the path does not lead to it any
-  // more.
+  // A run that has opened the file already finds, once rank 0 releases it, that the path no longer refers to
+  // it.
   ::unlink(path_.c_str());
   ::close(std::exchange(handle_, -1));
 }
@@ -167,7 +167,7 @@ void JobLock::wait_for(const std::string& path) {
   Patience patience_left;
   for (;;) {
     const int handle = open_lock(path, O_RDWR);
-    if (handle < 0) return;  // nobody has one
+    if (handle < 0) return;  // no lock file
     const Answer answer = set_both(handle);
     const std::string holder = holder_of(handle);
     ::close(handle);

@@ -9,7 +9,7 @@ Log::Log(const std::string& path, bool append, bool console, core::Reductions& r
 
 void Log::put(const std::string& text, To to) {
   file_.add(text + '\n');
-  file_.write_out();  // a killed run leaves what it has said
+  file_.write_out();  // so that a killed run leaves its log
   if (to == To::file || !console_) return;
   fmt::print("{}\n", text);
   std::fflush(stdout);

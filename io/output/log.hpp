@@ -1,4 +1,4 @@
-// Job.out: what the run says, in the file and on the console; said by rank 0 alone.
+// Job.out: the log of the run, in the file and on the console; written by rank 0 only.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class Log {
   /// Throws FileError. Collective.
   Log(const std::string& path, bool append, bool console, core::Reductions& ranks);
 
-  /// One line, or several. Any rank may call it; only rank 0 is heard.
+  /// Writes one or more lines. Any rank may call it; only rank 0 prints.
   template <class... Arguments>
   void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     if (speaks_) put(fmt::format(format, std::forward<Arguments>(arguments)...), To::both);
@@ -33,9 +33,9 @@ class Log {
 
   /// Throws FileError if something could not be written. Collective.
   void flush(core::Reductions& ranks) { file_.flush(ranks); }
-  /// As flush(), and to the disk itself. Collective.
+  /// As flush(), and syncs to disk. Collective.
   void sync(core::Reductions& ranks) { file_.sync(ranks); }
-  /// What the file holds; 0 on other ranks than 0.
+  /// Size of the file in bytes; 0 on ranks other than 0.
   std::uint64_t bytes() const { return file_.bytes(); }
 
  private:

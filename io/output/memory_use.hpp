@@ -1,4 +1,4 @@
-// Memory that the ranks have needed.
+// Memory use of the ranks.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace mpm::io {
 
-/// Bytes, of the most that each rank has held at a time.
+/// Peak memory of the ranks in bytes.
 struct MemoryUse {
   std::int64_t largest = 0;  ///< of any rank
   std::int64_t sum = 0;      ///< over the ranks

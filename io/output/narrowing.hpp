@@ -1,6 +1,6 @@
-// Numbers for pictures: what is beyond the type that is written becomes its largest, and is counted; so no
-// picture holds an infinity. A quantity that has no value (a ratio of two overflows) becomes 0 and counts
-// too.
+// Conversion of values for particle files: values beyond the range of the output type are clipped to its
+// largest number and counted, so that no file contains infinities. NaN (a ratio of two overflows) becomes 0
+// and is counted too.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace mpm::io {
 
-/// `counted` grows by one where the value had to be changed by more than rounding.
+/// Increments `counted` if the value changes by more than rounding.
 template <class T>
 T narrowed(double value, std::int64_t& counted) {
   if constexpr (std::numeric_limits<T>::is_integer) {
@@ -27,14 +27,14 @@ T narrowed(double value, std::int64_t& counted) {
   }
 }
 
-/// Which variables of a file were cut, for the log.
+/// Variables of a file that were clipped, for the log.
 class CutValues {
  public:
-  /// `mine`: counts of the picture just written on this rank, as `names`. One line when a variable is cut for
-  /// the first time, else empty; the same on all ranks. Collective.
+  /// `mine`: counts of the last write on this rank, in the order of `names`. One line when a variable is
+  /// clipped for the first time, else empty; the same on all ranks. Collective.
   std::string warning(const std::string& file, std::int64_t step, const std::vector<std::string>& names,
                       std::vector<std::int64_t> mine, core::Reductions& ranks);
-  /// How many values were cut in all pictures; empty if there were none.
+  /// Total numbers of clipped values; empty if there were none.
   std::string total(const std::string& file) const;
 
  private:

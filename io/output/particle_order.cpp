@@ -15,7 +15,7 @@ bool before(const TileRecord& a, const TileRecord& b) {
   return std::tie(a.body, a.brick) < std::tie(b.body, b.brick);
 }
 
-/// Records and places of this rank, in step with each other and in order.
+/// Records and places of this rank, in matching order.
 void collect(const core::Model& model, std::vector<TileRecord>& records, std::vector<TilePlace>& places) {
   struct Entry {
     TileRecord record;

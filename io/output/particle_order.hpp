@@ -17,11 +17,11 @@ struct TileRecord {
   core::BrickKey brick = 0;
   std::int64_t body = 0;
   std::uint64_t particles = 0;
-  std::uint64_t hash = 0;  ///< of the particles' columns, row by row; 0 unless asked for
+  std::uint64_t hash = 0;  ///< of the particles' columns, row by row; 0 unless requested
   bool operator==(const TileRecord&) const = default;
 };
 
-/// Rows of this rank: a tile and where its first particle stands among all particles of its body.
+/// Rows of this rank: a tile and the index of its first particle among all particles of its body.
 struct TilePlace {
   core::Slot slot = 0;
   int tile = 0;  ///< index into the brick's tiles
@@ -34,14 +34,14 @@ struct ParticleOrder {
   std::vector<std::int64_t> particles;  ///< per body, of all ranks
 };
 
-/// With `hashes` every record carries its hash. Collective.
+/// With `hashes` every record has its hash. Collective.
 ParticleOrder order_particles(const core::Model& model, core::Reductions& ranks, bool hashes);
 
 /// Hash of the state of all particles: names of bodies and columns, and every record of the order. The same
 /// for the same bits, on any number of ranks. Collective.
 std::uint64_t state_hash(const core::Model& model, core::Reductions& ranks);
 std::uint64_t state_hash(const std::vector<TileRecord>& tiles, const std::vector<std::string>& bodies);
-/// What state_hash() knows of a body: its name and the names of its columns.
+/// Contribution of a body to state_hash(): its name and the names of its columns.
 std::string described(const std::string& name, const core::ColumnSet& columns);
 
 /// The particles of a tile.
@@ -53,7 +53,7 @@ inline core::BlockRange<const core::Model> blocks_at(const core::Model& model, c
   return blocks_of(model, std::as_const(*model.grid).brick(place.slot), body, body + 1);
 }
 
-/// The hash that a record should have, from all its rows of `columns` doubles.
+/// Hash of a record, from all its rows of `columns` doubles.
 std::uint64_t hash_of(const TileRecord& record, const double* rows, int columns);
 
 }  // namespace mpm::io

@@ -1,4 +1,4 @@
-// Where a file comes from: the same facts at the head of everything that a run writes.
+// Provenance: the same facts at the head of every output file of a run.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace mpm::io {
 
-/// Names and values in the order in which they are printed; nothing empty. Values are one line each, UTF-8.
+/// Names and values in printing order; none is empty. Values are one line each, UTF-8.
 using ProvenanceLines = std::vector<std::pair<std::string, std::string>>;
 
-/// The hash of the sources; `-dirty` at its end if they had changes on top.
+/// The git hash of the sources, with the suffix `-dirty` if they had uncommitted changes.
 std::string git_text();
 
 /// Program, version, git hash, build, job, input file and its hash, units, and the date of the call (UTC).
@@ -28,7 +28,7 @@ std::string to_xml_comment(const ProvenanceLines& lines);
 /// As text or as the value of an attribute; a control character becomes a space.
 std::string xml_escaped(std::string_view text);
 
-/// `name` with all that a file name or a column head cannot hold replaced by '_'; never empty.
+/// `name` with characters invalid in file names or column headings replaced by '_'; never empty.
 std::string safe_name(const std::string& name);
 
 }  // namespace mpm::io

@@ -1,5 +1,5 @@
-// This rank's particles cut into pieces of bounded memory, for writing datasets that hold all ranks'
-// particles.
+// Splits this rank's particles into batches of bounded memory, for writing datasets of the particles of all
+// ranks.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct RowBatch {
   };
   struct Part {
     TilePlace place;
-    std::size_t first = 0;  ///< of its particles in the batch's memory
+    std::size_t first = 0;  ///< index of its first particle in the batch's memory
   };
-  std::vector<Stretch> rows;  ///< ascending, neighbours joined; in the memory they follow each other
+  std::vector<Stretch> rows;  ///< ascending, adjacent ones merged; contiguous in memory
   std::vector<Part> parts;
   std::size_t particles = 0;
 };
@@ -28,7 +28,7 @@ struct RowBatch {
 inline constexpr std::int64_t left_out = -1;
 
 /// The batches of the bodies whose first row in the dataset is given, in the dataset's order; `left_out` for
-/// bodies that it does not hold. At most about `most` particles each.
+/// bodies that it does not contain. At most about `most` particles each.
 std::vector<RowBatch> cut_into_batches(const core::Model& model, const ParticleOrder& order,
                                        std::span<const std::int64_t> first_row_of_body, std::size_t most);
 

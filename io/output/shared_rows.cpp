@@ -14,7 +14,7 @@ namespace mpm::io {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "rows are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "rows are written in memory order");
 
 std::vector<Extent> extents_of(const std::string& path, std::span<const SharedRows> datasets) {
   const hdf5::Handle file = hdf5::open_file(path, hdf5::Access::read);
@@ -24,7 +24,7 @@ std::vector<Extent> extents_of(const std::string& path, std::span<const SharedRo
   return extents;
 }
 
-/// f(bytes, where they stand in the file) for all stretches of rows of this rank.
+/// f(bytes, their offset in the file) for all stretches of rows of this rank.
 template <class F>
 void for_each_stretch(const SharedRows& rows, const Extent& dataset, F f) {
   std::vector<std::byte> memory;
@@ -63,7 +63,7 @@ void compare(const std::string& path, std::span<const SharedRows> datasets,
       file.read_at(found, at);
       if (std::memcmp(found.data(), bytes.data(), bytes.size()) == 0) return;
       throw FileError(
-          fmt::format("cannot write '{}': what was written to '{}' does not read back the same, and no error "
+          fmt::format("cannot write '{}': the data written to '{}' does not read back the same, and no error "
                       "was reported: this file system loses what several machines write; choose another with "
                       "--output-dir",
                       path, datasets[d].dataset));

@@ -1,12 +1,9 @@
-// Datasets that all ranks fill together, each with its own particles' rows.
-//
-// One rank has made them (hdf5::create_dataset) and reserved their space; every rank then writes to where its
-// rows lie with the system's own calls. HDF5's collective writing would go through MPI's, which may cut a
-// write short without an error, or let a rank wait for ever for one whose write failed (Open MPI 4.1 does
-// either).
-//
-// What several ranks wrote is read back before it counts: a file system of several machines may lose what two
-// of them write next to each other. Shown by tests/parallel/files.cpp.
+// Datasets that all ranks write together, each with the rows of its own particles.
+// One rank creates them (hdf5::create_dataset) and reserves their space; every rank then writes its rows at
+// their offsets by system calls. Collective writes of HDF5 use MPI-IO, which may truncate a write without an
+// error, or leave a rank waiting forever for one whose write failed (both occur with Open MPI 4.1). Data
+// written by several ranks is read back and compared, since a distributed file system may lose adjacent
+// writes from different machines. Tested by tests/parallel/files.cpp.
 #pragma once
 
 #include <cstddef>
@@ -27,13 +24,13 @@ struct SharedRows {
   std::string dataset;  ///< its path within the file
   std::size_t bytes;    ///< of a row, in the file as in memory
   std::span<const RowBatch> batches;
-  /// Puts the rows of a batch into memory, the same ones each time.
+  /// Copies the rows of a batch into memory; repeated calls give the same rows.
   std::function<void(const RowBatch&, std::byte*)> fill;
-  /// This rank's share of the dataset's checksum_of_rows() is added to it, where there is one.
+  /// Optional: this rank's share of the dataset's checksum_of_rows() is added to it.
   std::uint64_t* checksum = nullptr;
 };
 
-/// Where the datasets are in the file. Throws FileError on every rank if it fails on any. Collective.
+/// Offsets of the datasets in the file. Throws FileError on every rank if it fails on any. Collective.
 std::vector<Extent> write_together(const std::string& path, std::span<const SharedRows> datasets,
                                    core::Reductions& ranks);
 

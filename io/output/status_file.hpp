@@ -14,15 +14,15 @@ namespace mpm::io {
 
 class StatusFile {
  public:
-  /// Starts anew without a continuation. Throws FileError. Collective.
+  /// Creates a new file without a continuation. Throws FileError. Collective.
   StatusFile(const std::string& path, const core::Model& model, const std::optional<TableContinuation>& from,
              core::Reductions& ranks);
 
-  /// One row, handed to the system when this returns. Throws FileError. Collective.
+  /// Writes one row to the system before it returns. Throws FileError. Collective.
   void add(const core::Model& model, const core::Totals& totals, core::Reductions& ranks);
 
   std::int64_t rows_added() const { return rows_; }
-  /// The rows to the disk itself. Throws FileError. Collective.
+  /// Syncs the rows to disk. Throws FileError. Collective.
   void sync(core::Reductions& ranks) { file_.sync(ranks); }
   const TableMark& mark() const { return file_.mark(); }
   const std::string& notice() const { return file_.notice(); }

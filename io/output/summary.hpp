@@ -1,5 +1,4 @@
-// Job.summary.json: how the run ended and what it reached, for programs to read; and the table of where the
-// time went, for the log.
+// Job.summary.json: status and results of the run in machine-readable form; and the timing table for the log.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace mpm::io {
 
-/// What the program knows of its own run. Seconds are of the wall clock.
+/// Status and timings of the run. Seconds are wall time.
 struct RunReport {
   std::string status;  ///< "completed", "stopped" or "failed"
   std::string reason;
@@ -22,18 +21,18 @@ struct RunReport {
   double seconds_setup = 0;
   double seconds_loop = 0;
   core::Spread output;  ///< seconds of tables, pictures and restart files, over the ranks
-  /// Per phase of the step, in its order: likewise.
+  /// Per phase of the step, in its order: seconds over the ranks.
   std::vector<std::pair<std::string, core::Spread>> phases;
   /// Sum over the steps of this run of the particles in each.
   double particle_steps = 0;
   double dissipated_by_contact = 0;  ///< energy
 };
 
-/// The text of the file; of a phase the mean over the ranks. Numbers that do not exist are null.
+/// The text of the file; phase times are means over the ranks. Undefined numbers are null.
 std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report,
                          int ranks, const MemoryUse& memory);
 
-/// Writes it as a whole, or leaves what was there. Throws FileError. Collective.
+/// Writes the file atomically. Throws FileError. Collective.
 void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,
                    const RunReport& report, core::Reductions& ranks);
 

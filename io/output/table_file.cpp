@@ -14,7 +14,7 @@ namespace mpm::io {
 
 namespace {
 
-/// The number that a row starts with; nothing if it does not.
+/// The number at the start of a row, if any.
 std::optional<std::int64_t> step_of(std::string_view row) {
   const std::size_t start = row.find_first_not_of(' ');
   if (start == std::string_view::npos) return {};
@@ -24,7 +24,7 @@ std::optional<std::int64_t> step_of(std::string_view row) {
   return error == std::errc() && whole && step >= 0 ? std::optional(step) : std::nullopt;
 }
 
-/// What a table holds up to where it is to go on.
+/// Contents of a table up to the point of continuation.
 struct Found {
   bool head = false;
   bool empty = true;
@@ -38,7 +38,8 @@ Found look_at(const std::string& path, const std::string& head, const TableConti
   std::ifstream in(path, std::ios::binary);
   std::string line;
   std::uint64_t end = 0;
-  while (std::getline(in, line) && !in.eof()) {  // a line that ends with the file was cut short
+  while (std::getline(in, line) &&
+         !in.eof()) {  // a line without a newline at the end of the file is incomplete
     found.empty = false;
     end += line.size() + 1;
     if (!found.head) {
@@ -61,16 +62,16 @@ std::string rows_in_words(const TableMark& mark) {
   return mark.rows == 0 ? "no rows" : fmt::format("{} row(s) up to step {}", mark.rows, mark.step);
 }
 
-/// What is not as the mark says.
+/// Differences from the mark.
 std::string difference(const std::string& path, const Found& found, const TableContinuation& from) {
   if (!from.mark || found.all == *from.mark) return {};
   const TableMark& expected = *from.mark;
   if (found.all.rows < expected.rows) {
-    return fmt::format("'{}' has {}, but had {} when the restart file was written: what is missing is lost",
+    return fmt::format("'{}' has {}, but had {} when the restart file was written: the missing part is lost",
                        path, rows_in_words(found.all), rows_in_words(expected));
   }
   return fmt::format(
-      "'{}' has been changed: its first {} do not have the checksum that the restart file has; its last row "
+      "'{}' has been changed: its first {} do not match the checksum in the restart file; its last row "
       "kept is of step {}, and step {} was expected",
       path, rows_in_words(expected), found.kept.step, std::min(expected.step, from.step));
 }
@@ -97,13 +98,13 @@ TableCut cut_table(const std::string& path, const std::string& head, const Table
   const std::string lost =
       from.mark && from.mark->rows > 0 ? "; it had " + rows_in_words(*from.mark) : std::string();
   if (!std::filesystem::exists(path)) {
-    if (!lost.empty()) cut.notice = fmt::format("'{}' is missing{}: it begins anew", path, lost);
+    if (!lost.empty()) cut.notice = fmt::format("'{}' is missing{}: a new file begins", path, lost);
     return cut;
   }
   const Found found = look_at(path, head, from);
   if (!found.head) {
     if (found.empty) {
-      if (!lost.empty()) cut.notice = fmt::format("'{}' is empty{}: it begins anew", path, lost);
+      if (!lost.empty()) cut.notice = fmt::format("'{}' is empty{}: a new file begins", path, lost);
       return cut;
     }
     rename_file(path, path + ".old");

@@ -1,9 +1,7 @@
-// A text table that grows by one row at a time and goes on after a restart: rows start with the step,
-// comments with '#', and the last comment before the rows names the columns.
-//
-// Every restart file carries the table's mark. A run that goes on cuts the table there and says what is not
-// as it was: rows that are missing, or that have other bytes. Limit: the comments have no checksum. Shown by
-// tests/io/output/table_file_test.cpp.
+// A text table that grows by one row at a time and continues after a restart: rows start with the step,
+// comments with '#', and the last comment before the rows names the columns. Every restart file stores the
+// table's mark. A restarted run truncates the table there and reports missing or changed rows. Limit: the
+// comments have no checksum. Tested by tests/io/output/table_file_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +13,34 @@
 
 namespace mpm::io {
 
-/// Where a table stood: its last row's step, its number of rows, and a checksum of them.
+/// State of a table: the step of its last row, its number of rows, and their checksum.
 struct TableMark {
   std::int64_t step = -1;
   std::int64_t rows = 0;
   std::uint64_t checksum = 0;
 
-  /// `row` is without the end of its line.
+  /// `row` excludes the newline.
   void add(std::int64_t row_step, std::string_view row);
   std::string text() const;
-  /// Nothing if the text is no mark's.
+  /// Nullopt if the text is not a mark.
   static std::optional<TableMark> from(const std::string& text);
   friend bool operator==(const TableMark&, const TableMark&) = default;
 };
 
-/// Up to where a run that goes on keeps a table's rows.
+/// Where a restarted run truncates a table.
 struct TableContinuation {
   std::int64_t step = 0;
-  std::optional<TableMark> mark;  ///< what the restart file says of the table; without, nothing is checked
+  std::optional<TableMark> mark;  ///< the table's mark in the restart file; without it nothing is checked
 };
 
 struct TableCut {
-  bool append = false;  ///< else the table begins anew
+  bool append = false;  ///< else a new table begins
   TableMark kept;
-  std::string notice;  ///< what the user should know; mostly empty
+  std::string notice;  ///< notice for the user; usually empty
 };
-/// Cut the table after its last row of a step up to `from.step` among those that the mark counts. A table
-/// without the line `head` is not of this run: it is renamed to `<path>.old`. On one rank. Throws FileError.
+/// Truncates the table after the last row with a step up to `from.step` among those that the mark counts. A
+/// table without the line `head` belongs to another run and is renamed to `<path>.old`. On one rank. Throws
+/// FileError.
 TableCut cut_table(const std::string& path, const std::string& head, const TableContinuation& from);
 
 class TableFile {

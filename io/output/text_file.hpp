@@ -1,4 +1,4 @@
-// A text file that grows by lines, on rank 0; the other ranks hold nothing.
+// A text file that grows by lines, on rank 0; the other ranks do nothing.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@ namespace mpm::io {
 
 class TextFile {
  public:
-  /// Opens the file on rank 0, anew or after what it holds. Throws FileError. Collective.
+  /// Opens the file on rank 0, empty or for appending. Throws FileError. Collective.
   TextFile(const std::string& path, bool append, core::Reductions& ranks);
   ~TextFile();
   TextFile(TextFile&&) = default;
 
-  /// Waits in memory until there is enough of it. Does nothing on other ranks than 0, and never fails: a full
-  /// disk is told by the next flush().
+  /// Adds text to a buffer. Does nothing on ranks other than 0, and never fails: the next flush() reports a
+  /// full disk.
   void add(std::string_view text) noexcept;
-  /// Hand what waits to the system.
+  /// Writes the buffer to the system.
   void write_out() noexcept;
   /// Throws FileError if anything could not be written since the file was opened. Collective.
   void flush(core::Reductions& ranks);
-  /// As flush(), and to the disk itself. Collective.
+  /// As flush(), and syncs to disk. Collective.
   void sync(core::Reductions& ranks);
-  /// What the file holds; 0 on other ranks than 0.
+  /// Size of the file in bytes; 0 on ranks other than 0.
   std::uint64_t bytes() const { return file_ ? file_->size() : 0; }
 
  private:

@@ -51,7 +51,7 @@ core::ColumnSet columns_for(const std::vector<Variable>& variables) {
   for (const Variable v : variables) {
     if (v == Variable::cp) set.add(Column::sound_speed);
     if (v == Variable::sigy) set.add(Column::yield_stress);
-    // All six: a strain is accumulated, and turned, as a whole.
+    // All six: a strain is accumulated and rotated as a whole.
     if (v == Variable::exx || v == Variable::eyy || v == Variable::ezz) set.add_range(Column::strain_xx, 6);
   }
   return set;

@@ -1,4 +1,4 @@
-// The words of `var` (manual, table 3.1) and what each means for a particle.
+// The output variables of `var` (manual, table 3.1) and their values for a particle.
 //
 // To add one: a name in Variable, a row in variable_table and a line in evaluate(). pres is the pressure p of
 // the equation of state, positive in compression and without the artificial viscosity; stresses are the whole
@@ -53,7 +53,7 @@ enum class Variable : int {
 
 struct VariableInfo {
   std::string_view name;
-  std::string_view dimension;  ///< in the words of core::ColumnInfo, or "energy"
+  std::string_view dimension;  ///< as in core::ColumnInfo, or "energy"
   std::string_view meaning;
   bool integer = false;
 };
@@ -94,29 +94,29 @@ inline constexpr std::array<VariableInfo, static_cast<std::size_t>(Variable::cou
 
 constexpr const VariableInfo& info_of(Variable v) { return variable_table[static_cast<std::size_t>(v)]; }
 
-/// Nothing for a word that table 3.1 does not have.
+/// Nullopt for a name that is not in table 3.1.
 std::optional<Variable> variable_of(std::string_view word);
-/// Each once, in the order given. Throws std::logic_error for an unknown word: the input was checked.
+/// Each once, in the given order. Throws std::logic_error for an unknown name, since the input was checked.
 std::vector<Variable> variables_of(const std::vector<std::string>& words);
 
 /// The column beyond ColumnSet::mechanics() that the variable is read from, if any.
 std::optional<core::Column> column_of(Variable v);
 
-/// Columns that bodies carry only because somebody wants to see them: sound speed, yield stress, accumulated
-/// strain. What a law reads back, such as damage, is the law's own to ask for.
+/// Columns that bodies carry only for output: sound speed, yield stress, accumulated strain. Laws request the
+/// state that they read back, such as damage, themselves.
 core::ColumnSet shown_only();
 /// Those of shown_only() that these variables need. The others are 0 where a body does not carry them.
 core::ColumnSet columns_for(const std::vector<Variable>& variables);
 /// Columns of every variable that the scene writes or records.
 core::ColumnSet columns_for(const core::OutputInput& output);
 
-/// The variables that a body of this layout cannot give and that are therefore 0 for it.
+/// Variables that a body of this layout cannot provide; they are written as 0.
 std::vector<Variable> absent_variables(const std::vector<Variable>& variables,
                                        const core::ColumnLayout& layout);
-/// One line per body that cannot give some of the variables, for the log.
+/// One line per body that cannot provide some of the variables, for the log.
 std::vector<std::string> absence_notices(const std::vector<Variable>& variables, const core::Model& model);
 
-/// What of a body enters its variables.
+/// Data of a body that its variables need.
 struct BodyFacts {
   int body = 0;
   int component = 1;  ///< from 1
@@ -125,8 +125,7 @@ struct BodyFacts {
 };
 BodyFacts facts_of(const core::Model& model, std::size_t body);
 
-/// The variable for the particle in `lane` of a block. Angles and rates do not occur; units are the scene's
-/// own.
+/// The variable for the particle in `lane` of a block, in the units of the scene.
 double evaluate(Variable v, const core::ConstParticle& p, const BodyFacts& facts);
 
 }  // namespace mpm::io

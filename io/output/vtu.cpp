@@ -17,7 +17,7 @@ namespace {
 /// One array of a .vtu file.
 struct Array {
   std::string name;
-  std::string type;  ///< in VTK's words
+  std::string type;  ///< VTK name
   std::size_t bytes = 4;
   int components = 1;
   Variable first = Variable::count;  ///< the first component; count: the identity
@@ -47,7 +47,7 @@ std::string element(const char* tag, const Array& a) {
                      a.components);
 }
 
-/// The part of this rank that goes into one file.
+/// The particles of this rank for one file.
 struct Piece {
   const core::Model* model = nullptr;
   std::vector<TilePlace> places;
@@ -73,7 +73,7 @@ Piece piece_of(const core::Model& model, const std::vector<std::size_t>& bodies)
   return piece;
 }
 
-/// Appended data: each array is its length in bytes, then its values, gathered to writes of some size.
+/// Appended data: each array is its length in bytes, then its values, buffered into larger writes.
 class Appended {
  public:
   explicit Appended(File& file) : file_(file) {}
@@ -92,7 +92,7 @@ class Appended {
   std::string buffer_;
 };
 
-/// Adds how many values were cut to `cut`.
+/// Adds the number of clipped values to `cut`.
 template <class T>
 void put_values(const Piece& piece, const Array& array, Appended& out, std::int64_t& cut) {
   for (const TilePlace& place : piece.places) {
@@ -135,7 +135,8 @@ std::string time_field(double time) {
       time);
 }
 
-/// Cells are vertices: cell i is point i. Adds how many values were cut to `cut`, by array, position first.
+/// Cells are vertices: cell i is point i. Adds the numbers of clipped values to `cut`, by array, position
+/// first.
 void write_piece(const std::string& path, const Piece& piece, const Array& position,
                  const std::vector<Array>& arrays, std::vector<std::int64_t>& cut) {
   std::uint64_t offset = 0;
@@ -188,7 +189,7 @@ std::string index_of_pieces(const std::string& stem, const std::vector<int>& ran
   return text + "</PUnstructuredGrid>\n</VTKFile>\n";
 }
 
-/// What a body is called in file names: its own name as far as that goes, and as often as it is unique.
+/// Name of a body in file names: its own name where that is valid and unique.
 std::string file_name_of(const core::Model& model, std::size_t body) {
   const std::string name = safe_name(model.bodies[body].name);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -197,7 +198,7 @@ std::string file_name_of(const core::Model& model, std::size_t body) {
   return name;
 }
 
-/// What xml_escaped() was given.
+/// Inverse of xml_escaped().
 std::string xml_plain(std::string text) {
   constexpr std::pair<std::string_view, char> entities[] = {
       {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&amp;", '&'}};
@@ -290,7 +291,7 @@ void VtuWriter::write_set(const std::string& stem, const std::string& name,
   for (int r = 0; r < ranks.size(); ++r) {
     if (on_rank[static_cast<std::size_t>(r)] > 0) with_piece.push_back(r);
   }
-  if (with_piece.empty()) with_piece.push_back(0);  // viewers want at least one piece
+  if (with_piece.empty()) with_piece.push_back(0);  // viewers require at least one piece
 
   together(ranks, [&] {
     if (std::ranges::find(with_piece, ranks.rank()) == with_piece.end()) return;

@@ -1,8 +1,8 @@
 // Job_vtu/: one unstructured grid of vertices per time, in pieces, one from each rank that has particles,
-// held together by a .pvtu; or one such set per body. Job.pvd lists all times and is replaced as a whole.
+// combined by a .pvtu; or one such set per body. Job.pvd lists all times and is replaced atomically.
 //
-// Arrays are appended raw, little-endian, 32-bit reals unless asked (cut as narrowing.hpp says). Point data:
-// velocity (vector), id, body and the variables asked for; velocity_0..2 are in the vector. Shown by
+// Arrays are appended raw, little-endian, 32-bit reals by default (clipped, see narrowing.hpp). Point data:
+// velocity (vector), id, body and the requested variables; velocity_0..2 are in the vector. Tested by
 // tests/io/output/vtu_test.cpp.
 #pragma once
 
@@ -20,29 +20,29 @@ namespace mpm::io {
 class VtuWriter {
  public:
   struct Settings {
-    std::string folder;  ///< where Job.pvd and the folder Job_vtu go
+    std::string folder;  ///< folder of Job.pvd and Job_vtu
     std::string job;
     bool per_body = false;
     std::vector<Variable> variables;
     bool double_precision = false;
-    /// mark() of the run that goes on, whose list is kept; start its list anew without.
+    /// mark() of the run to be continued, whose list is kept; without it a new list begins.
     std::optional<std::string> continue_from;
   };
   /// Throws FileError. Collective.
   VtuWriter(Settings settings, const core::Model& model, core::Reductions& ranks);
 
-  /// One more time. Throws FileError; what Job.pvd lists stays readable. Collective.
+  /// Writes one more time. Throws FileError; the files in Job.pvd stay readable. Collective.
   void write(const core::Model& model, core::Reductions& ranks);
 
-  /// All files to the disk itself. Throws FileError. Collective.
+  /// Syncs all files to disk. Throws FileError. Collective.
   void sync(core::Reductions& ranks);
-  /// The list, for restart files; empty on other ranks than 0.
+  /// The list, for restart files; empty on ranks other than 0.
   std::string mark() const;
-  /// Of the last time in the list; -1 if there is none.
+  /// Step of the last time in the list; -1 if there is none.
   std::int64_t last_step() const { return last_step_; }
-  /// What the user should know about files that are gone; mostly empty.
+  /// Notice about missing files; usually empty.
   const std::string& notice() const { return notice_; }
-  /// What the last write() cut for the first time; mostly empty. The same on all ranks.
+  /// Variables that the last write() clipped for the first time; usually empty. The same on all ranks.
   const std::string& warning() const { return warning_; }
   const CutValues& cut_values() const { return cut_; }
 
@@ -64,7 +64,7 @@ class VtuWriter {
   std::int64_t last_step_ = -1;
   std::vector<std::string> unsynced_;  ///< files of this rank that may not be on the disk yet
   std::string notice_;
-  std::vector<std::int64_t> cut_now_;  ///< by array, position first: of the picture that is being written
+  std::vector<std::int64_t> cut_now_;  ///< clipped values of the present write by array, position first
   CutValues cut_;
   std::string warning_;
 };

@@ -254,7 +254,7 @@ RestartExtra read_extra(hid_t file) {
   return extra;
 }
 
-/// The rows that the tiles promise must be those that the bodies have.
+/// Checks that the row counts of the tiles agree with those of the bodies.
 void check_counts(const RestartContents& c) {
   std::vector<std::int64_t> particles(c.bodies.size());
   for (const TileRecord& r : c.tiles) {

@@ -1,4 +1,4 @@
-// What a restart file holds, apart from the particles' rows: read and written by one rank.
+// Contents of a restart file except the particles' rows: read and written by one rank.
 //
 //   /                attributes: provenance, clock, initial energy, next identity
 //   /scene           attributes path, job; dataset `text`: the bytes of the .xmp
@@ -7,7 +7,7 @@
 //   /cohorts       n x 4: brick key, body, particles, checksum of their rows
 //   /bodies/<n>      attributes; dataset `particles`: particles x columns, in the order of /cohorts
 //   /extra           datasets tracked, names (lines)
-//   /extra/marks     where the run's other files stood: a dataset of bytes for each of the names
+//   /extra/marks     marks of the run's other files: a dataset of bytes for each of the names
 #pragma once
 
 #include <string>
@@ -48,21 +48,21 @@ struct RestartContents {
   RestartExtra extra;
 };
 
-/// What `model` and the sums of its ledger over the ranks make up. Collective.
+/// The contents from `model` and the sums of its ledger over the ranks. Collective.
 RestartContents contents_of(const core::Model& model, const RestartExtra& extra, const ParticleOrder& order,
                             core::Reductions& ranks);
 
-/// Make the file, with room for the particles' rows. Returns where they go. On this rank alone.
+/// Creates the file with space for the particles' rows. Returns their offsets. On this rank only.
 std::vector<Extent> write_contents(const std::string& path, const RestartContents& contents,
                                    const core::Scene& scene);
 
-/// Throws FileError. On this rank alone.
+/// Throws FileError. On this rank only.
 RestartContents read_contents(const std::string& path);
 
 /// The dataset of a body's rows, below the file.
 std::string rows_name(std::size_t body);
 
-/// Room that the file needs, generously.
+/// Upper bound of the file's size.
 std::uint64_t expected_bytes(const RestartContents& contents);
 
 }  // namespace mpm::io

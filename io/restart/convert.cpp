@@ -11,7 +11,7 @@ namespace mpm::io {
 
 namespace {
 
-/// Stands in for a material of which only the name and the density matter.
+/// Placeholder for a material of which only the name and the density are used.
 class StoredMaterial final : public core::ConstitutiveModel {
  public:
   StoredMaterial(std::string name, double density) : name_(std::move(name)), density_(density) {}
@@ -33,7 +33,7 @@ T& at_grown(std::vector<T>& values, int i) {
   return values[static_cast<std::size_t>(i)];
 }
 
-/// A model that the file fits: its own bodies, grid and names.
+/// A model with the bodies, grid and names of the file.
 core::Model model_for(const RestartContents& contents) {
   core::Model model;
   auto scene = std::make_shared<core::Scene>();

@@ -44,8 +44,8 @@ std::string in_folder(const std::string& folder, const std::string& name) {
   return folder.empty() ? name : folder + "/" + name;
 }
 
-/// When the job's files named for it were written, the youngest first; without those of other jobs and those
-/// that cannot be read.
+/// Times at which the restart files named for the job were written, newest first; without files of other jobs
+/// and unreadable ones.
 std::vector<std::pair<std::int64_t, std::string>> readable(const std::string& folder,
                                                            const std::string& job) {
   std::vector<std::pair<std::int64_t, std::string>> files;
@@ -55,7 +55,7 @@ std::vector<std::pair<std::int64_t, std::string>> readable(const std::string& fo
     try {
       const Guard guard = read_guard(path);
       if (guard.job == 0 || guard.job == job_hash(job)) files.emplace_back(guard.written, path);
-    } catch (const FileError&) {}  // counts as none
+    } catch (const FileError&) {}  // ignored
   }
   std::stable_sort(files.begin(), files.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

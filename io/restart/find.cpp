@@ -20,11 +20,11 @@ std::optional<std::string> find_newest_restart(const std::string& folder, const 
     try {
       verify_restart(path, ranks);
       return path;
-    } catch (const FileError& e) { notices.push_back(fmt::format("passed over: {}", e.what())); }
+    } catch (const FileError& e) { notices.push_back(fmt::format("skipped: {}", e.what())); }
   }
   std::istringstream foreign(ranks.gather(others).front());
   for (std::string path; std::getline(foreign, path);)
-    notices.push_back(fmt::format("passed over: the restart file '{}' is of another job", path));
+    notices.push_back(fmt::format("skipped: the restart file '{}' belongs to another job", path));
   return std::nullopt;
 }
 

@@ -82,7 +82,7 @@ class Fitting {
 
   std::vector<int> sources(const BodyRecord& record, const core::Body& body,
                            const core::SourceLocation& where) {
-    // What the law reads back cannot start at zero; what is only shown can.
+    // State that a law reads back cannot start at zero; output-only columns can.
     core::UpdateOptions options = model_.options;
     options.keep_strain = false;
     core::ColumnSet needed = core::ColumnSet::mechanics();
@@ -113,7 +113,7 @@ class Fitting {
                  missing));
     }
     if (!started.empty()) {
-      notices_.push_back(fmt::format("body '{}': {} start at zero, for the restart file does not have them",
+      notices_.push_back(fmt::format("body '{}': {} start at zero, since the restart file does not have them",
                                      record.name, started));
     }
     if (!dropped.empty()) {
@@ -128,7 +128,7 @@ class Fitting {
   std::vector<std::string>& notices_;
   core::ErrorList wrong_;
   std::unordered_map<std::string_view, std::size_t> numbers_;  ///< of the model's bodies, by name
-  /// The scene's own words on each body, whether it takes part or not.
+  /// The scene's input of each body, whether it takes part or not.
   std::unordered_map<std::string_view, const core::BodyInput*> inputs_;
 };
 

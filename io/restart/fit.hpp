@@ -17,8 +17,8 @@ struct Fit {
         source;  ///< for each column of the model's layout: its place in the file's rows, or -1 for 0
     std::size_t file_columns = 0;
   };
-  std::vector<std::optional<Body>> bodies;  ///< of the file; nothing for those that no longer take part
-  std::vector<std::size_t> new_bodies;      ///< of the model, that the file does not have
+  std::vector<std::optional<Body>> bodies;  ///< of the file; nullopt for those that no longer take part
+  std::vector<std::size_t> new_bodies;      ///< of the model; missing in the file
 
   const Body* of(const TileRecord& record) const {
     const auto& body = bodies[static_cast<std::size_t>(record.body)];
@@ -26,7 +26,7 @@ struct Fit {
   }
 };
 
-/// Throws InputErrors with every difference that cannot be lived with; adds to `notices` those that can.
+/// Throws InputErrors with all incompatible differences; adds the acceptable ones to `notices`.
 Fit fit_to_model(const RestartContents& contents, const core::Model& model,
                  std::vector<std::string>& notices);
 

@@ -15,7 +15,7 @@ namespace mpm::io {
 namespace {
 
 constexpr std::string_view magic("mpm-restart\r\n\x1a\0\0", 16);
-constexpr std::size_t head_bytes = 64;                         // magic and what stands before the extents
+constexpr std::size_t head_bytes = 64;                         // magic and the fields before the extents
 constexpr std::size_t tail_bytes = 2 * sizeof(std::uint64_t);  // the job after the extents, the checksum
 constexpr std::size_t smallest_block = 512;
 constexpr std::size_t bytes_at_once = std::size_t{1} << 20;
@@ -96,7 +96,7 @@ Guard decode(const File& file, const std::string& path, std::size_t& block_bytes
   const auto format = take<std::uint32_t>(block, at);
   block_bytes = take<std::uint32_t>(block, at);
   if (!std::has_single_bit(block_bytes) || block_bytes < smallest_block || block_bytes > size) {
-    damaged(path, "its first block gives itself an impossible length");
+    damaged(path, "its first block states an impossible length");
   }
   block.resize(block_bytes);
   file.read_at(std::as_writable_bytes(std::span(block)), 0);

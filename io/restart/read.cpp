@@ -19,7 +19,7 @@ bool same_grid(const core::GridGeometry& a, const core::GridGeometry& b) {
   return a.origin == b.origin && a.cell == b.cell && a.cells == b.cells;
 }
 
-/// The share of all records that a rank handles when nobody owns anything yet: about as many particles each.
+/// The records that a rank reads before bricks have owners: about equal numbers of particles per rank.
 std::vector<std::size_t> share_of(const RestartContents& contents, const core::Reductions& ranks) {
   std::uint64_t all = 0;
   for (const TileRecord& r : contents.tiles) all += r.particles;
@@ -37,13 +37,13 @@ std::vector<std::size_t> share_of(const RestartContents& contents, const core::R
   return mine;
 }
 
-/// What takes one row of the file to a row of the model's body.
+/// Maps a row of the file to a row of the model's body.
 void convert(const double* row, const std::vector<int>& source, std::vector<double>& out) {
   out.resize(source.size());
   for (std::size_t c = 0; c < source.size(); ++c) out[c] = source[c] < 0 ? 0.0 : row[source[c]];
 }
 
-/// Book what the bodies held that no longer take part.
+/// Records as removed the contents of bodies that no longer take part.
 void book_removed(const RestartContents& contents, const Fit& fit, const std::string& path,
                   core::Model& model, core::Reductions& ranks) {
   std::vector<std::size_t> removed;
@@ -69,7 +69,7 @@ void book_removed(const RestartContents& contents, const Fit& fit, const std::st
   });
 }
 
-/// The bricks of the file as they were.
+/// Restores the bricks of the file.
 void read_bricks(const std::string& path, const RestartContents& contents, const Fit& fit, core::Model& model,
                  core::Communication& communication) {
   core::Reductions& ranks = communication.reductions;
@@ -101,7 +101,7 @@ void read_bricks(const std::string& path, const RestartContents& contents, const
       }
       brick.tiles.push_back(std::move(tile));
     });
-    // The scene may number bodies otherwise than the file.
+    // The scene may number bodies differently from the file.
     for (core::Brick& brick : model.grid->bricks()) {
       std::sort(brick.tiles.begin(), brick.tiles.end(),
                 [](const core::ParticleTile& a, const core::ParticleTile& b) { return a.body < b.body; });
@@ -124,8 +124,7 @@ void refuse_outside(std::int64_t outside, const std::string& first, const core::
                   outside, example));
 }
 
-/// Particles to wherever the new grid has them; each brick in the order of cells and identities, as at a
-/// start.
+/// Distributes particles on a new grid; each brick in the order of cells and identities, as in a new run.
 void read_particles(const std::string& path, const RestartContents& contents, const Fit& fit,
                     core::Model& model, core::Communication& communication) {
   core::Reductions& ranks = communication.reductions;
@@ -172,7 +171,7 @@ void read_particles(const std::string& path, const RestartContents& contents, co
   core::arrange_blocks(model);
 }
 
-/// The ledger of all ranks go on at rank 0.
+/// The ledger of all ranks continues on rank 0.
 void restore_ledger(const RestartContents& contents, const Fit& fit, core::Model& model,
                     const core::Reductions& ranks) {
   const bool keeper = ranks.rank() == 0;
@@ -214,8 +213,7 @@ RestartResult read_restart(const std::string& path, core::Model& model, core::Co
   if (same_grid(contents.grid, model.grid->geometry())) {
     read_bricks(path, contents, fit, model, communication);
   } else {
-    result.notices.push_back(
-        "the grid is another than that of the restart file: particles are dealt out anew");
+    result.notices.push_back("the grid differs from that of the restart file: particles are redistributed");
     read_particles(path, contents, fit, model, communication);
   }
   result.extra = std::move(contents.extra);

@@ -1,9 +1,8 @@
-// Job_<step>.pe: the whole state of a run in one HDF5 file, readable on any number of ranks, from which the
-// run goes on with the same bits.
-//
-// The file holds its scene, so it needs no other. It is made under the name `....part`, checked by checksums
-// over every byte, and gets its own name when it is complete; the newest two of a job are kept. guard.hpp
-// describes the first block of the file, contents.hpp the rest. Shown by tests/io/restart.
+// Job_<step>.pe: the complete state of a run in one HDF5 file, from which the run continues bitwise
+// identically on any number of ranks. The file contains its scene and is self-contained. It is written under
+// the name `....part`, protected by checksums of every byte, and renamed when complete; the newest two of a
+// job are kept. guard.hpp describes the first block of the file, contents.hpp the rest. Tested by
+// tests/io/restart.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +18,11 @@
 
 namespace mpm::io {
 
-/// What a restart file carries beside the model.
+/// Contents of a restart file in addition to the model.
 struct RestartExtra {
-  std::string scene_text;              ///< the bytes of the .xmp; needed on rank 0 alone
+  std::string scene_text;              ///< the bytes of the .xmp; needed on rank 0 only
   std::vector<std::uint64_t> tracked;  ///< HistoryFile::tracked()
-  /// Where the run's other files stood, in the words of those who write them; needed on rank 0 alone.
+  /// Marks of the run's other files, in the format of their writers; needed on rank 0 only.
   std::map<std::string, std::string> marks;
 };
 
@@ -33,46 +32,44 @@ std::string restart_path(const std::string& folder, const std::string& job, std:
 std::string job_of_restart(const std::string& path);
 
 /// Writes the state, then removes all but the newest two restart files of the job. Returns the path. On
-/// failure the older files are as they were. With the file's name the run's point of return moves: what goes
-/// on from it does not write again must be on the disk before. Throws FileError. Collective.
+/// failure the older files are unchanged. Output that a run restarted from this file does not write again
+/// must be on disk before. Throws FileError. Collective.
 std::string write_restart(const std::string& folder, const std::string& job, const core::Model& model,
                           const RestartExtra& extra, core::Reductions& ranks);
 
 /// The input that a restart file was made from.
 struct RestartScene {
   std::string text;  ///< the bytes of the .xmp
-  std::string path;  ///< of the .xmp when it was read
+  std::string path;  ///< path of the .xmp when it was read
   std::string job_name;
 };
-/// Throws FileError. On this rank alone.
+/// Throws FileError. On this rank only.
 RestartScene read_restart_scene(const std::string& path);
 
 struct RestartResult {
-  RestartExtra extra;  ///< without the scene's text
-  std::vector<std::size_t>
-      new_bodies;  ///< numbers of bodies that the file does not have; left without particles
-  std::vector<std::string> notices;  ///< what the user should know; the same on all ranks
+  RestartExtra extra;                   ///< without the scene's text
+  std::vector<std::size_t> new_bodies;  ///< indices of bodies missing in the file; left without particles
+  std::vector<std::string> notices;     ///< notices for the user; the same on all ranks
 };
 
-/// Fill a model whose bodies and grid are prepared, but hold nothing: particles, clock, ledger. On the grid
-/// that the file was written with, the state is the same to the last bit; on another, particles are dealt out
-/// anew. A body that is not in the model must be deactivated in its scene: what it held is booked as removed.
-/// Throws FileError for a file that is damaged or cannot be read, InputErrors for a scene that does not fit
-/// it. Collective.
+/// Fills a model with prepared but empty bodies and grid: particles, clock, ledger. On the grid of the file
+/// the state is bitwise identical; on another grid the particles are redistributed. A body that is not in the
+/// model must be deactivated in its scene; its contents are recorded as removed. Throws FileError for a
+/// damaged or unreadable file, InputErrors for an incompatible scene. Collective.
 RestartResult read_restart(const std::string& path, core::Model& model, core::Communication& communication);
 
-/// Check every byte. Throws FileError. Collective.
+/// Checks every byte. Throws FileError. Collective.
 void verify_restart(const std::string& path, core::Reductions& ranks);
 
-/// The file of the job that was written last and is undamaged, whatever its own name: the job's name in it
-/// counts. `notices` says which ones were passed over. Collective.
+/// The newest undamaged restart file of the job, identified by the job's name in the file, not by the file's
+/// name. `notices` lists the files skipped. Collective.
 std::optional<std::string> find_newest_restart(const std::string& folder, const std::string& job,
                                                core::Reductions& ranks, std::vector<std::string>& notices);
 
-/// state_hash() of the model that the file was written from. On this rank alone.
+/// state_hash() of the model in the file. On this rank only.
 std::uint64_t restart_state_hash(const std::string& path);
 
-/// What -h5pt does: the particles of a restart file as an .h5part file of one time. Collective.
+/// For -h5pt: writes the particles of a restart file to an .h5part file of one time. Collective.
 void restart_to_h5part(const std::string& path, const std::string& h5part,
                        const std::vector<Variable>& variables, bool double_precision,
                        core::Communication& communication);

@@ -11,7 +11,7 @@ std::uint64_t bytes_of(const RestartContents& contents, const TileRecord& record
   return sizeof(double) * body.columns.size() * record.particles;
 }
 
-/// Where the rows of each body begin.
+/// Offsets of the rows of each body.
 std::vector<std::uint64_t> begins_of_bodies(const std::string& path, const RestartContents& contents) {
   const hdf5::Handle file = hdf5::open_file(path, hdf5::Access::read);
   std::vector<std::uint64_t> begins;

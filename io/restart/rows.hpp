@@ -1,4 +1,4 @@
-// The particles' rows of a restart file, read by one rank in pieces of bounded memory and checked on the way.
+// The particles' rows of a restart file, read and checked by one rank in pieces of bounded memory.
 #pragma once
 
 #include <string>
@@ -15,11 +15,11 @@ class RowReader {
  public:
   RowReader(const std::string& path, const RestartContents& contents);
 
-  /// The next records of `wanted`, which ascends, from number `first` on: as many as fit into the memory of a
-  /// piece. Their rows follow each other in rows(). Returns the number of records.
+  /// Reads the next records of `wanted`, in ascending order, from number `first` on: as many as fit into one
+  /// piece. Their rows are contiguous in rows(). Returns the number of records.
   std::size_t read(const std::vector<std::size_t>& wanted, std::size_t first);
   const double* rows() const { return rows_.data(); }
-  /// Throws FileError unless the rows are as they were written.
+  /// Throws FileError if the rows fail their checksums.
   void check(const TileRecord& record, const double* rows) const;
 
  private:
@@ -30,7 +30,7 @@ class RowReader {
   std::vector<double> rows_;
 };
 
-/// f(record, its rows) for the records of these numbers, ascending. Throws FileError. On this rank alone.
+/// f(record, its rows) for the records of these numbers, ascending. Throws FileError. On this rank only.
 template <class F>
 void for_each_record(const std::string& path, const RestartContents& contents,
                      const std::vector<std::size_t>& wanted, F f) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t bytes_at_once = std::size_t{8} << 20;
 
-/// The file without its rows, and the space for them.
+/// Creates the file without its rows, and reserves their space.
 std::vector<Extent> make_room(const std::string& part, const RestartContents& contents,
                               const core::Scene& scene) {
   // Tried before anything is written.
@@ -34,7 +34,7 @@ void fill(const core::Model& model, const RowBatch& batch, int columns, double* 
 void write_all_rows(const std::string& part, const ParticleOrder& order, const core::Model& model,
                     core::Reductions& ranks) {
   const std::size_t bodies = model.bodies.size();
-  std::vector<ParticleOrder> of_body(bodies);  // so that each body looks at no other's tiles
+  std::vector<ParticleOrder> of_body(bodies);  // so that each body visits only its own tiles
   for (const TilePlace& place : order.mine) {
     const core::Brick& brick = model.grid->brick(place.slot);
     const int body = brick.tiles[static_cast<std::size_t>(place.tile)].body;

@@ -105,7 +105,7 @@ TEST_CASE("faults about a path", "[path]") {
   CHECK(fault("uniaxial_stress stress 1") ==
         "path \"uniaxial_stress stress 1\": a leg to a stress needs a time (or a rate of the stress)");
   CHECK(fault("uniaxial_stress 0.1 stress 1 time 1") ==
-        "path \"uniaxial_stress 0.1 stress 1 time 1\": ends at a strain or at a stress, not at both");
+        "path \"uniaxial_stress 0.1 stress 1 time 1\": ends at a strain or at a stress, not both");
   CHECK(fault("hydrostatic 0.1 confining 1") ==
         "path \"hydrostatic 0.1 confining 1\": only triaxial and biaxial have a confining pressure");
   CHECK(
@@ -120,10 +120,11 @@ TEST_CASE("faults about a path", "[path]") {
   CHECK(fault("mixed 1 time 1") ==
         "path \"mixed 1 time 1\": is written: mixed e_xx=0.01 s_yy=-10 ... time T");
   CHECK(fault("mixed e_xx=1 s_xx=2 time 1") == "path \"mixed e_xx=1 s_xx=2 time 1\": xx is prescribed twice");
-  CHECK(fault("mixed v_xx=1 time 1") ==
-        "path \"mixed v_xx=1 time 1\": 'v_xx' is no component; e_xx is a strain, s_xx a stress, of xx, yy, "
-        "zz, xy, "
-        "yz, xz");
+  CHECK(
+      fault("mixed v_xx=1 time 1") ==
+      "path \"mixed v_xx=1 time 1\": 'v_xx' is not a component; e_xx is a strain, s_xx a stress, of xx, yy, "
+      "zz, xy, "
+      "yz, xz");
   CHECK(fault("hold 5") == "path \"hold 5\": is written: hold time T");
   CHECK(fault("table") == "path \"table\": is written: table FILE");
   CHECK(fault("table none.csv") == "table none.csv: cannot be read");
@@ -140,8 +141,8 @@ TEST_CASE("tables of deformation gradients", "[path]") {
   CHECK(said("t,F11\n0,1,0,0,0,1,0,0,0,1\n1 1 0.5 0 0 1 0 0 0 1\n") == "none");
   CHECK(said("0,1,0,0,0,1,0,0,0,1\n") == ": fewer than two rows of numbers");
   CHECK(said("0,1,0,0,0,1,0,0,0\n") == ", line 1: 9 numbers, expected time and nine of F");
-  CHECK(said("0,1,0,0,0,x,0,0,0,1\n") == ", line 1: 'x' is no number");
-  CHECK(said("0,1,0,0,0,1,0,0,0,1\n0,1,0,0,0,1,0,0,0,1\n") == ", line 2: the time does not grow");
+  CHECK(said("0,1,0,0,0,x,0,0,0,1\n") == ", line 1: 'x' is not a number");
+  CHECK(said("0,1,0,0,0,1,0,0,0,1\n0,1,0,0,0,1,0,0,0,1\n") == ", line 2: the time does not increase");
   CHECK(said("0,1,0,0,0,-1,0,0,0,1\n") == ", line 1: the determinant of F is not positive");
 }
 

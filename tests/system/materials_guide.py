@@ -47,7 +47,7 @@ class Guide(Case):
             self.assertIn(printed, GUIDE)
         rate_constant = {name: (stress[name] / stress["slow"] - 1) / math.log(1000) for name in ("fast", "adiabatic")}
         self.assertIn(f"= {rate_constant['fast']:.4f}.", GUIDE)
-        self.assertIn(f"come out as {rate_constant['adiabatic']:.4f}", GUIDE)
+        self.assertIn(f"would give C = {rate_constant['adiabatic']:.4f}", GUIDE)
         self.assertIn(f"warms by {temperature - 293:.0f} K", GUIDE)
 
         # The picture is well-formed, with its three curves and the 21 measured points.

@@ -62,7 +62,7 @@ class Conversion(Case):
         for arguments, message in (((), "--fc is required"),
                                    (("--fc", -1), "--fc: -1 is not a number greater than 0"),
                                    (("--fc", "strong"), "strong is not a number greater than 0"),
-                                   (("--fc", 48, "--fracture-strain", 0.01), "D1 needs --tension besides"),
+                                   (("--fc", 48, "--fracture-strain", 0.01), "D1 needs --tension as well"),
                                    (("--fc", 48, "--young", 3e4), "two of --young, --poisson, --bulk and --shear"),
                                    (("--fc", 48, "--young", 100, "--shear", 10), "a Poisson's ratio of 4"),
                                    (("--fc", 48, "--tensile", 4), "--tensile")):

@@ -237,7 +237,7 @@ class Damaged(Files):
                     self.assertIn(f"from {self.old}", outcome.out)
                     # A file whose very head is gone is not known to be a newer one.
                     if outcome.complaint:
-                        self.assertRegex(outcome.complaint, rf"^passed over: .*{self.new.name}")
+                        self.assertRegex(outcome.complaint, rf"^skipped: .*{self.new.name}")
 
     def test_all_damaged(self):
         for path in (self.old, self.new):

@@ -105,7 +105,7 @@ class Jobs(Case):
         for path in self.own:
             path.unlink()
         outcome = self.run_in("out", [self.out / "case.pe"], code=FILE_ERROR)
-        self.assertRegex(outcome.complaint, "case_900.pe' is of another job")
+        self.assertRegex(outcome.complaint, "case_900.pe' belongs to another job")
 
     def test_another_jobs_file_is_not_removed(self):
         self.run_in("out", [self.folder / "case.xmp"])

@@ -287,7 +287,7 @@ class Restart(Case):
             folder = f"in{ranks}"
             outcome = self.run_in(folder, [early, "-rt", whole], ranks=ranks, threads=threads)
             outcomes.append(outcome.state)
-            self.assertIn("body 'right' was not in the restart file: its 768 particles come in now", outcome.out)
+            self.assertIn("body 'right' was not in the restart file: its 768 particles are added now", outcome.out)
             found = _mpm.summary(self.folder / folder, "whole")
             self.assertEqual([body["particles"] for body in found["bodies"]], [768, 768])
             self.assertLess(abs(found["energy"]["relative_drift"]), 0.05, outcome)

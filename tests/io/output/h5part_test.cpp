@@ -263,5 +263,5 @@ TEST_CASE("A file with another history than the restart file's is put aside") {
     series.write(writer, 1);
     series.write(writer, 2);
   }
-  CHECK_THAT(series.go_on().notice(), Catch::Contains("not the file that goes with the restart file"));
+  CHECK_THAT(series.go_on().notice(), Catch::Contains("does not belong to the restart file"));
 }

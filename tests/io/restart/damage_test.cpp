@@ -146,7 +146,7 @@ TEST_CASE("The newest restart file that is whole is found") {
   CHECK(io::find_newest_restart(folder.path(), "small", solo, notices) == folder / "small_10.pe");
   REQUIRE(notices.size() == 1);
   CHECK_THAT(notices[0],
-             Catch::Contains("passed over: the restart file") && Catch::Contains("small_20.pe' is damaged"));
+             Catch::Contains("skipped: the restart file") && Catch::Contains("small_20.pe' is damaged"));
 }
 
 TEST_CASE("On a full disk the last good restart file stays, and nothing half-written") {

@@ -109,7 +109,7 @@ TEST_CASE("What a restart file shows to other programs") {
   CHECK(io::hdf5::shape_of(io::hdf5::open_dataset(bar, "particles")) == std::vector<hsize_t>{300, 21});
 }
 
-TEST_CASE("On another grid the particles are dealt out anew") {
+TEST_CASE("On another grid the particles are redistributed") {
   const Folder folder("restart_grid");
   core::SoloCommunication solo;
   const core::Model model = small_model(solo);
@@ -119,7 +119,7 @@ TEST_CASE("On another grid the particles are dealt out anew") {
   core::Model copy = prepared_model(small_scene(), larger);
   const io::RestartResult result = io::read_restart(path, copy, solo);
   REQUIRE(result.notices.size() == 1);
-  CHECK_THAT(result.notices[0], Catch::Contains("particles are dealt out anew"));
+  CHECK_THAT(result.notices[0], Catch::Contains("particles are redistributed"));
   CHECK(copy.local_particles() == 601);
   const core::Totals before = core::compute_totals(model, solo), after = core::compute_totals(copy, solo);
   CHECK(after.kinetic == Approx(before.kinetic).epsilon(1e-14));
@@ -208,7 +208,7 @@ TEST_CASE("What is only shown may start at zero or go") {
   const io::RestartResult result = io::read_restart(path, copy, solo);
   REQUIRE(result.notices.size() == 6);
   CHECK(result.notices[0] ==
-        "body 'bar': yield_stress start at zero, for the restart file does not have them");
+        "body 'bar': yield_stress start at zero, since the restart file does not have them");
   CHECK(result.notices[1] == "body 'bar': sound_speed of the restart file are not needed any more");
   for (const core::ParticleBlock& block : core::blocks_of(copy)) {
     const core::ColumnLayout& layout = *block.layout;
