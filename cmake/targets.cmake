@@ -1,8 +1,12 @@
-# mpm_library(core LINK dep...): library mpm_core, alias mpm::core, from every source below the current folder and
-# SOURCES; without any, a library of headers. Not installed by itself: libmpm (apps/CMakeLists.txt) holds them all.
+# mpm_library(core [EXCLUDE regex] LINK dep...): library mpm_core, alias mpm::core, from every source below the current
+# folder that does not match EXCLUDE, and SOURCES; without any, a library of headers. Not installed by itself: libmpm
+# (apps/CMakeLists.txt) holds them all.
 function(mpm_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "EXCLUDE" "SOURCES;LINK")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  if(arg_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX ${arg_EXCLUDE})
+  endif()
   list(APPEND sources ${arg_SOURCES})
   set(target mpm_${name})
   if(sources)

@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/.."
 ranks=${1:-2}
 
-sh cmake/build.sh release mpm_run mpm_check mpm_point
+sh cmake/build.sh release mpm_run mpm_check
 
 # Root in a container and more ranks than cores are normal here. Single-copy messages need ptrace permission, which
 # containers lack.
