@@ -149,7 +149,7 @@ class Consumer(unittest.TestCase):
             "StrengthModel 'IsoHarden': a built-in law has this name: choose another",
             "EquationOfState 'Bare', parameter 'A1': no meaning: add .meaning, one line for the keyword reference",
             "EquationOfState 'Bare', parameter 'A1': no range: add .min, .max or both, or .any_number = true if every "
-            "finite number makes sense"])
+            "finite number is valid"])
 
 
 parser = argparse.ArgumentParser()

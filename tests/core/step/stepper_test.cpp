@@ -228,7 +228,7 @@ TEST_CASE("A run that cannot go on says which particle is to blame") {
   using Catch::Contains;
   const double nan = std::nan("");
   CHECK_THAT(failure([&](const ColumnLayout& l, double* lane) { lane[l.offset(Column::position_y)] = nan; }),
-             Contains("step 1") && Contains("particle ") && Contains("not a number"));
+             Contains("step 1") && Contains("particle ") && Contains("not finite"));
   CHECK_THAT(
       failure([&](const ColumnLayout& l, double* lane) { lane[l.offset(Column::internal_energy)] = nan; }),
       Contains("particle 17 of body \"body\"") && Contains("internal_energy=nan"));
