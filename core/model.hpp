@@ -73,6 +73,13 @@ struct Model {
   }
 };
 
+/// Number of columns of each body's particles.
+inline std::vector<int> columns_of(const Model& model) {
+  std::vector<int> columns;
+  for (const Body& b : model.bodies) columns.push_back(b.pool->layout().columns());
+  return columns;
+}
+
 /// The pools of the model's bodies, each once, in the order of the bodies.
 inline std::vector<BlockPool*> pools_of(const Model& model) {
   std::vector<BlockPool*> pools;

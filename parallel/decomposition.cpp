@@ -107,7 +107,7 @@ std::optional<Graph> graph_of(std::span<const BrickCount> bricks, const core::No
       if (n == core::self_index) continue;
       const BrickCoord offset = core::neighbour_offset(n);
       const std::int32_t other = index.owner(b.brick + offset);
-      if (other == BrickTable::nobody) continue;
+      if (other == BrickTable::no_owner) continue;
       graph.adjacent.push_back(other);
       graph.shared.push_back(shared_nodes(shape, offset));
     }

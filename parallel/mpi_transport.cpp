@@ -24,7 +24,7 @@ constexpr int tag_migrate = 3;
 }
 
 std::int32_t existing(std::int32_t owner, const MigrationBuffer::Head& head) {
-  if (owner == core::BrickDirectory::nobody) throw_lost(head, "does not exist");
+  if (owner == core::BrickDirectory::no_owner) throw_lost(head, "does not exist");
   return owner;
 }
 

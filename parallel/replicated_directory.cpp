@@ -134,7 +134,7 @@ std::int32_t ReplicatedDirectory::owner_of_new(const BrickGrid& grid, BrickCoord
   std::size_t ranks = 0;
   for_each_neighbour(b, [&](BrickCoord n) {
     const std::int32_t owner = table_.owner(n);
-    if (owner == nobody) return;
+    if (owner == no_owner) return;
     std::size_t i = 0;
     while (i < ranks && shared[i].first != owner) ++i;
     if (i == ranks) shared[ranks++] = {owner, 0};

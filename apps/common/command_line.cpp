@@ -27,9 +27,11 @@ struct CommandLine::Parser {
   CLI::App app;
 
   template <class T>
-  CLI::Option* add(const std::string& names, T& value, const std::string& help, Range range = Range::any) {
+  CLI::Option* add(const std::string& names, T& value, const std::string& help, Range range = Range::any,
+                   bool show_default = false) {
     CLI::Option* option = app.add_option(names, value, help);
     if (range == Range::positive) option->check(more_than_zero());
+    if (show_default) option->capture_default_str();
     return option;
   }
 };
@@ -40,8 +42,7 @@ CommandLine::~CommandLine() = default;
 
 void CommandLine::option(const std::string& names, std::string& value, const std::string& help,
                          bool show_default) {
-  CLI::Option* option = parser_->add(names, value, help);
-  if (show_default) option->capture_default_str();
+  parser_->add(names, value, help, Range::any, show_default);
 }
 
 void CommandLine::option(const std::string& names, std::optional<std::string>& value,
@@ -57,8 +58,7 @@ void CommandLine::option(const std::string& names, std::vector<std::string>& val
 
 void CommandLine::option(const std::string& names, int& value, const std::string& help, Range range,
                          bool show_default) {
-  CLI::Option* option = parser_->add(names, value, help, range);
-  if (show_default) option->capture_default_str();
+  parser_->add(names, value, help, range, show_default);
 }
 
 void CommandLine::option(const std::string& names, std::optional<long>& value, const std::string& help,
@@ -68,8 +68,7 @@ void CommandLine::option(const std::string& names, std::optional<long>& value, c
 
 void CommandLine::option(const std::string& names, double& value, const std::string& help, Range range,
                          bool show_default) {
-  CLI::Option* option = parser_->add(names, value, help, range);
-  if (show_default) option->capture_default_str();
+  parser_->add(names, value, help, range, show_default);
 }
 
 void CommandLine::option(const std::string& names, std::optional<double>& value, const std::string& help,

@@ -17,7 +17,7 @@ struct BrickCount {
 
 class BrickDirectory {
  public:
-  static constexpr std::int32_t nobody = -1;
+  static constexpr std::int32_t no_owner = -1;
 
   virtual ~BrickDirectory() = default;
 

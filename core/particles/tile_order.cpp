@@ -79,6 +79,19 @@ void sort_by_identity(BlockPool& pool, ParticleTile& tile) {
   reorder(pool, tile, order);
 }
 
+void sort_tiles(Model& model, const std::vector<bool>& wanted) {
+  BrickGrid& grid = *model.grid;
+  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
+    Brick& brick = grid.brick(static_cast<Slot>(s));
+    for (ParticleTile& tile : brick.tiles) {
+      if (!wanted.empty() && !wanted[static_cast<std::size_t>(tile.body)]) continue;
+      BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
+      sort_by_identity(pool, tile);
+      sort_by_cell(grid, brick.coord, pool, tile);
+    }
+  });
+}
+
 void insert_particles(Model& model, const MigrationBuffer& particles) {
   struct Arrival {
     Slot slot;

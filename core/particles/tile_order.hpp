@@ -18,6 +18,10 @@ void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Part
 /// Sorts the particles of a tile by identity.
 void sort_by_identity(BlockPool& pool, ParticleTile& tile);
 
+/// Sorts the tiles of all bodies, or of those for which `wanted` is true, by cell and, within a cell, by
+/// identity, independently of the order of arrival.
+void sort_tiles(Model& model, const std::vector<bool>& wanted = {});
+
 /// Stores every brick's blocks consecutively. Without it, particles that arrived in pieces and by several
 /// threads are scattered in memory: the passes of two threads were a tenth slower.
 void arrange_blocks(Model& model);

@@ -51,6 +51,15 @@ void refuse_too_large(const Model& model, const ModelPlan& plan, const SeedCount
                model, ranks);
 }
 
+/// Counts the bodies' particles and refuses what no grid can hold. Collective.
+SeedCount count_checked(const Model& model, std::span<const BodySeeds> seeds, Reductions& ranks) {
+  const GridGeometry& geometry = model.grid->geometry();
+  SeedCount count = count_seeds(geometry, seeds, ranks);
+  refuse_empty(*model.scene, seeds, count, ranks);
+  refuse_outside(*model.scene, geometry, count, ranks);
+  return count;
+}
+
 }  // namespace
 
 void build_model(Model& model, Communication& communication) {
@@ -60,10 +69,7 @@ void build_model(Model& model, Communication& communication) {
   refuse_uncounted(seeds, 0);
   const ModelPlan plan = plan_of(model);
   refuse_too_large(model, plan, communication);
-  const GridGeometry& geometry = model.grid->geometry();
-  const SeedCount count = count_seeds(geometry, seeds, communication.reductions);
-  refuse_empty(*model.scene, seeds, count, communication);
-  refuse_outside(*model.scene, geometry, count, communication);
+  const SeedCount count = count_checked(model, seeds, communication);
   communication.bricks.partition(*model.grid, count.in_bricks(), model.scene->decomposition);
   refuse_too_large(model, plan, count, communication);
   create_particles(model, seeds, communication);
@@ -74,10 +80,7 @@ void add_bodies(Model& model, std::span<const std::size_t> bodies, Communication
   if (bodies.empty()) return;
   const std::vector<BodySeeds> seeds = seeds_of(model, bodies);
   refuse_uncounted(seeds, model.next_identity);
-  const GridGeometry& geometry = model.grid->geometry();
-  const SeedCount count = count_seeds(geometry, seeds, communication.reductions);
-  refuse_empty(*model.scene, seeds, count, communication);
-  refuse_outside(*model.scene, geometry, count, communication);
+  const SeedCount count = count_checked(model, seeds, communication);
   std::vector<BrickCoord> wanted;
   for (const auto& [key, n] : count.bricks) wanted.push_back(brick_of_key(key));
   communication.bricks.activate(*model.grid, wanted);

@@ -6,7 +6,6 @@
 
 #include "core/discretise/shape_check.hpp"
 #include "core/particles/tile_order.hpp"
-#include "core/threads.hpp"
 
 namespace mpm::core {
 
@@ -151,25 +150,24 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
 
 void create_particles(Model& model, std::span<const BodySeeds> bodies, Communication& communication) {
   Reductions& ranks = communication.reductions;
-  std::vector<int> columns_of;
-  for (const Body& b : model.bodies) columns_of.push_back(b.pool->layout().columns());
+  const std::vector<int> columns = columns_of(model);
   std::vector<bool> created(model.bodies.size());
   for (const BodySeeds& of : bodies) {
     const Body& body = model.bodies[of.body];
     const ColumnLayout& layout = body.pool->layout();
     MigrationBuffer particles;
-    std::vector<double> columns;
+    std::vector<double> values;
     const auto send = [&] {
-      communication.particles.scatter(particles, columns_of);
+      communication.particles.scatter(particles, columns);
       insert_particles(model, particles);
       particles.clear();
     };
     const auto base = static_cast<double>(model.next_identity);
     for_each_piece(*of.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
       for (const Seed& s : seeds) {
-        fill_columns(layout, body, *of.input, s, base + static_cast<double>(s.identity), columns);
+        fill_columns(layout, body, *of.input, s, base + static_cast<double>(s.identity), values);
         const BrickCoord to = model.grid->geometry().brick_at(s.position);
-        particles.add(to, static_cast<int>(of.body), columns.data(), layout.columns());
+        particles.add(to, static_cast<int>(of.body), values.data(), layout.columns());
       }
       ranks.any(true);
       send();
@@ -181,19 +179,6 @@ void create_particles(Model& model, std::span<const BodySeeds> bodies, Communica
   }
   sort_tiles(model, created);
   arrange_blocks(model);
-}
-
-void sort_tiles(Model& model, const std::vector<bool>& wanted) {
-  BrickGrid& grid = *model.grid;
-  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
-    Brick& brick = grid.brick(static_cast<Slot>(s));
-    for (ParticleTile& tile : brick.tiles) {
-      if (!wanted.empty() && !wanted[static_cast<std::size_t>(tile.body)]) continue;
-      BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
-      sort_by_identity(pool, tile);
-      sort_by_cell(grid, brick.coord, pool, tile);
-    }
-  });
 }
 
 }  // namespace mpm::core

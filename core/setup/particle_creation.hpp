@@ -64,8 +64,4 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
 /// model's next one. Afterwards tiles are ordered by cell and, within a cell, by identity. Collective.
 void create_particles(Model& model, std::span<const BodySeeds> bodies, Communication& communication);
 
-/// Sorts the tiles of all bodies, or of those for which `wanted` is true, by cell and, within a cell, by
-/// identity, independently of the order of arrival.
-void sort_tiles(Model& model, const std::vector<bool>& wanted = {});
-
 }  // namespace mpm::core

@@ -43,18 +43,13 @@ struct Fastest {
 }
 
 void Fastest::offer(int number, const Batch& batch, int i) {
-  const ColumnLayout& layout = *batch.layout;
-  const double* at = batch.block[i / block_lanes] + i % block_lanes;
-  const auto vector = [&](Column c) {
-    const double* x = at + layout.offset(c);
-    return Vec3<double>{x[0], x[block_lanes], x[2 * block_lanes]};
-  };
-  const Vec3<double> v = vector(Column::velocity_x);
+  const ConstParticle p(*batch.layout, batch.block[i / block_lanes] + i % block_lanes);
+  const Vec3<double> v = p.vector(Column::velocity_x);
   double sum = batch.critical_speed[i] + std::sqrt(dot(v, v));
   if (std::isnan(sum)) sum = std::numeric_limits<double>::infinity();
-  const double id = at[layout.offset(Column::identity)];
+  const double id = p[Column::identity];
   if (sum < speed || (sum == speed && id >= identity)) return;
-  *this = {sum, id, batch.critical_speed[i], vector(Column::position_x), v, number};
+  *this = {sum, id, batch.critical_speed[i], p.vector(Column::position_x), v, number};
 }
 
 /// Throws InputErrors, on every rank, for the first particle whose state or energy is not finite. Collective.

@@ -35,8 +35,8 @@ std::string describe_particle(const Body& body, const double* columns) {
 Migration::Migration(Model& model, Communication& communication)
     : model_(model),
       communication_(communication),
+      columns_of_(columns_of(model)),
       by_thread_(static_cast<std::size_t>(omp_get_max_threads())) {
-  for (const Body& b : model.bodies) columns_of_.push_back(b.pool->layout().columns());
   for (ThreadMigration& h : by_thread_) {
     h.ledger.body_eroded.resize(model.bodies.size());
     h.ledger.body_left.resize(model.bodies.size());

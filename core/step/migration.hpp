@@ -53,10 +53,10 @@ class Migration {
 
   Model& model_;
   Communication& communication_;
+  std::vector<int> columns_of_;             ///< by body
   std::vector<ThreadMigration> by_thread_;  ///< by thread
   MigrationBuffer particles_;
   std::vector<BrickCoord> wanted_;
-  std::vector<int> columns_of_;
   std::int64_t left_now_ = 0;
   OffendingParticles first_left_;
   OffendingParticle fault_;

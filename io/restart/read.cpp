@@ -157,17 +157,9 @@ void read_particles(const std::string& path, const RestartContents& contents, co
   std::vector<core::BrickCount> counts;
   for (const auto& [key, n] : particles) counts.push_back({core::brick_of_key(key), n});
   communication.bricks.partition(*model.grid, counts, model.scene->decomposition);
-  std::vector<int> columns_of;
-  for (const core::Body& b : model.bodies) columns_of.push_back(b.pool->layout().columns());
-  communication.particles.scatter(moving, columns_of);
+  communication.particles.scatter(moving, core::columns_of(model));
   core::insert_particles(model, moving);
-  for (core::Brick& brick : model.grid->bricks()) {
-    for (core::ParticleTile& tile : brick.tiles) {
-      core::BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
-      core::sort_by_identity(pool, tile);
-      core::sort_by_cell(*model.grid, brick.coord, pool, tile);
-    }
-  }
+  core::sort_tiles(model);
   core::arrange_blocks(model);
 }
 

@@ -159,7 +159,7 @@ TEST_CASE("A claimed brick goes to the rank that shares most nodes with it, whoe
     check_all(exchange, grid, slabs);
     CHECK(owner({500, 500, 500}) == ranks / 2);
   }
-  SECTION("nobody asks") {
+  SECTION("no_owner asks") {
     const auto revision = grid.revision();
     exchange.bricks.activate(grid, {});
     CHECK(grid.revision() == revision);

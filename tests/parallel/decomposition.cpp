@@ -43,7 +43,7 @@ std::int64_t cut(const std::vector<BrickCount>& bricks, const std::vector<std::i
     for (int n = 0; n < mpm::core::neighbourhood; ++n) {
       const BrickCoord offset = mpm::core::neighbour_offset(n);
       const std::int32_t other = directory.owner(bricks[i].brick + offset);
-      if (other != BrickTable::nobody && other != owner[i]) nodes += shared_nodes({}, offset);
+      if (other != BrickTable::no_owner && other != owner[i]) nodes += shared_nodes({}, offset);
     }
   }
   return nodes;
@@ -147,7 +147,7 @@ TEST_CASE("The directory remembers through growth and removal") {
       known.erase(b);
     }
     const BrickCoord other = any_brick();
-    if (directory.owner(other) != (known.contains(other) ? owner(other) : BrickTable::nobody))
+    if (directory.owner(other) != (known.contains(other) ? owner(other) : BrickTable::no_owner))
       FAIL("round " << round);
   }
   CHECK(directory.size() == known.size());

@@ -37,7 +37,7 @@ class SharedFolder {
     path_ = exchange.reductions.gather(mine_ ? mine_->path() : "").front();
   }
   ~SharedFolder() {
-    exchange_.reductions.any(false);  // everybody is through
+    exchange_.reductions.any(false);  // every rank has finished
   }
   const std::string& path() const { return path_; }
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }

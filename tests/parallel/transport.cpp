@@ -99,7 +99,7 @@ TEST_CASE("Particles to neighbouring bricks arrive whole, many times") {
   }
 }
 
-TEST_CASE("MigrationBuffer in messages of more than ten megabytes") {
+TEST_CASE("Particles in messages of more than ten megabytes") {
   std::mt19937_64 random(12);
   MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400));
@@ -127,7 +127,7 @@ TEST_CASE("MigrationBuffer in messages of more than ten megabytes") {
   }
 }
 
-TEST_CASE("MigrationBuffer from anywhere to anywhere") {
+TEST_CASE("Particles from any rank to any other") {
   std::mt19937_64 random(13);
   MpiCommunication exchange(world());
   BrickGrid grid(unit_grid(400));

@@ -123,7 +123,7 @@ class Exhausted(Case):
         self.assertNotIn("refuses", outcome.err)
         outcome = self.run_in("many", [path], OUT_OF_RESOURCES, threads=900, **limited(size + 1000 * MB))
         self.assertIn("the system refuses 900 threads per rank", outcome.err)
-        self.assertIn("ask for fewer", outcome.err)
+        self.assertIn("request fewer", outcome.err)
 
 
 class Descriptors(Case):
