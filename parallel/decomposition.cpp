@@ -18,7 +18,7 @@ using core::BrickCoord;
 using core::BrickCount;
 
 int shared_nodes(const core::NodeBlockShape& shape, BrickCoord offset) {
-  const auto along = [&](std::int32_t d) { return d == 0 ? shape.side() : 1 + 2 * shape.halo; };
+  const auto along = [&](std::int32_t d) { return d == 0 ? shape.side() : 1 + shape.below + shape.above; };
   return along(offset.x) * along(offset.y) * along(offset.z);
 }
 
@@ -36,7 +36,8 @@ int UniformBoxes::owner(BrickCoord b) const {
 UniformBoxes boxes_of_grid(const core::GridGeometry& geometry, std::array<int, 3> parts) {
   std::array<std::int32_t, 3> extent{};
   for (std::size_t a = 0; a < 3; ++a) {
-    extent[a] = static_cast<std::int32_t>((geometry.cells[a] + core::brick_cells - 1) / core::brick_cells);
+    extent[a] = static_cast<std::int32_t>((geometry.sites(static_cast<int>(a)) + core::brick_cells - 1) /
+                                          core::brick_cells);
   }
   return {{}, extent, parts};
 }

@@ -18,16 +18,15 @@ namespace {
 
 constexpr int tag_halo = 2;
 
-using NodeSet = std::bitset<NodeBlockShape{core::most_halo}.nodes()>;
+using NodeSet = std::bitset<NodeBlockShape{core::most_layers, core::most_layers}.nodes()>;
 
 /// Nodes of a brick's node block that the block of its neighbour number n also contains.
 std::array<NodeSet, core::neighbourhood> shared_sets(const NodeBlockShape& shape) {
   const auto shares = [&](int node, std::int32_t offset) {
-    if (offset < 0) return node <= shape.halo;
-    if (offset > 0) return node >= core::brick_cells - shape.halo;
-    return true;
+    const int there = node - core::brick_cells * offset;
+    return shape.lowest() <= there && there <= shape.highest();
   };
-  const int low = -shape.halo, high = shape.side() - shape.halo;
+  const int low = shape.lowest(), high = shape.highest() + 1;
   std::array<NodeSet, core::neighbourhood> sets;
   for (int n = 0; n < core::neighbourhood; ++n) {
     const BrickCoord offset = core::neighbour_offset(n);

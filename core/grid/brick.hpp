@@ -1,8 +1,13 @@
 // Bricks: blocks of 4 x 4 x 4 cells of the background grid. Only bricks with particles exist.
 //
-// A brick owns a copy of every node that its particles touch: 5 x 5 x 5 with linear shape functions, `halo`
-// more on each side with wider ones. Every brick that shares a face node has a copy; all copies are summed
-// from the same contributions in the same order, so they agree bit for bit without being exchanged.
+// A brick owns a copy of every node that its particles touch: 5 x 5 x 5 with linear shape functions, more
+// with wider ones. Every brick that shares a node has a copy; all copies are summed from the same
+// contributions in the same order, so they agree bit for bit without being exchanged.
+//
+// Shape functions of two or four nodes per axis are polynomials within a cell; those of three nodes per axis
+// are so around a node, half a cell to each side. A brick therefore holds the particles of 4 x 4 x 4 sites,
+// which are cells for the former and the surroundings of nodes for the latter: 6 x 6 x 6 nodes instead of
+// 7 x 7 x 7, and 1000 contributions per sum instead of 2197.
 #pragma once
 
 #include <array>
@@ -17,7 +22,10 @@ namespace mpm::core {
 
 inline constexpr int brick_cells = 4;
 
-/// Brick (x, y, z) of level 0 holds cells 4x .. 4x+3 along x and so on; 0 <= component < 2^21. The cells of a
+/// What a brick's particles have in common.
+enum class Site { cell, node };
+
+/// Brick (x, y, z) of level 0 holds sites 4x .. 4x+3 along x and so on; 0 <= component < 2^21. The cells of a
 /// brick of level n > 0 are smaller by 2^n; no run creates such bricks yet.
 struct BrickCoord {
   std::int32_t x = 0, y = 0, z = 0;
@@ -67,6 +75,7 @@ struct GridGeometry {
   std::array<std::int64_t, 3> cells{};  ///< along each axis; one node more
   std::array<Boundary, 6> boundary{};   ///< x lower, x upper, y lower, ...
   double mass_cutoff = 0;               ///< nodes of smaller mass are ignored
+  Site site = Site::cell;
 
   double smallest_cell() const { return std::fmin(cell.x, std::fmin(cell.y, cell.z)); }
   double cell_volume() const { return cell.x * cell.y * cell.z; }
@@ -91,29 +100,46 @@ struct GridGeometry {
     }
     return true;
   }
-  BrickCoord brick_at(const Vec3<double>& x) const {
-    return {static_cast<std::int32_t>(cell_index(x.x, 0) / brick_cells),
-            static_cast<std::int32_t>(cell_index(x.y, 1) / brick_cells),
-            static_cast<std::int32_t>(cell_index(x.z, 2) / brick_cells)};
+  /// Sites along `axis`; around a node on the grid's faces, only half a site is inside.
+  std::int64_t sites(int axis) const {
+    return cells[static_cast<std::size_t>(axis)] + (site == Site::node ? 1 : 0);
   }
-  /// Highest cell along `axis` that a particle of this brick can be in, counted from the brick's first.
-  int last_cell(BrickCoord b, int axis) const {
+  /// Where the first site begins, in cells from the origin.
+  double first_site() const { return site == Site::node ? -0.5 : 0; }
+  /// The cell of a particle, or the node nearest to it.
+  std::int64_t site_index(double x, int axis) const {
+    if (site == Site::cell) return cell_index(x, axis);
+    return static_cast<std::int64_t>(std::floor(scaled(x, origin[axis], inverse_cell[axis]) + 0.5));
+  }
+  BrickCoord brick_at(const Vec3<double>& x) const {
+    return {static_cast<std::int32_t>(site_index(x.x, 0) / brick_cells),
+            static_cast<std::int32_t>(site_index(x.y, 1) / brick_cells),
+            static_cast<std::int32_t>(site_index(x.z, 2) / brick_cells)};
+  }
+  /// Highest site along `axis` of this brick's particles, counted from the brick's first.
+  int last_site(BrickCoord b, int axis) const {
     const std::int64_t first = std::int64_t{brick_cells} * (axis == 0 ? b.x : axis == 1 ? b.y : b.z);
-    const std::int64_t left = cells[static_cast<std::size_t>(axis)] - 1 - first;
+    const std::int64_t left = sites(axis) - 1 - first;
     return static_cast<int>(left < brick_cells - 1 ? left : brick_cells - 1);
   }
 };
 
-/// Widest halo of nodes. With two layers, bricks two apart would share nodes, and the sum over the 27 bricks
-/// of a neighbourhood would be incomplete.
-inline constexpr int most_halo = 1;
+/// Most layers of nodes on a side of a brick's own. With two, bricks two apart would share nodes, and the sum
+/// over the 27 bricks of a neighbourhood would be incomplete.
+inline constexpr int most_layers = 1;
 
-/// Node block of one brick. Node (i, j, k) counts from the brick's lowest node, -halo <= i < side - halo.
+/// Node block of one brick. Node (i, j, k) counts from the lowest node of the brick's first cell, or from the
+/// node of its first site: lowest() <= i <= highest().
 struct NodeBlockShape {
-  int halo = 0;
-  constexpr int side() const { return brick_cells + 1 + 2 * halo; }
+  int below = 0, above = 0;  ///< layers beyond nodes 0 and brick_cells
+  constexpr int lowest() const { return -below; }
+  constexpr int highest() const { return brick_cells + above; }
+  constexpr int side() const { return brick_cells + 1 + below + above; }
   constexpr int nodes() const { return side() * side() * side(); }
-  int index(int i, int j, int k) const { return (i + halo) + side() * ((j + halo) + side() * (k + halo)); }
+  constexpr int index(int i, int j, int k) const {
+    return (i + below) + side() * ((j + below) + side() * (k + below));
+  }
+  constexpr bool operator==(const NodeBlockShape&) const = default;
 };
 
 }  // namespace mpm::core

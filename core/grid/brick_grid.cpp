@@ -18,11 +18,18 @@ void AlignedDoubles::resize(std::size_t n) {
   size_ = n;
 }
 
+void require_few_layers(const NodeBlockShape& shape) {
+  for (const int layers : {shape.below, shape.above}) {
+    if (layers < 0 || layers > most_layers)
+      throw std::logic_error("a node block with " + std::to_string(layers) +
+                             " layers of nodes beyond its brick: expected 0 to " +
+                             std::to_string(most_layers));
+  }
+}
+
 BrickGrid::BrickGrid(const GridGeometry& geometry, NodeBlockShape shape, NodeArraySet arrays)
     : geometry_(geometry), shape_(shape), arrays_(arrays) {
-  if (shape.halo < 0 || shape.halo > most_halo)
-    throw std::logic_error("a halo of " + std::to_string(shape.halo) +
-                           " layers of nodes exceeds the largest, " + std::to_string(most_halo));
+  require_few_layers(shape);
 }
 
 void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts) {

@@ -45,9 +45,12 @@ struct Brick {
   }
 };
 
+/// Throws std::logic_error for more than most_layers of nodes beyond the brick.
+void require_few_layers(const NodeBlockShape& shape);
+
 class BrickGrid {
  public:
-  /// Throws std::logic_error for a halo beyond most_halo.
+  /// Throws std::logic_error for more than most_layers of nodes beyond the brick.
   explicit BrickGrid(const GridGeometry& geometry, NodeBlockShape shape = {},
                      NodeArraySet arrays = {NodeArray::first, NodeArray::second});
 

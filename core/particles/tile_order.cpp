@@ -44,12 +44,11 @@ void reorder(BlockPool& pool, ParticleTile& tile, const std::vector<std::uint32_
 
 }  // namespace
 
-void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile) {
-  constexpr NodeBlockShape shape{};  // smallest halo: the lowest nodes of cells are in the order of cells
-  const BrickFrame frame(grid.geometry(), shape, brick);
+void sort_by_site(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile) {
+  const BrickFrame frame(grid.geometry(), brick);
   thread_local std::vector<std::uint8_t> cell;
   cell.resize(block_lanes * tile.blocks.size());
-  std::array<std::uint32_t, shape.nodes() + 1> start{};
+  std::array<std::uint32_t, lattice_points.nodes() + 1> start{};  // lowest points are in the order of sites
   for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
     const LinearPlace place(frame, pool.layout(), pool.block(tile.blocks[b]));
     const int used = tile.used_lanes(b);
@@ -87,7 +86,7 @@ void sort_tiles(Model& model, const std::vector<bool>& wanted) {
       if (!wanted.empty() && !wanted[static_cast<std::size_t>(tile.body)]) continue;
       BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
       sort_by_identity(pool, tile);
-      sort_by_cell(grid, brick.coord, pool, tile);
+      sort_by_site(grid, brick.coord, pool, tile);
     }
   });
 }

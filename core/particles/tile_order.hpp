@@ -12,13 +12,13 @@ namespace mpm::core {
 /// Appends particles to their bricks, which must be ours, in ascending order of identity per tile.
 void insert_particles(Model& model, const MigrationBuffer& particles);
 
-/// Sorts the particles of a tile by cell; the sort is stable.
-void sort_by_cell(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile);
+/// Sorts the particles of a tile by site; the sort is stable.
+void sort_by_site(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile);
 
 /// Sorts the particles of a tile by identity.
 void sort_by_identity(BlockPool& pool, ParticleTile& tile);
 
-/// Sorts the tiles of all bodies, or of those for which `wanted` is true, by cell and, within a cell, by
+/// Sorts the tiles of all bodies, or of those for which `wanted` is true, by site and, within a site, by
 /// identity, independently of the order of arrival.
 void sort_tiles(Model& model, const std::vector<bool>& wanted = {});
 

@@ -29,6 +29,7 @@ enum class ShapeFunction {
   quadratic_bspline,
   cubic_bspline,
   ddmp,
+  sgmp,
 };
 
 /// A segment of cells along one axis of a nonuniform grid, from the end of the previous one.

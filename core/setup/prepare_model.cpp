@@ -30,6 +30,7 @@ GridGeometry geometry_of(const Scene& scene) {
                       axis.cells, "xyz"[a], most_cells_per_axis));
     }
   }
+  g.site = site_of(scene);
   g.mass_cutoff = scene.grid.mass_cutoff * density * g.cell_volume();
   return g;
 }

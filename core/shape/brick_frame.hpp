@@ -7,17 +7,20 @@ namespace mpm::core {
 
 struct BrickFrame {
   Vec3<double> origin, inverse_cell;
-  Vec3<double> first_cell;  ///< of the brick, in cells from the grid's origin
-  Vec3<double> last_cell;   ///< highest cell that a particle can be in, relative to the brick's first
-  int side = 0, halo = 0;
+  Vec3<double> first_site;  ///< where the brick's first site begins, in cells from the grid's origin
+  Vec3<double> last_site;   ///< highest site that a particle can be in, relative to the brick's first
+  /// Range of the brick inside the grid, in cells from first_site.
+  Vec3<double> lowest, beyond;
 
-  BrickFrame(const GridGeometry& g, const NodeBlockShape& shape, BrickCoord b)
-      : origin(g.origin),
-        inverse_cell(g.inverse_cell),
-        first_cell{double(brick_cells * b.x), double(brick_cells * b.y), double(brick_cells * b.z)},
-        last_cell{double(g.last_cell(b, 0)), double(g.last_cell(b, 1)), double(g.last_cell(b, 2))},
-        side(shape.side()),
-        halo(shape.halo) {}
+  BrickFrame(const GridGeometry& g, BrickCoord b) : origin(g.origin), inverse_cell(g.inverse_cell) {
+    const std::int32_t coord[3] = {b.x, b.y, b.z};
+    for (int a = 0; a < 3; ++a) {
+      first_site[a] = g.first_site() + double(std::int64_t{brick_cells} * coord[a]);
+      last_site[a] = g.last_site(b, a);
+      lowest[a] = std::fmax(-first_site[a], 0);
+      beyond[a] = std::fmin(last_site[a] + 1, double(g.cells[static_cast<std::size_t>(a)]) - first_site[a]);
+    }
+  }
 };
 
 }  // namespace mpm::core

@@ -4,8 +4,11 @@
 // Grid to particles: particles in the vector lanes; each distinct cell among the eight particles is visited
 // once. Particles to grid: the eight nodes of a cell in the lanes; each particle adds to ten vectors
 // (momentum, mass, V sigma), which are converted to node records and written only when the cell changes.
-// Particles are stored in approximate cell order, so this happens about once in eight. Shown by
-// tests/core/shape/linear_test.cpp and, against a plain loop, tests/core/step.
+// Particles are stored in approximate cell order, so this happens about once in eight. Shown against a plain
+// loop by tests/core/step.
+//
+// These kernels also serve shape functions that pass through values at other points of a lattice of cells of
+// this size, such as the cells' centres (sgmp.hpp): the points around a brick's sites take the nodes' place.
 #pragma once
 
 #include <algorithm>
@@ -18,36 +21,39 @@
 
 namespace mpm::core {
 
-/// Particles in lanes: position within the cell as fractions of its edges, and the cell's lowest node.
+/// The points of the lattice around a brick's sites: the corners of 4 x 4 x 4 cells.
+inline constexpr NodeBlockShape lattice_points{};
+
+/// Particles in lanes: position within the site as fractions of its edges, and its lowest point.
 template <class T>
-struct LocatedInCells {
+struct LocatedInSites {
   T fx, fy, fz;
   int node[LaneTraits<T>::width];
 };
 
 /// `x`, `y`, `z`: columns of a block from the lane on. Unused lanes are clamped into the brick.
 template <class T>
-inline LocatedInCells<T> locate_in_cells(const BrickFrame& f, const double* x, const double* y,
+inline LocatedInSites<T> locate_in_sites(const BrickFrame& f, const double* x, const double* y,
                                          const double* z) {
-  const T sx = GridGeometry::scaled(load<T>(x), f.origin.x, f.inverse_cell.x) - T(f.first_cell.x);
-  const T sy = GridGeometry::scaled(load<T>(y), f.origin.y, f.inverse_cell.y) - T(f.first_cell.y);
-  const T sz = GridGeometry::scaled(load<T>(z), f.origin.z, f.inverse_cell.z) - T(f.first_cell.z);
+  const T sx = GridGeometry::scaled(load<T>(x), f.origin.x, f.inverse_cell.x) - T(f.first_site.x);
+  const T sy = GridGeometry::scaled(load<T>(y), f.origin.y, f.inverse_cell.y) - T(f.first_site.y);
+  const T sz = GridGeometry::scaled(load<T>(z), f.origin.z, f.inverse_cell.z) - T(f.first_site.z);
   // max(s, 0) maps NaN to 0, so that the index is always valid.
-  const T cx = min(max(floor(sx), T(0.0)), T(f.last_cell.x));
-  const T cy = min(max(floor(sy), T(0.0)), T(f.last_cell.y));
-  const T cz = min(max(floor(sz), T(0.0)), T(f.last_cell.z));
-  LocatedInCells<T> p{sx - cx, sy - cy, sz - cz, {}};
+  const T cx = min(max(floor(sx), T(0.0)), T(f.last_site.x));
+  const T cy = min(max(floor(sy), T(0.0)), T(f.last_site.y));
+  const T cz = min(max(floor(sz), T(0.0)), T(f.last_site.z));
+  LocatedInSites<T> p{sx - cx, sy - cy, sz - cz, {}};
   constexpr int width = LaneTraits<T>::width;
   double node[width];
-  store(node, cx + T(double(f.side)) * (cy + T(double(f.side)) * cz));
-  const int base = f.halo * (1 + f.side * (1 + f.side));
-  for (int i = 0; i < width; ++i) p.node[i] = static_cast<int>(node[i]) + base;
+  constexpr double side = lattice_points.side();
+  store(node, cx + T(side) * (cy + T(side) * cz));
+  for (int i = 0; i < width; ++i) p.node[i] = static_cast<int>(node[i]);
   return p;
 }
 
-/// Position of a block's particles within their cells.
+/// Position of a block's particles within their sites.
 struct LinearPlace {
-  alignas(64) double f[3][block_lanes];  ///< fractions of the cell's edges
+  alignas(64) double f[3][block_lanes];  ///< fractions of the site's edges
   int node[block_lanes];
 
   LinearPlace() = default;
@@ -57,7 +63,7 @@ struct LinearPlace {
   void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
     const double* x = block + layout.offset(Column::position_x);
     for (int l = 0; l < block_lanes; l += real_width) {
-      const auto p = locate_in_cells<Real>(frame, x + l, x + block_lanes + l, x + 2 * block_lanes + l);
+      const auto p = locate_in_sites<Real>(frame, x + l, x + block_lanes + l, x + 2 * block_lanes + l);
       store(f[0] + l, p.fx);
       store(f[1] + l, p.fy);
       store(f[2] + l, p.fz);
@@ -66,12 +72,8 @@ struct LinearPlace {
   }
 };
 
-/// Node number `n` = i + 2 j + 4 k of a cell, relative to its lowest node. These functions use bricks without
-/// a halo, so that all strides are compile-time constants.
-constexpr int corner_node(int n) {
-  constexpr int side = brick_cells + 1;
-  return (n & 1) + side * (((n >> 1) & 1) + side * (n >> 2));
-}
+/// Point number `n` = i + 2 j + 4 k of a site, relative to its lowest one.
+constexpr int corner_node(int n) { return lattice_points.index(n & 1, n >> 1 & 1, n >> 2); }
 
 /// f(lowest node, lanes) for each cell that holds particles of the block, with their lanes.
 template <class F>
@@ -108,30 +110,19 @@ inline Nodes along_y(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 2
 inline Nodes along_z(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7, 0, 1, 2, 3); }
 }  // namespace linear
 
-/// Sums over the particles of one cell, node i + 2 j + 4 k in lane i + 2 j + 4 k. The force on a node is
-/// minus the sum of V sigma times the weight's gradient. A gradient component is a sign over the cell's edge
-/// times the weights along the other two axes, and that product is the sum of the weights of the edge's two
-/// nodes. So V sigma is summed with the weights themselves, and a flush converts the sums to forces.
+/// Sums over the particles of one cell, point i + 2 j + 4 k in lane i + 2 j + 4 k.
 template <NodeFields what>
-struct LinearScatter {
+struct CellSums {
   linear::Nodes px, py, pz, m;
   linear::Nodes xx, yy, zz, xy, yz, xz;  ///< V sigma times the weights
-  int node = -1;
 
   void clear() {
     px = py = pz = m = linear::Nodes(0.0);
     xx = yy = zz = xy = yz = xz = linear::Nodes(0.0);
   }
-
   /// Particle `i` of the block.
-  [[gnu::always_inline]] void add(const BrickFrame& frame, const LinearPlace& place, int i,
-                                  const MappedRows& rows, double* contributions) {
+  [[gnu::always_inline]] void add(const LinearPlace& place, int i, const MappedRows& rows) {
     using N = linear::Nodes;
-    if (place.node[i] != node) {
-      flush(frame, contributions);
-      clear();
-      node = place.node[i];
-    }
     const N wx = linear::one_x() + linear::sign_x() * N(place.f[0][i]),
             wy = linear::one_y() + linear::sign_y() * N(place.f[1][i]),
             wz = linear::one_z() + linear::sign_z() * N(place.f[2][i]);
@@ -151,37 +142,89 @@ struct LinearScatter {
       xz += w * N(rows.stress[5][i]);
     }
   }
+};
 
-  /// Adds the cell's sums to the node records of the brick.
-  [[gnu::always_inline]] void flush(const BrickFrame& frame, double* contributions) {
+/// Adds eight components of eight points, r[component], to the first eight doubles of the points' records of
+/// `width` doubles.
+template <int width>
+[[gnu::always_inline]] inline void add_to_corners(linear::Nodes r[8], double* lowest) {
+  using Record = Lanes<8>;
+  transpose(r);
+  for (int n = 0; n < 8; ++n) {
+    double* at = lowest + width * corner_node(n);
+    store(at, load<Record>(at) + r[n]);
+  }
+}
+/// Adds four components, r[component], to records of four doubles.
+[[gnu::always_inline]] inline void add_half_to_corners(linear::Nodes r[4], double* lowest) {
+  using Record = Lanes<4>;
+  transpose_half(r);
+  for (int n = 0; n < 8; ++n) {
+    double* at = lowest + 4 * corner_node(n);
+    store(at, load<Record>(at) + half_of(r[n / 2], n % 2));
+  }
+}
+
+/// Adds a block's particles to the sums of the current cell; when the cell changes, Store::add(sums, frame,
+/// records of its lowest point) adds these to the records of `Store::width` doubles of the brick's points.
+template <NodeFields what, class Store>
+struct CellScatter {
+  CellSums<what> sums;
+  int node = -1;
+
+  void clear() { sums.clear(); }
+
+  [[gnu::always_inline]] void add(const BrickFrame& frame, const LinearPlace& place, int i,
+                                  const MappedRows& rows, double* records) {
+    if (place.node[i] != node) {
+      flush(frame, records);
+      clear();
+      node = place.node[i];
+    }
+    sums.add(place, i, rows);
+  }
+  [[gnu::always_inline]] void flush(const BrickFrame& frame, double* records) {
+    if (node >= 0) Store::add(sums, frame, records + Store::width * node);
+  }
+};
+
+/// The force on a node is minus the sum of V sigma times the weight's gradient. A gradient component is a
+/// sign over the cell's edge times the weights along the other two axes, and that product is the sum of the
+/// weights of the edge's two nodes. So V sigma is summed with the weights themselves and converted once per
+/// cell.
+template <NodeFields what>
+struct NodeStore {
+  static constexpr int width = record_doubles(what.array);
+  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* lowest) {
     using N = linear::Nodes;
-    if (node < 0) return;
-    N r[8] = {px, py, pz, m, N(0.0), N(0.0), N(0.0), N(0.0)};
+    N r[8] = {s.px, s.py, s.pz, s.m, N(0.0), N(0.0), N(0.0), N(0.0)};
     if constexpr (maps_force(what)) {
       using namespace linear;
       const N gx = sign_x() * N(-frame.inverse_cell.x), gy = sign_y() * N(-frame.inverse_cell.y),
               gz = sign_z() * N(-frame.inverse_cell.z);
-      r[4] = gx * along_x(xx) + gy * along_y(xy) + gz * along_z(xz);
-      r[5] = gx * along_x(xy) + gy * along_y(yy) + gz * along_z(yz);
-      r[6] = gx * along_x(xz) + gy * along_y(yz) + gz * along_z(zz);
+      r[4] = gx * along_x(s.xx) + gy * along_y(s.xy) + gz * along_z(s.xz);
+      r[5] = gx * along_x(s.xy) + gy * along_y(s.yy) + gz * along_z(s.yz);
+      r[6] = gx * along_x(s.xz) + gy * along_y(s.yz) + gz * along_z(s.zz);
     }
-    constexpr int width = record_doubles(what.array);
-    using Record = Lanes<width>;
-    double* lowest = contributions + width * node;
     if constexpr (width == 8) {
-      transpose(r);
-      for (int n = 0; n < 8; ++n) {
-        double* at = lowest + width * corner_node(n);
-        store(at, load<Record>(at) + r[n]);
-      }
+      add_to_corners<width>(r, lowest);
     } else {
-      transpose_half(r);
-      for (int n = 0; n < 8; ++n) {
-        double* at = lowest + width * corner_node(n);
-        store(at, load<Record>(at) + half_of(r[n / 2], n % 2));
-      }
+      add_half_to_corners(r, lowest);
     }
   }
+};
+
+/// Weights of the eight points for a block's particles.
+struct LinearWeights {
+  using R = Lanes<8>;
+  R weight[8];
+  explicit LinearWeights(const LinearPlace& place) {
+    const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
+    const R one(1.0), xy = x * y, low = one - z;
+    const R face[4] = {one - x - y + xy, x - xy, y - xy, xy};
+    for (int i = 0; i < 4; ++i) weight[i] = face[i] * low, weight[4 + i] = face[i] * z;
+  }
+  const R& operator[](int n) const { return weight[n]; }
 };
 
 /// Interpolates three consecutive components of the node records, from `nodes` on, to the block's particles.
@@ -189,11 +232,7 @@ struct LinearInterpolation {
   using R = Lanes<8>;
   R value[3];
   LinearInterpolation(const LinearPlace& place, const double* nodes) : value{0.0, 0.0, 0.0} {
-    const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
-    const R one(1.0), xy = x * y, low = one - z;
-    const R face[4] = {one - x - y + xy, x - xy, y - xy, xy};
-    R weight[8];
-    for (int i = 0; i < 4; ++i) weight[i] = face[i] * low, weight[4 + i] = face[i] * z;
+    const LinearWeights weight(place);
     for_each_cell(place, [&](int node, auto here) {
       const double* lowest = nodes + node_doubles * node;
       for (int i = 0; i < 3; ++i) {
@@ -207,16 +246,33 @@ struct LinearInterpolation {
 
 struct Linear {
   static constexpr std::string_view name = "linear";
-  static constexpr NodeBlockShape node_block{0};
+  static constexpr Site site = Site::cell;
+  static constexpr NodeBlockShape node_block = lattice_points;
+  static constexpr int nodes_per_axis = 2;
   using Place = LinearPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>
-  using Scatter = LinearScatter<what>;
+  using Scatter = CellScatter<what, NodeStore<what>>;
 
-  /// Gradient of three components of the node records, from `nodes` on, into rows 0..8 (order of Mat3),
-  /// columns `at` .. `at` + 7.
+  /// Particles add to the nodes' records themselves ...
+  template <NodeFields what>
+  struct Sums {
+    double* records;
+    explicit Sums(double* contributions) : records(contributions) {}
+    void finish(const BrickFrame&) {}
+  };
+  /// ... and read them.
+  struct Field {
+    const double* nodes = nullptr;
+    void take_motion(const double* records) { nodes = records; }
+    void take_strain(const BrickFrame&, const double* records) { nodes = records; }
+    const double* velocity() const { return nodes + Motion::velocity_at; }
+    const double* increment() const { return nodes + Motion::increment_at; }
+  };
+
   template <class Rows>
-  static void gradient(const BrickFrame& frame, const Place& place, const double* nodes, Rows& rows, int at) {
+  static void gradient(const BrickFrame& frame, const Place& place, const Field& field, Rows& rows, int at) {
+    const double* nodes = field.nodes + Motion::strain_velocity_at;
     using R = Lanes<8>;
     const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
     R gradient[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
@@ -243,11 +299,10 @@ struct Linear {
     }
   }
 
-  /// Mean divergence of three components of the node records, from `nodes` on, over the cells that hold the
-  /// block's particles, from the mean differences along their edges; times `factor`.
-  template <class Row>
-  static void cell_divergence(const BrickFrame& frame, const Place& place, const double* nodes, double factor,
-                              Row& row, int at) {
+  /// From the mean differences along the cell's edges.
+  static void cell_divergence(const BrickFrame& frame, const Place& place, const Field& field, double factor,
+                              double* row, int at) {
+    const double* nodes = field.nodes + Motion::strain_velocity_at;
     for_each_cell(place, [&](int node, auto here) {
       double divergence = 0;
       for (int a = 0; a < 3; ++a) {
@@ -262,6 +317,8 @@ struct Linear {
     });
   }
 
+  /// Of the particles at coordinate `x`.
+  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) { return g.cell_index(x, axis); }
   /// f(node, offset, S, gradient of S) for the nodes of the cell that holds the particle of a lane: for terms
   /// too infrequent to vectorise.
   template <class F>

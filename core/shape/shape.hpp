@@ -1,12 +1,18 @@
 // Interface of a family of shape functions S_i to the passes (core/step). Kernels are templates over it; a
 // run chooses one (core/step/make_passes.cpp), so families that are not chosen cost nothing.
 //
-//   node_block          the nodes that a brick keeps for its particles
+//   site, node_block    how bricks take particles, and the nodes that a brick keeps for them
 //   Place               location of a block of eight particles: found once per pass
-//   Scatter<fields>     sums of m S, m v S and V sigma grad S over particles, added to the brick's nodes
-//   interpolate         sum_i S_i u_i of three node components at the block's particles
-//   gradient            sum_i u_i (x) grad S_i of three node components
-//   cell_divergence     mean of div u over the cell of each particle (volume update `cell`)
+//   Scatter<fields>     adds m S, m v S and V sigma grad S of particles to a brick's Sums<fields>
+//   Sums<fields>        sums over a brick's particles; finish() adds them to its nodes' contributions
+//   Field               the nodal motion of a brick as its particles read it: take_motion() for the velocity
+//                       and its increment, take_strain() for the strain velocity
+//   Interpolation       sum_i S_i u_i of the velocity or its increment at a block's particles
+//   gradient            sum_i u_i (x) grad S_i of the strain velocity, into rows 0..8 (order of Mat3),
+//   columns
+//                       at .. at + 7
+//   cell_divergence     mean of div u over the cell of each particle, times `factor` (volume update `cell`)
+//   nodes_per_axis, lowest_node   the nodes of a particle along an axis
 //   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: infrequent
 //   terms
 //
@@ -24,8 +30,11 @@ namespace mpm::core {
 template <class S>
 concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
                                const typename S::Place& place) {
+  { S::site } -> std::convertible_to<Site>;
   { S::node_block } -> std::convertible_to<NodeBlockShape>;
   typename S::template Scatter<mapped::momentum_mass_force>;
+  typename S::template Sums<mapped::momentum_mass_force>;
+  typename S::Field;
   typename S::Place;
   requires std::constructible_from<typename S::Place, const BrickFrame&, const ColumnLayout&, const double*>;
   typename S::Interpolation;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/particle_range.hpp"
-#include "core/shape/linear.hpp"
+#include "core/shape/list.hpp"
 #include "core/step/node_update.hpp"
 #include "core/threads.hpp"
 
@@ -40,6 +40,10 @@ class ConductionWith final : public Conduction {
   /// f(layout, body, block, place, lanes in use) for the blocks of the bodies that conduct.
   template <class F>
   void for_each_block(Slot s, F f) const;
+  BoundaryFaces faces(Slot s) const {
+    const BrickGrid& grid = *model_.grid;
+    return {grid.geometry(), grid.shape(), grid.brick(s).coord};
+  }
   /// Capacity and temperature of the brick's nodes, in components 0 and 1.
   void temperatures(Slot s, double* nodes) const;
 
@@ -67,7 +71,7 @@ template <class F>
 void ConductionWith<S>::for_each_block(Slot s, F f) const {
   const BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
-  const BrickFrame frame(grid.geometry(), grid.shape(), brick.coord);
+  const BrickFrame frame(grid.geometry(), brick.coord);
   for (const ParticleBlock& block : blocks_of(model_, brick)) {
     const Body& body = model_.bodies[static_cast<std::size_t>(block.body)];
     if (conducts(body))
@@ -95,6 +99,7 @@ void ConductionWith<S>::map_heat() {
                          });
       }
     });
+    faces(s).fold(mapped::heat, to);
   };
   for_each_by_threads(0, grid.boundary(), 4, map);
   halo_.begin(grid, mapped::heat);
@@ -108,6 +113,7 @@ void ConductionWith<S>::temperatures(Slot s, double* nodes) const {
     double* at = nodes + node_doubles * n;
     at[1] = at[0] > 0 ? at[1] / at[0] : 0;
   }
+  faces(s).mirror(1, nodes);
 }
 
 template <ShapePolicy S>
@@ -139,6 +145,7 @@ void ConductionWith<S>::map_flux() {
                          });
       }
     });
+    faces(s).fold(mapped::heat_flow, to);
   };
   for_each_by_threads(0, grid.boundary(), 4, map);
   halo_.begin(grid, mapped::heat_flow);
@@ -160,6 +167,7 @@ void ConductionWith<S>::update_temperatures(double dt) {
       at[0] = capacity > 0 ? dt * at[0] / capacity : 0;
       at[1] = capacity > 0 ? at[1] / capacity : 0;
     }
+    for (const int component : {0, 1}) faces(s).mirror(component, flux);
     const double curvature = sharpest_curvature(grid.geometry());
     for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block,
                           const typename S::Place& place, int used) {
@@ -182,7 +190,10 @@ void ConductionWith<S>::update_temperatures(double dt) {
 }  // namespace
 
 std::unique_ptr<Conduction> make_conduction(Model& model, NodeHalo& halo) {
-  return std::make_unique<ConductionWith<Linear>>(model, halo);
+  return with_shape(model.scene->grid.shape,
+                    [&]<class S>(std::type_identity<S>) -> std::unique_ptr<Conduction> {
+                      return std::make_unique<ConductionWith<S>>(model, halo);
+                    });
 }
 
 bool conducts_heat(const Model& model) { return std::ranges::any_of(model.bodies, conducts); }

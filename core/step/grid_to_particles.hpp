@@ -8,9 +8,9 @@ namespace mpm::core {
 
 /// x += dt sum S v.
 template <ShapePolicy S>
-inline void move_with_grid(const typename S::Place& place, const ColumnLayout& layout, const double* nodes,
-                           double dt, double* block) {
-  const typename S::Interpolation v(place, nodes + Motion::velocity_at);
+inline void move_with_grid(const typename S::Place& place, const ColumnLayout& layout,
+                           const typename S::Field& field, double dt, double* block) {
+  const typename S::Interpolation v(place, field.velocity());
   for (int a = 0; a < 3; ++a) {
     double* x = block + layout.offset(next(Column::position_x, a));
     store(x, load<Lanes<8>>(x) + Lanes<8>(dt) * v.value[a]);
@@ -27,8 +27,8 @@ inline unsigned lanes_outside(const BrickFrame& frame, const ColumnLayout& layou
     auto inside = Real(0.0) <= Real(0.0);
     for (int a = 0; a < 3; ++a) {
       const Real s = GridGeometry::scaled(load<Real>(x[a] + l), frame.origin[a], frame.inverse_cell[a]) -
-                     Real(frame.first_cell[a]);
-      inside = inside & (s >= Real(0.0)) & (s < Real(frame.last_cell[a] + 1.0));
+                     Real(frame.first_site[a]);
+      inside = inside & (s >= Real(frame.lowest[a])) & (s < Real(frame.beyond[a]));
     }
     if (all(inside)) continue;
     for (int i = 0; i < real_width && l + i < used; ++i) {

@@ -30,10 +30,6 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
                          const typename S::Place& place, const double* block, int used, F f) {
   const Loads::OfBody& mine = loads.of(body);
   const GridGeometry& g = model.grid->geometry();
-  const NodeBlockShape& shape = model.grid->shape();
-  const BrickCoord brick = model.grid->brick(slot).coord;
-  const std::int64_t first[3] = {std::int64_t{brick_cells} * brick.x, std::int64_t{brick_cells} * brick.y,
-                                 std::int64_t{brick_cells} * brick.z};
   const ColumnLayout& layout = model.bodies[static_cast<std::size_t>(body)].pool->layout();
   const bool dashpots = loads.nonreflecting() && loads.touches_nonreflecting(*model.grid, slot);
 
@@ -54,18 +50,17 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
         }
       }
     }
-    // One dashpot per grid face that bounds the particle's cell, acting on the face's nodes.
+    // One dashpot per grid face in the particle's reach, acting on the face's nodes.
     Vec3<double> dashpot[3]{};
-    int side[3] = {-1, -1, -1};
+    int side[3] = {-1, -1, -1};  // the face's nodes, relative to the lowest of the particle's
     if (dashpots) {
-      const int cell[3] = {place.node[l] % shape.side(), place.node[l] / shape.side() % shape.side(),
-                           place.node[l] / (shape.side() * shape.side())};
       const double c_p = get(Column::sound_speed), c_s = mine.shear_speed;
       for (std::size_t a = 0; a < 3; ++a) {
         const auto axis = static_cast<int>(a);
-        const std::int64_t global = first[a] + cell[a];
-        if (g.boundary[2 * a] == Boundary::nonreflecting && global == 0) side[a] = 0;
-        if (g.boundary[2 * a + 1] == Boundary::nonreflecting && global == g.cells[a] - 1) side[a] = 1;
+        const std::int64_t lowest = S::lowest_node(g, x[axis], axis), last = g.cells[a] - lowest;
+        if (g.boundary[2 * a] == Boundary::nonreflecting && lowest <= 0) side[a] = static_cast<int>(-lowest);
+        if (g.boundary[2 * a + 1] == Boundary::nonreflecting && last < S::nodes_per_axis)
+          side[a] = static_cast<int>(last);
         if (side[a] < 0) continue;
         for (int i = 0; i < 3; ++i) {
           const double rate = (i == axis ? c_p : c_s) * g.inverse_cell[axis];

@@ -1,17 +1,29 @@
 // The only place where a run's shape functions and transfer are chosen.
-#include "core/shape/linear.hpp"
+#include "core/shape/list.hpp"
 #include "core/step/passes_with.hpp"
 #include "core/transfer/flip.hpp"
 
 namespace mpm::core {
 
+// Compiled one by one, in passes_<shape>.cpp.
+extern template class PassesWith<Linear, Flip>;
+extern template class PassesWith<Sgmp, Flip>;
+
 std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo) {
-  return std::make_unique<PassesWith<Linear, Flip>>(model, halo);
+  return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> std::unique_ptr<Passes> {
+    return std::make_unique<PassesWith<S, Flip>>(model, halo);
+  });
 }
 
 ColumnSet transfer_columns(const Scene&) { return Flip::columns(); }
 
-NodeBlockShape node_block_of(const Scene&) { return Linear::node_block; }
+Site site_of(const Scene& scene) {
+  return with_shape(scene.grid.shape, []<class S>(std::type_identity<S>) { return S::site; });
+}
+
+NodeBlockShape node_block_of(const Scene& scene) {
+  return with_shape(scene.grid.shape, []<class S>(std::type_identity<S>) { return S::node_block; });
+}
 
 NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
   NodeArraySet arrays{NodeArray::first};

@@ -166,7 +166,7 @@ void Migration::sort_and_prune() {
   for_each_by_threads(0, grid.owned(), 4, [&](int s) {
     Brick& brick = grid.brick(static_cast<Slot>(s));
     for (ParticleTile& tile : brick.tiles) {
-      sort_by_cell(grid, brick.coord, *model_.bodies[static_cast<std::size_t>(tile.body)].pool, tile);
+      sort_by_site(grid, brick.coord, *model_.bodies[static_cast<std::size_t>(tile.body)].pool, tile);
     }
   });
   std::vector<BrickCoord> empty;

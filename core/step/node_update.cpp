@@ -13,10 +13,8 @@ using Half = Lanes<4>;
 }  // namespace
 
 SharedNodes::SharedNodes(const NodeBlockShape& shape) : nodes_(shape.nodes()) {
-  if (shape.halo < 0 || shape.halo > most_halo)
-    throw std::logic_error("nodes of bricks with a halo of " + std::to_string(shape.halo) +
-                           " layers are shared by more bricks than a neighbourhood has");
-  const int low = -shape.halo, high = brick_cells + shape.halo;
+  require_few_layers(shape);
+  const int low = shape.lowest(), high = shape.highest();
   const auto within = [&](int i) { return low <= i && i <= high; };
   std::array<std::vector<Share>, 9> by_count;
   std::array<std::vector<int>, 9> nodes;
@@ -48,7 +46,7 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
   constexpr int width = record_doubles(of);
   using Part = Lanes<width>;
   static const std::vector<double> nothing(
-      static_cast<std::size_t>(node_doubles * NodeBlockShape{most_halo}.nodes()), 0.0);
+      static_cast<std::size_t>(node_doubles * NodeBlockShape{most_layers, most_layers}.nodes()), 0.0);
   const Brick& brick = grid.brick(slot);
   std::array<const double*, neighbourhood> from{};
   for (std::size_t n = 0; n < neighbourhood; ++n) {
@@ -73,11 +71,90 @@ BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape&
     const Boundary upper = geometry.boundary[static_cast<std::size_t>(2 * axis + 1)];
     const std::int64_t last = geometry.cells[static_cast<std::size_t>(axis)] - first[axis];
     const auto constrains = [](Boundary b) { return b != Boundary::free && b != Boundary::nonreflecting; };
-    if (constrains(lower) && first[axis] <= shape.halo) face_[count_++] = {axis, -first[axis], -1, lower};
-    if (constrains(upper) && last <= brick_cells + shape.halo) {
+    if (constrains(lower) && -first[axis] >= shape.lowest())
+      face_[count_++] = {axis, -first[axis], -1, lower};
+    if (constrains(upper) && last <= shape.highest())
       face_[count_++] = {axis, static_cast<int>(last), 1, upper};
+  }
+}
+
+template <class F>
+void BoundaryFaces::for_each_outer_node(F f) const {
+  const int s = shape_.side();
+  for (int i = 0; i < count_; ++i) {
+    const Face& face = face_[i];
+    if (!has_outer_nodes(face)) continue;
+    const int strides[3] = {1, s, s * s};
+    const int along = strides[face.axis] * face.sign;
+    const int u = strides[(face.axis + 1) % 3], v = strides[(face.axis + 2) % 3];
+    const int first = (face.layer + shape_.below) * strides[face.axis];
+    for (int a = 0; a < s; ++a) {
+      for (int b = 0; b < s; ++b) {
+        const int wall = first + a * u + b * v;
+        f(face, wall + along, wall, wall - along);
+      }
     }
   }
+}
+
+namespace {
+
+/// The axis of component `c` of a record if it belongs to a mapped vector, or -1.
+int axis_of(NodeFields what, int c) {
+  const int momentum =
+      what.array == NodeArray::first ? node_field::momentum.first : node_field::second_momentum.first;
+  if (maps_momentum(what) && c >= momentum && c < momentum + 3) return c - momentum;
+  if (maps_force(what) && c >= node_field::force.first && c < node_field::force.end())
+    return c - node_field::force.first;
+  return -1;
+}
+
+bool is_mechanics(NodeFields what) { return maps_momentum(what) || maps_force(what); }
+
+}  // namespace
+
+void BoundaryFaces::fold(NodeFields what, double* contributions) const {
+  const int width = record_doubles(what.array);
+  for_each_outer_node([&](const Face& face, int outer, int wall, int mirror) {
+    double* from = contributions + width * outer;
+    double *to_wall = contributions + width * wall, *to_mirror = contributions + width * mirror;
+    const bool extrapolates = face.boundary == Boundary::rigid_wall && is_mechanics(what);
+    for (int c = 0; c < width; ++c) {
+      const int axis = axis_of(what, c);
+      const bool reverses =
+          extrapolates || (axis >= 0 && (face.boundary == Boundary::fixed || axis == face.axis));
+      if (extrapolates) to_wall[c] += 2 * from[c];
+      to_mirror[c] += reverses ? -from[c] : from[c];
+      from[c] = 0;
+    }
+  });
+}
+
+void BoundaryFaces::fill(double* record) const {
+  for_each_outer_node([&](const Face& face, int outer, int wall, int mirror) {
+    const Record inside = load<Record>(record + node_doubles * mirror);
+    double* at = record + node_doubles * outer;
+    const Motion to{at};
+    if (face.boundary == Boundary::rigid_wall) {
+      const Record on_wall = load<Record>(record + node_doubles * wall);
+      store(at, Record(2.0) * on_wall - inside);
+    } else {
+      store(at, inside);
+      for (int a = 0; a < 3; ++a) {
+        if (face.boundary != Boundary::fixed && a != face.axis) continue;
+        to.velocity()[a] = -to.velocity()[a];
+        to.increment()[a] = -to.increment()[a];
+      }
+    }
+    to.mass() = 0;
+    to.omitted_share() = 0;
+  });
+}
+
+void BoundaryFaces::mirror(int i, double* record) const {
+  for_each_outer_node([&](const Face&, int outer, int, int inside) {
+    record[node_doubles * outer + i] = record[node_doubles * inside + i];
+  });
 }
 
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
@@ -117,6 +194,7 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
       v[axis] = 0;
     }
   });
+  faces.fill(record);
 }
 
 void keep_motion(int nodes, const double* record, double* motion) {
@@ -139,6 +217,7 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
       u[axis] = 0;
     }
   });
+  faces.fill(record);
 }
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace mpm::core {
 /// Which bricks share each node of a brick, in summation order; built once per node block shape.
 class SharedNodes {
  public:
-  /// Throws std::logic_error for a halo beyond most_halo.
+  /// Throws std::logic_error for more than most_layers of nodes beyond the brick.
   explicit SharedNodes(const NodeBlockShape& shape);
 
   struct Share {
@@ -59,6 +59,16 @@ struct NodeForces {
 };
 
 /// A brick's faces that lie on a constrained face of the grid, found once per pass.
+///
+/// Shape functions wider than a cell also reach nodes outside the grid. At a wall these are no unknowns: each
+/// follows from the node on the wall and its mirror image inside,
+///   symmetry     u_out =  R u_mirror       R reverses the component normal to the wall
+///   fixed        u_out = -u_mirror
+///   rigid_wall   u_out = 2 u_wall - u_mirror    (the material may leave the wall)
+///   temperature  T_out = T_mirror               (walls are adiabatic)
+/// so a linear field stays linear up to the wall. What particles map to outer nodes is added to those two by
+/// the adjoint of the same rule, so that no energy is lost in between; mass is mirrored (symmetry, fixed) or
+/// extrapolated as momentum is (rigid_wall), where the inner node keeps more than the outer one takes.
 class BoundaryFaces {
  public:
   BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape& shape, BrickCoord brick);
@@ -67,11 +77,25 @@ class BoundaryFaces {
   template <class F>
   void for_each_node(double* nodes, F f) const;
 
+  /// Adds the contributions to outer nodes, in the records of what.array, to the inner ones and clears them.
+  void fold(NodeFields what, double* contributions) const;
+  /// Sets the outer nodes' MotionRecords.
+  void fill(double* record) const;
+  /// Sets component `i` of the outer nodes' records to that of their mirror image.
+  void mirror(int i, double* record) const;
+
  private:
   struct Face {
     int axis, layer, sign;
     Boundary boundary;
   };
+  bool has_outer_nodes(const Face& face) const {
+    return face.sign < 0 ? face.layer > shape_.lowest() : face.layer < shape_.highest();
+  }
+  /// f(face, outer, wall, mirror) with the numbers of corresponding nodes.
+  template <class F>
+  void for_each_outer_node(F f) const;
+
   NodeBlockShape shape_;
   Face face_[6];
   int count_ = 0;
@@ -102,7 +126,7 @@ void BoundaryFaces::for_each_node(double* nodes, F f) const {
     const Face& face = face_[i];
     const int strides[3] = {1, s, s * s};
     const int u = strides[(face.axis + 1) % 3], v = strides[(face.axis + 2) % 3];
-    const int first = (face.layer + shape_.halo) * strides[face.axis];
+    const int first = (face.layer + shape_.below) * strides[face.axis];
     for (int a = 0; a < s; ++a) {
       for (int b = 0; b < s; ++b) {
         f(face.axis, face.sign, face.boundary, nodes + node_doubles * (first + a * u + b * v));

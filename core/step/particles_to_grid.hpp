@@ -20,17 +20,16 @@ namespace mpm::core {
   }
 }
 
-/// Adds the first `used` particles of a block.
+/// Adds the first `used` particles of a block to a brick's S::Sums.
 template <ShapePolicy S, TransferPolicy T, NodeFields what>
 [[gnu::always_inline]] inline void add_block(const BrickFrame& frame, const typename S::Place& place,
                                              const ColumnLayout& layout, const double* block, int used,
-                                             typename S::template Scatter<what>& running,
-                                             double* contributions) {
+                                             typename S::template Scatter<what>& running, double* records) {
   typename S::template Scatter<what> sums = running;  // a local copy stays in registers
   MappedRows rows;
   if constexpr (maps_momentum(what)) T::momentum(layout, block, rows);
   if constexpr (maps_force(what)) stress_rows(layout, block, rows);
-  for (int i = 0; i < used; ++i) sums.add(frame, place, i, rows, contributions);
+  for (int i = 0; i < used; ++i) sums.add(frame, place, i, rows, records);
   running = sums;
 }
 

@@ -48,7 +48,8 @@ class Passes {
 std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo);
 /// The columns that the scene's transfer adds to every particle.
 ColumnSet transfer_columns(const Scene& scene);
-/// The nodes that a brick keeps for the scene's shape functions.
+/// How bricks take particles for the scene's shape functions, and the nodes that a brick keeps.
+Site site_of(const Scene& scene);
 NodeBlockShape node_block_of(const Scene& scene);
 /// The node arrays that the scene's scheme and its heat conduction use.
 NodeArraySet node_arrays_of(const Scene& scene, bool conducts);

@@ -47,6 +47,7 @@ class PassesWith final : public Passes {
   using Place = typename S::Place;
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
+    typename S::Field field;
   };
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
@@ -86,10 +87,7 @@ class PassesWith final : public Passes {
     const BrickGrid& grid = *model_.grid;
     return {grid.geometry(), grid.shape(), grid.brick(s).coord};
   }
-  BrickFrame frame(Slot s) const {
-    const BrickGrid& grid = *model_.grid;
-    return {grid.geometry(), grid.shape(), grid.brick(s).coord};
-  }
+  BrickFrame frame(Slot s) const { return {model_.grid->geometry(), model_.grid->brick(s).coord}; }
   /// Prefetches the contributions to the next brick's nodes while this brick's blocks are processed.
   template <NodeArray of>
   [[gnu::always_inline]] ContributionPrefetch<of> prefetch_nodes(Slot s) const {
@@ -250,8 +248,9 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
   std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
   SpreadPrefetch room(s + 1 < grid.owned() ? grid.contributions(what.array, s + 1) : nullptr,
                       width * grid.shape().nodes(), block_count(brick));
-  typename S::template Scatter<what> sums;
-  sums.clear();
+  typename S::template Sums<what> sums(contributions);
+  typename S::template Scatter<what> cell;
+  cell.clear();
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
     const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
@@ -271,13 +270,15 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
         places[(b + 1) % 2].find(frame, layout, body.pool->block(tile.blocks[b + 1]));
       const Place& place = places[b % 2];
       before(tile.body, place, block, used);
-      add_block<S, T, what>(frame, place, layout, block, used, sums, contributions);
+      add_block<S, T, what>(frame, place, layout, block, used, cell, sums.records);
       if constexpr (maps_force(what)) {
         if (loaded) add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
       }
     }
   }
-  sums.flush(frame, contributions);
+  cell.flush(frame, sums.records);
+  sums.finish(frame);
+  if constexpr (S::node_block != lattice_points) faces(s).fold(what, contributions);
 }
 
 template <ShapePolicy S, TransferPolicy T>
@@ -288,12 +289,14 @@ void PassesWith<S, T>::map_to_grid() {
 
 // --- nodes ------------------------------------------------------------------------------------------------
 
-/// Sums the first array and updates the nodes; the result in at.nodes follows MotionRecord.
+/// Sums the first array and updates the nodes; the result in at.nodes follows MotionRecord, and at.field
+/// holds it.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
   sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
   update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
+  at.field.take_motion(at.nodes.data());
 }
 
 // --- particles --------------------------------------------------------------------------------------------
@@ -308,11 +311,11 @@ void PassesWith<S, T>::update_velocities(Slot s, int body, const Place& place, d
   const BodyMotion& motion = loads_.motion(body);
   if (motion.kind == BodyMotion::Kind::rigid) {
     std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
-    T::template update_velocities<S>(place, layout, at.nodes.data(), block);
+    T::template update_velocities<S>(place, layout, at.field, block);
     integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), dt, block, used, at);
     return;
   }
-  T::template update_velocities<S>(place, layout, at.nodes.data(), block);
+  T::template update_velocities<S>(place, layout, at.field, block);
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion.velocity, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())
@@ -329,7 +332,7 @@ void PassesWith<S, T>::move(int body, const Place& place, double* block, int use
   if (loads_.motion(body).kind != BodyMotion::Kind::free)
     move_at_own_velocity(layout, dt, block);
   else
-    move_with_grid<S>(place, layout, at.nodes.data(), dt, block);
+    move_with_grid<S>(place, layout, at.field, dt, block);
   if (does_work) add_work_of_motion(forces_, layout, block, used, at);
 }
 
@@ -373,10 +376,9 @@ template <ShapePolicy S, TransferPolicy T>
 [[gnu::always_inline]] inline void PassesWith<S, T>::strain_batch_block(const BrickFrame& frame,
                                                                         const Place& place, int b,
                                                                         Scratch& at) {
-  const double* velocities = at.nodes.data() + Motion::strain_velocity_at;
   if (model_.options.volume_update == static_cast<int>(VolumeUpdate::cell))
-    S::cell_divergence(frame, place, velocities, dt, at.batch.cell_volumetric_strain, block_lanes * b);
-  S::gradient(frame, place, velocities, at.batch.gradient, block_lanes * b);
+    S::cell_divergence(frame, place, at.field, dt, at.batch.cell_volumetric_strain, block_lanes * b);
+  S::gradient(frame, place, at.field, at.batch.gradient, block_lanes * b);
 }
 
 /// For outputs only; no law reads it.
@@ -460,6 +462,8 @@ void PassesWith<S, T>::update_stress_and_move() {
     recall_motion(shared_.nodes(), motion(s), at.nodes.data());
     sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
     second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
+    at.field.take_motion(at.nodes.data());
+    at.field.take_strain(frame(s), at.nodes.data());
     auto nodes = prefetch_nodes<NodeArray::second>(s);
     SpreadPrefetch room = prefetch_motion(s);
     stress_of_brick<true>(s, Velocities::of_next_step, at, [&] {
@@ -477,6 +481,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
     sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
     second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
                       at.nodes.data());
+    at.field.take_strain(frame(s), at.nodes.data());
     auto nodes = prefetch_nodes<NodeArray::second>(s);
     stress_of_brick<false>(s, Velocities::of_last_step, at, [&] { nodes.next(); });
     map_brick<mapped::force>(s, [](int, const Place&, double*, int) {});
@@ -492,6 +497,7 @@ void PassesWith<S, T>::update_velocities_and_move() {
     sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
     sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
     update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
+    at.field.take_motion(at.nodes.data());
     // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
     // particles.
     at.statistics.fastest = std::max(at.statistics.fastest, critical_[static_cast<std::size_t>(s)] +
@@ -507,6 +513,7 @@ void PassesWith<S, T>::update_all() {
     update_nodes_of_brick(s, at);
     velocities_of_brick(s, at);
     regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
+    at.field.take_strain(frame(s), at.nodes.data());
     auto nodes = prefetch_nodes<NodeArray::first>(s);
     stress_of_brick<true>(s, Velocities::of_next_step, at, [&] { nodes.next(); });
   });

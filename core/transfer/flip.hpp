@@ -26,8 +26,8 @@ struct Flip {
   /// v += sum S dv.
   template <ShapePolicy S>
   static void update_velocities(const typename S::Place& place, const ColumnLayout& layout,
-                                const double* nodes, double* block) {
-    const typename S::Interpolation dv(place, nodes + Motion::increment_at);
+                                const typename S::Field& field, double* block) {
+    const typename S::Interpolation dv(place, field.increment());
     for (int a = 0; a < 3; ++a) {
       double* v = block + layout.offset(next(Column::velocity_x, a));
       store(v, load<Lanes<8>>(v) + dv.value[a]);

@@ -4,7 +4,7 @@
 //
 //   columns             the columns its particles need beyond the mechanics
 //   momentum            rows of mass and momentum that a block maps
-//   update_velocities   the particles' velocities from the nodes' records (MotionRecord)
+//   update_velocities   the particles' velocities from the nodal motion
 #pragma once
 
 #include "core/shape/shape.hpp"

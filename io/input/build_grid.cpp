@@ -23,6 +23,7 @@ core::ShapeFunction shape_function(std::string_view word) {
   if (word == "QuadraticBSpline") return quadratic_bspline;
   if (word == "CubicBSpline") return cubic_bspline;
   if (word == "DDMP") return ddmp;
+  if (word == "SGMP") return sgmp;
   return linear;
 }
 

@@ -16,6 +16,7 @@ std::string_view word(core::ShapeFunction shape) {
     case linear: return "linear";
     case uniform_gimp: return "uGIMP";
     case contiguous_particle_gimp: return "cpGIMP";
+    case sgmp: return "SGMP";
     case cpdi: return "CPDI";
     case cpdi2: return "CPDI2";
     case quadratic_bspline: return "QuadraticBSpline";

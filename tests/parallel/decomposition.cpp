@@ -55,8 +55,9 @@ TEST_CASE("Nodes shared by neighbouring bricks") {
   CHECK(shared_nodes({}, {1, 0, 0}) == 25);
   CHECK(shared_nodes({}, {0, -1, 1}) == 5);
   CHECK(shared_nodes({}, {-1, -1, 1}) == 1);
-  CHECK(shared_nodes({1}, {0, 1, 0}) == 147);
-  CHECK(shared_nodes({1}, {1, 1, 1}) == 27);
+  CHECK(shared_nodes({1, 1}, {0, 1, 0}) == 147);
+  CHECK(shared_nodes({1, 0}, {0, 1, 0}) == 72);
+  CHECK(shared_nodes({1, 1}, {1, 1, 1}) == 27);
 }
 
 TEST_CASE("Boxes of a grid have equal extents") {

@@ -23,8 +23,8 @@ using Node = std::array<std::int32_t, 3>;
 
 /// The node with index `n` of a brick's array, counted from the grid's origin.
 Node node_of(const BrickGrid& grid, BrickCoord b, int n) {
-  const int side = grid.shape().side(), halo = grid.shape().halo;
-  return {4 * b.x + n % side - halo, 4 * b.y + n / side % side - halo, 4 * b.z + n / side / side - halo};
+  const int side = grid.shape().side(), low = grid.shape().lowest();
+  return {4 * b.x + n % side + low, 4 * b.y + n / side % side + low, 4 * b.z + n / side / side + low};
 }
 
 bool holds(const BrickGrid& grid, BrickCoord b, Node node) {
@@ -32,7 +32,7 @@ bool holds(const BrickGrid& grid, BrickCoord b, Node node) {
   bool inside = true;
   for (std::size_t a = 0; a < 3; ++a) {
     const std::int32_t at = node[a] - first[a];
-    inside = inside && at >= -grid.shape().halo && at <= 4 + grid.shape().halo;
+    inside = inside && at >= grid.shape().lowest() && at <= grid.shape().highest();
   }
   return inside;
 }
@@ -150,10 +150,10 @@ void set_up(BrickGrid& grid, BrickTable& table, const std::vector<BrickCoord>& b
 }  // namespace
 
 TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no other") {
-  const int halo_width = GENERATE(0, 1);
+  const NodeBlockShape shape = GENERATE(NodeBlockShape{0, 0}, NodeBlockShape{1, 0}, NodeBlockShape{1, 1});
   const double share = GENERATE(0.15, 0.6, 1.0);
-  std::mt19937_64 random(static_cast<unsigned>(100 * share) + static_cast<unsigned>(halo_width));
-  BrickGrid grid(unit_grid(400), NodeBlockShape{halo_width});
+  std::mt19937_64 random(static_cast<unsigned>(100 * share) + static_cast<unsigned>(shape.side()));
+  BrickGrid grid(unit_grid(400), shape);
   GivenOwners owners;
   MpiHalo halo(world(), owners);
   const auto bricks = random_bricks(random, {4, 3, 4}, share);
@@ -177,7 +177,7 @@ TEST_CASE("Every node that a ghost shares with a brick of ours arrives, and no o
 
 TEST_CASE("A changed set of bricks is exchanged anew") {
   std::mt19937_64 random(8);
-  BrickGrid grid(unit_grid(400), NodeBlockShape{0});
+  BrickGrid grid(unit_grid(400), NodeBlockShape{});
   GivenOwners owners;
   MpiHalo halo(world(), owners);
   for (int round = 0; round < 30; ++round) {
@@ -195,9 +195,9 @@ TEST_CASE("A changed set of bricks is exchanged anew") {
 }
 
 TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
-  const int halo_width = GENERATE(0, 1);
+  const NodeBlockShape shape = GENERATE(NodeBlockShape{0, 0}, NodeBlockShape{1, 0}, NodeBlockShape{1, 1});
   std::mt19937_64 random(9);
-  BrickGrid grid(unit_grid(400), NodeBlockShape{halo_width});
+  BrickGrid grid(unit_grid(400), shape);
   GivenOwners owners;
   MpiHalo halo(world(), owners);
   const auto bricks = random_bricks(random, {4, 4, 4}, 0.7);
@@ -251,7 +251,7 @@ TEST_CASE("All copies of a node sum to the same bits, on one rank or many") {
 
 TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
   MpiCommunication exchange(world());
-  BrickGrid grid(unit_grid(400), NodeBlockShape{1});
+  BrickGrid grid(unit_grid(400), NodeBlockShape{1, 1});
   std::vector<mpm::core::BrickCount> counts;
   std::mt19937_64 random(10);
   for (const BrickCoord b : random_bricks(random, {12, 11, 10}, 0.97)) {
@@ -272,7 +272,7 @@ TEST_CASE("Halos of a METIS and of a uniform partition, with large messages") {
 
 TEST_CASE("A halo exchange out of order is refused") {
   GivenOwners owners;
-  BrickGrid grid(unit_grid(400), NodeBlockShape{0});
+  BrickGrid grid(unit_grid(400), NodeBlockShape{});
   MpiHalo halo(world(), owners);
   CHECK_THROWS_AS(halo.end(grid), std::logic_error);
   CHECK_THROWS_AS(halo.begin(grid, {NodeArray::first, 5, 4}), std::logic_error);
@@ -280,5 +280,5 @@ TEST_CASE("A halo exchange out of order is refused") {
   halo.begin(grid, {NodeArray::second, 0, 1});
   CHECK_THROWS_AS(halo.begin(grid, {NodeArray::second, 0, 1}), std::logic_error);
   halo.end(grid);
-  CHECK_THROWS_AS(BrickGrid(unit_grid(400), NodeBlockShape{mpm::core::most_halo + 1}), std::logic_error);
+  CHECK_THROWS_AS(BrickGrid(unit_grid(400), NodeBlockShape{0, mpm::core::most_layers + 1}), std::logic_error);
 }

@@ -55,9 +55,9 @@ TEST_CASE("Every cell is in one brick, and the upper face in the last") {
   }
   CHECK(g.brick_at({2.5, 0, 110}) == BrickCoord{2, 0, 1});
   CHECK(g.brick_at({-0.5, -1, 108}) == BrickCoord{1, 0, 1});
-  CHECK(g.last_cell({0, 0, 0}, 0) == 3);
-  CHECK(g.last_cell({2, 0, 0}, 0) == 1);
-  CHECK(g.last_cell({0, 0, 1}, 2) == 0);
+  CHECK(g.last_site({0, 0, 0}, 0) == 3);
+  CHECK(g.last_site({2, 0, 0}, 0) == 1);
+  CHECK(g.last_site({0, 0, 1}, 2) == 0);
   CHECK(g.smallest_cell() == 0.25);
   CHECK(g.cell_volume() == 0.25);
 }

@@ -194,7 +194,7 @@ struct SmallRun {
     core::insert_particles(model, moving);
     for (core::Brick& brick : model.grid->bricks()) {
       for (core::ParticleTile& tile : brick.tiles) {
-        core::sort_by_cell(*model.grid, brick.coord, *model.bodies[static_cast<std::size_t>(tile.body)].pool,
+        core::sort_by_site(*model.grid, brick.coord, *model.bodies[static_cast<std::size_t>(tile.body)].pool,
                            tile);
       }
     }

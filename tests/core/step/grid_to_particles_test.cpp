@@ -6,7 +6,6 @@
 #include <catch2/catch.hpp>
 
 #include "core/material/batch.hpp"
-#include "core/shape/linear.hpp"
 #include "core/transfer/flip.hpp"
 #include "tests/core/step/transfer.hpp"
 
@@ -31,8 +30,8 @@ std::vector<double> random_records(const NodeBlockShape& shape, unsigned seed) {
 
 /// f(particle's columns before, its block, its lane) over the blocks of the case; `work(block)` before each
 /// block.
-template <class W, class F>
-void over(TransferCase& c, W work, F f) {
+template <class S, class W, class F>
+void over(TransferCase<S>& c, W work, F f) {
   for (std::size_t b = 0; b < c.tile.blocks.size(); ++b) {
     double* block = c.pool.block(c.tile.blocks[b]);
     work(block);
@@ -43,7 +42,8 @@ void over(TransferCase& c, W work, F f) {
 }
 
 /// Sum of S times a component of the records.
-double interpolated(const TransferCase& c, const std::vector<double>& nodes, const std::vector<double>& p,
+template <class S>
+double interpolated(const TransferCase<S>& c, const std::vector<double>& nodes, const std::vector<double>& p,
                     int component) {
   double sum = 0;
   c.for_each_node(p, [&](int node, double s, const Vec3<double>&) {
@@ -52,18 +52,28 @@ double interpolated(const TransferCase& c, const std::vector<double>& nodes, con
   return sum;
 }
 
+/// What the kernels read of the nodes' records.
+template <class S>
+typename S::Field field_of(const TransferCase<S>& c, const std::vector<double>& nodes) {
+  typename S::Field field;
+  field.take_motion(nodes.data());
+  field.take_strain(c.frame(), nodes.data());
+  return field;
+}
+
 }  // namespace
 
-TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
+TEMPLATE_LIST_TEST_CASE("Velocity and position take from the nodes what a plain loop takes", "", Shapes) {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {1, 0, 1}, {2, 2, 2}}) {
-    TransferCase c(brick, 150, 11);
+    TransferCase<TestType> c(brick, 150, 11);
     const std::vector<double> nodes = random_records(c.shape, 3);
+    const auto field = field_of(c, nodes);
     const double dt = 0.03;
     double worst = 0;
     over(
         c,
         [&](double* block) {
-          Flip::update_velocities<Linear>(c.block_place(block), c.pool.layout(), nodes.data(), block);
+          Flip::update_velocities<TestType>(c.block_place(block), c.pool.layout(), field, block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -76,7 +86,7 @@ TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
     over(
         c,
         [&](double* block) {
-          move_with_grid<Linear>(c.block_place(block), c.pool.layout(), nodes.data(), dt, block);
+          move_with_grid<TestType>(c.block_place(block), c.pool.layout(), field, dt, block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -88,18 +98,15 @@ TEST_CASE("Velocity and position take from the nodes what a plain loop takes") {
   }
 }
 
-TEST_CASE("Velocity gradients are a plain loop's") {
+TEMPLATE_LIST_TEST_CASE("Velocity gradients are a plain loop's", "", Shapes) {
   for (const BrickCoord brick : {BrickCoord{1, 0, 1}, {2, 2, 2}}) {
-    TransferCase c(brick, 150, 12);
+    TransferCase<TestType> c(brick, 150, 12);
     const std::vector<double> nodes = random_records(c.shape, 4);
+    const auto field = field_of(c, nodes);
     Gradients second;
     double worst = 0;
     over(
-        c,
-        [&](double* block) {
-          Linear::gradient(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at,
-                           second.row, 0);
-        },
+        c, [&](double* block) { TestType::gradient(c.frame(), c.block_place(block), field, second.row, 0); },
         [&](const std::vector<double>& p, const double*, int lane) {
           double l[9] = {};
           c.for_each_node(p, [&](int node, double, const Vec3<double>& g) {
@@ -114,16 +121,17 @@ TEST_CASE("Velocity gradients are a plain loop's") {
   }
 }
 
-TEST_CASE(
-    "Constant and linear velocity fields come out exactly, in the cell, on its faces, edges and corners") {
+TEMPLATE_LIST_TEST_CASE(
+    "Constant and linear velocity fields come out exactly, in the cell, on its faces, edges and corners", "",
+    Shapes) {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {2, 2, 2}}) {
-    TransferCase c(brick, 150, 13);
+    TransferCase<TestType> c(brick, 150, 13);
     const double constant[3] = {3, -2, 0.5}, linear[3][3] = {{1, -2, 3}, {0.5, 4, -1}, {-3, 2, 0.25}};
     const int first[3] = {brick_cells * brick.x, brick_cells * brick.y, brick_cells * brick.z};
     std::vector<double> nodes(static_cast<std::size_t>(node_doubles * c.shape.nodes()));
-    for (int k = 0; k <= 4; ++k) {
-      for (int j = 0; j <= 4; ++j) {
-        for (int i = 0; i <= 4; ++i) {
+    for (int k = c.shape.lowest(); k <= c.shape.highest(); ++k) {
+      for (int j = c.shape.lowest(); j <= c.shape.highest(); ++j) {
+        for (int i = c.shape.lowest(); i <= c.shape.highest(); ++i) {
           const int index[3] = {i, j, k};
           for (int a = 0; a < 3; ++a) {
             double v = constant[a];
@@ -133,17 +141,16 @@ TEST_CASE(
         }
       }
     }
+    const auto field = field_of(c, nodes);
     Gradients g;
     Row strain;
     double worst_v = 0, worst_g = 0, worst_strain = 0;
     over(
         c,
         [&](double* block) {
-          Linear::gradient(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at, g.row,
-                           0);
-          Linear::cell_divergence(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at,
-                                  0.01, strain, 0);
-          Flip::update_velocities<Linear>(c.block_place(block), c.pool.layout(), nodes.data(), block);
+          TestType::gradient(c.frame(), c.block_place(block), field, g.row, 0);
+          TestType::cell_divergence(c.frame(), c.block_place(block), field, 0.01, strain, 0);
+          Flip::update_velocities<TestType>(c.block_place(block), c.pool.layout(), field, block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -163,19 +170,20 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("The cell's strain is that of its middle, the same for all its particles") {
-  TransferCase c({1, 0, 1}, 150, 14);
+TEMPLATE_LIST_TEST_CASE("The cell's strain is that of its middle, the same for all its particles", "",
+                        Shapes) {
+  TransferCase<TestType> c({1, 0, 1}, 150, 14);
   const std::vector<double> nodes = random_records(c.shape, 9);
+  const auto field = field_of(c, nodes);
   Row strain;
   double worst = 0;
   over(
       c,
       [&](const double* block) {
-        Linear::cell_divergence(c.frame(), c.block_place(block), nodes.data() + Motion::strain_velocity_at, 1,
-                                strain, 0);
+        TestType::cell_divergence(c.frame(), c.block_place(block), field, 1, strain, 0);
       },
       [&](const std::vector<double>& p, const double*, int lane) {
-        const TransferCase::Place at = c.place(p);
+        const auto at = c.place(p);
         double sum = 0;  // of the differences across the cell, each averaged over four edges
         for (int n = 0; n < 8; ++n) {
           const int d[3] = {n & 1, (n >> 1) & 1, n >> 2};
@@ -191,7 +199,7 @@ TEST_CASE("The cell's strain is that of its middle, the same for all its particl
 }
 
 TEST_CASE("Lanes outside the brick are found, lanes out of use are not") {
-  TransferCase c({1, 1, 1}, 8, 15);
+  TransferCase<Linear> c({1, 1, 1}, 8, 15);
   double* block = c.pool.block(c.tile.blocks[0]);
   const auto put = [&](int lane, int axis, double cells) {
     block[block_lanes * axis + lane] = c.geometry.origin[axis] + c.geometry.cell[axis] * cells;

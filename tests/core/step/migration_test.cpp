@@ -55,7 +55,7 @@ TEST_CASE("Sorting by cell keeps the order within a cell; sorting by identity or
     std::stable_sort(order.begin(), order.end(), [&](std::int64_t a, std::int64_t b) {
       return cell_of(grid.geometry(), particles.at(a).x) < cell_of(grid.geometry(), particles.at(b).x);
     });
-    sort_by_cell(grid, grid.brick(0).coord, pool, tile);
+    sort_by_site(grid, grid.brick(0).coord, pool, tile);
     CHECK(run.order() == order);
     CHECK(run.columns() == before);  // every particle still has its own columns
     CHECK(tile.blocks.size() == static_cast<std::size_t>((count + 7) / 8));

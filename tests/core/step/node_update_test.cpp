@@ -15,6 +15,8 @@ namespace {
 
 using Node = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
 
+constexpr NodeBlockShape shapes[] = {{0, 0}, {1, 0}, {1, 1}};
+
 GridGeometry geometry_of(std::array<std::int64_t, 3> cells) {
   GridGeometry g;
   g.cell = g.inverse_cell = {1, 1, 1};
@@ -25,9 +27,9 @@ GridGeometry geometry_of(std::array<std::int64_t, 3> cells) {
 /// f(number in the brick's array, node of the grid) for the nodes of a brick's array.
 template <class F>
 void for_each_node(const NodeBlockShape& shape, BrickCoord b, F f) {
-  for (int k = -shape.halo; k < shape.side() - shape.halo; ++k) {
-    for (int j = -shape.halo; j < shape.side() - shape.halo; ++j) {
-      for (int i = -shape.halo; i < shape.side() - shape.halo; ++i) {
+  for (int k = shape.lowest(); k <= shape.highest(); ++k) {
+    for (int j = shape.lowest(); j <= shape.highest(); ++j) {
+      for (int i = shape.lowest(); i <= shape.highest(); ++i) {
         f(shape.index(i, j, k), Node{brick_cells * b.x + i, brick_cells * b.y + j, brick_cells * b.z + k});
       }
     }
@@ -80,12 +82,12 @@ std::vector<BrickCoord> random_bricks(std::mt19937& random, unsigned of_eight) {
 
 TEST_CASE("Every copy of a node has the same sum and the same motion, to the last bit") {
   std::mt19937 random(21);
-  for (const int halo : {0, 1}) {
+  for (const NodeBlockShape shape : shapes) {
     for (unsigned density = 0; density <= 8; ++density) {
       GridGeometry g = geometry_of({14, 13, 16});
       g.boundary = {Boundary::fixed, Boundary::rigid_wall, Boundary::symmetry,
                     Boundary::free,  Boundary::rigid_wall, Boundary::symmetry};
-      BrickGrid grid(g, NodeBlockShape{halo});
+      BrickGrid grid(g, shape);
       grid.reset(random_bricks(random, density), {});
       fill(grid, NodeArray::first, random);
       fill(grid, NodeArray::second, random);
@@ -109,8 +111,8 @@ TEST_CASE("Every copy of a node has the same sum and the same motion, to the las
 
 TEST_CASE("A node's sum is that of all bricks which hold it") {
   std::mt19937 random(22);
-  for (const int halo : {0, 1}) {
-    BrickGrid grid(geometry_of({16, 16, 16}), NodeBlockShape{halo});
+  for (const NodeBlockShape shape : shapes) {
+    BrickGrid grid(geometry_of({16, 16, 16}), shape);
     grid.reset(random_bricks(random, 4), {});
     fill(grid, NodeArray::first, random);
     fill(grid, NodeArray::second, random);
@@ -248,11 +250,13 @@ TEST_CASE("Every boundary holds what it should on every face, also where the las
   }
 }
 
-TEST_CASE("A halo that a neighbourhood of 27 bricks cannot serve is refused") {
-  CHECK_NOTHROW(SharedNodes(NodeBlockShape{most_halo}));
+TEST_CASE("A node block that a neighbourhood of 27 bricks cannot serve is refused") {
+  for (const NodeBlockShape shape : shapes) CHECK_NOTHROW(SharedNodes(shape));
   // With two layers, node -2 of a brick is node 6 of the brick two further down, which is no neighbour.
-  for (const int halo : {-1, 2, 3, 5}) {
-    CHECK_THROWS_AS(SharedNodes(NodeBlockShape{halo}), std::logic_error);
-    CHECK_THROWS_AS(BrickGrid(geometry_of({16, 16, 16}), NodeBlockShape{halo}), std::logic_error);
+  for (const int layers : {-1, 2, 3, 5}) {
+    for (const NodeBlockShape shape : {NodeBlockShape{layers, 0}, NodeBlockShape{0, layers}}) {
+      CHECK_THROWS_AS(SharedNodes(shape), std::logic_error);
+      CHECK_THROWS_AS(BrickGrid(geometry_of({16, 16, 16}), shape), std::logic_error);
+    }
   }
 }

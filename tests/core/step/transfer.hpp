@@ -1,6 +1,6 @@
 #pragma once
 // One brick with particles anywhere in it, faces, edges and corners included, and the textbook's shape
-// functions at them (thesis 2-17), for the tests of the transfer kernels.
+// functions at them, for the tests of the transfer kernels.
 
 #include <array>
 #include <cmath>
@@ -8,23 +8,42 @@
 #include <vector>
 
 #include "core/particles/block_pool.hpp"
-#include "core/shape/linear.hpp"
+#include "core/shape/list.hpp"
 
 namespace mpm::tests {
 
-/// 10 x 11 x 9 oblong cells, origin negative: brick (2, 2, 2) has 2 x 3 x 1 cells.
-inline core::GridGeometry transfer_geometry() {
+/// Along one axis: S and the factor of its gradient on the particle's n-th node, r = (x - x_i)/h away.
+struct AlongAxis {
+  double value, slope;
+};
+
+/// Thesis 2-17.
+inline AlongAxis along_axis(const core::Linear&, int n, double r) {
+  return {1 - std::abs(r), n == 0 ? -1.0 : 1.0};
+}
+/// Half the hat functions of the two centres beside the node; the gradient has the same factors on the other
+/// axes.
+inline AlongAxis along_axis(const core::Sgmp&, int, double r) {
+  const double d = std::abs(r);
+  const double outside = std::max(1.5 - d, 0.0);
+  return {d < 0.5 ? 0.5 : 0.5 * outside, d < 0.5 ? -2 * r : (r > 0 ? -outside : outside)};
+}
+
+/// 10 x 11 x 9 oblong cells, origin negative: the last bricks are partial.
+inline core::GridGeometry transfer_geometry(core::Site site) {
   core::GridGeometry g;
   g.origin = {-7.3, -20, 1e-3};
   g.cell = {0.7, 1.3, 2.1};
   g.inverse_cell = {1 / 0.7, 1 / 1.3, 1 / 2.1};
   g.cells = {10, 11, 9};
+  g.site = site;
   return g;
 }
 
+template <class S>
 struct TransferCase {
-  core::GridGeometry geometry = transfer_geometry();
-  core::NodeBlockShape shape;
+  core::GridGeometry geometry = transfer_geometry(S::site);
+  core::NodeBlockShape shape = S::node_block;
   core::BrickCoord brick;
   core::BlockPool pool{core::ColumnLayout()};
   core::ParticleTile tile;
@@ -33,19 +52,16 @@ struct TransferCase {
   TransferCase(core::BrickCoord b, int count, unsigned seed) : brick(b) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
+    const core::BrickFrame f = frame();
     for (int n = 0; n < count; ++n) {
       std::vector<double>& p = particles.emplace_back();
       for (int c = 0; c < pool.layout().columns(); ++c) p.push_back(2 * unit(random) - 1);
       for (int a = 0; a < 3; ++a) {
-        const double cells = geometry.last_cell(b, a) + 1;
-        double s = cells * unit(random);
-        if (n % 5 == a) s = std::floor(s);  // on faces, edges (n % 5 == 3: none)
-        if (n % 5 == 4) s = std::floor(s);  // corners
-        // The grid's upper face belongs to the last cell.
-        const int first = core::brick_cells * (a == 0 ? b.x : a == 1 ? b.y : b.z);
-        if (n % 11 == 7 && first + cells == static_cast<double>(geometry.cells[static_cast<std::size_t>(a)]))
-          s = cells;
-        p[static_cast<std::size_t>(a)] = geometry.origin[a] + geometry.cell[a] * (first + s);
+        double s = f.lowest[a] + (f.beyond[a] - f.lowest[a]) * unit(random);
+        // On faces of sites and cells, on edges (n % 5 == 3: none), on corners (n % 5 == 4).
+        if (n % 5 == a || n % 5 == 4) s = std::max(0.5 * std::floor(2 * s), f.lowest[a]);
+        if (n % 11 == 7) s = on_upper_face(a) ? f.beyond[a] : s;
+        p[static_cast<std::size_t>(a)] = geometry.origin[a] + geometry.cell[a] * (f.first_site[a] + s);
       }
       p[6] = 0.5 + unit(random);  // mass
       p[7] = 0.5 + unit(random);  // volume
@@ -53,42 +69,59 @@ struct TransferCase {
     }
   }
 
-  core::BrickFrame frame() const { return {geometry, shape, brick}; }
-  core::LinearPlace block_place(const double* block) const { return {frame(), pool.layout(), block}; }
+  core::BrickFrame frame() const { return {geometry, brick}; }
+  typename S::Place block_place(const double* block) const { return {frame(), pool.layout(), block}; }
 
-  /// Scaled position in the brick, cell and fraction; a point that round-off puts below its brick is in its
-  /// first cell.
+  /// Position in cells from node 0 of the brick, and the particle's lowest node. A point that round-off puts
+  /// below its brick is in its first site; the grid's upper face belongs to the last one.
   struct Place {
-    std::array<int, 3> cell;
-    std::array<double, 3> fraction;
+    std::array<int, 3> lowest, cell;
+    std::array<double, 3> position;
   };
   Place place(const std::vector<double>& p) const {
     Place at{};
     for (int a = 0; a < 3; ++a) {
       const auto i = static_cast<std::size_t>(a);
-      const int first = core::brick_cells * (a == 0 ? brick.x : a == 1 ? brick.y : brick.z);
+      const int first = first_node(a);
       const double s = (p[i] - geometry.origin[a]) * geometry.inverse_cell[a] - first;
-      const int last = geometry.last_cell(brick, a);
-      at.cell[i] = std::min(std::max(static_cast<int>(std::floor(s)), 0), last);
-      at.fraction[i] = s - at.cell[i];
+      const double shift = geometry.first_site();
+      const int last = geometry.last_site(brick, a);
+      const int site = std::min(std::max(static_cast<int>(std::floor(s - shift)), 0), last);
+      at.position[i] = s;
+      at.lowest[i] = site - (S::nodes_per_axis > 2 ? 1 : 0);
+      const int last_cell = static_cast<int>(geometry.cells[i]) - 1 - first;
+      at.cell[i] = geometry.site == core::Site::cell
+                       ? site
+                       : std::min(std::max(static_cast<int>(std::floor(s)), -first), last_cell);
     }
     return at;
   }
-  /// f(node, S, gradient of S) for the eight nodes of a particle's cell.
+  /// f(node, S, gradient of S) for the nodes of a particle.
   template <class F>
   void for_each_node(const std::vector<double>& p, F f) const {
     const Place at = place(p);
-    for (int n = 0; n < 8; ++n) {
-      const int d[3] = {n & 1, (n >> 1) & 1, n >> 2};
+    constexpr int n = S::nodes_per_axis;
+    for (int i = 0; i < n * n * n; ++i) {
+      const int d[3] = {i % n, i / n % n, i / (n * n)};
       double w[3], dw[3];
+      int node[3];
       for (int a = 0; a < 3; ++a) {
-        w[a] = d[a] == 1 ? at.fraction[static_cast<std::size_t>(a)]
-                         : 1 - at.fraction[static_cast<std::size_t>(a)];
-        dw[a] = (d[a] == 1 ? 1 : -1) / geometry.cell[a];
+        const auto k = static_cast<std::size_t>(a);
+        node[a] = at.lowest[k] + d[a];
+        const AlongAxis along = along_axis(S(), d[a], at.position[k] - node[a]);
+        w[a] = along.value;
+        dw[a] = along.slope / geometry.cell[a];
       }
-      f(shape.index(at.cell[0] + d[0], at.cell[1] + d[1], at.cell[2] + d[2]), w[0] * w[1] * w[2],
+      f(shape.index(node[0], node[1], node[2]), w[0] * w[1] * w[2],
         core::Vec3<double>{dw[0] * w[1] * w[2], w[0] * dw[1] * w[2], w[0] * w[1] * dw[2]});
     }
+  }
+
+  int first_node(int axis) const {
+    return core::brick_cells * (axis == 0 ? brick.x : axis == 1 ? brick.y : brick.z);
+  }
+  bool on_upper_face(int axis) const {
+    return first_node(axis) + core::brick_cells >= geometry.cells[static_cast<std::size_t>(axis)];
   }
 };
 

@@ -1,0 +1,26 @@
+// The families of shape functions, each with its policy.
+#pragma once
+
+#include <stdexcept>
+#include <tuple>
+#include <type_traits>
+
+#include "core/scene/grid.hpp"
+#include "core/shape/linear.hpp"
+#include "core/shape/sgmp.hpp"
+
+namespace mpm::core {
+
+using Shapes = std::tuple<Linear, Sgmp>;
+
+/// f(std::type_identity<S>()) with the policy of `shape`.
+template <class F>
+auto with_shape(ShapeFunction shape, F f) {
+  switch (shape) {
+    case ShapeFunction::linear: return f(std::type_identity<Linear>());
+    case ShapeFunction::sgmp: return f(std::type_identity<Sgmp>());
+    default: throw std::logic_error("a shape function without a policy");
+  }
+}
+
+}  // namespace mpm::core

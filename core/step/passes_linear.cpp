@@ -1,0 +1,9 @@
+#include "core/shape/linear.hpp"
+#include "core/step/passes_with.hpp"
+#include "core/transfer/flip.hpp"
+
+namespace mpm::core {
+
+template class PassesWith<Linear, Flip>;
+
+}  // namespace mpm::core
