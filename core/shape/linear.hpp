@@ -31,8 +31,9 @@ struct LocatedInSites {
   int node[LaneTraits<T>::width];
 };
 
-/// `x`, `y`, `z`: columns of a block from the lane on. Unused lanes are clamped into the brick.
-template <class T>
+/// `x`, `y`, `z`: columns of a block from the lane on. Unused lanes are clamped into the brick. Points are
+/// numbered in a block of side^3.
+template <class T, int side = lattice_points.side()>
 inline LocatedInSites<T> locate_in_sites(const BrickFrame& f, const double* x, const double* y,
                                          const double* z) {
   const T sx = GridGeometry::scaled(load<T>(x), f.origin.x, f.inverse_cell.x) - T(f.first_site.x);
@@ -45,8 +46,7 @@ inline LocatedInSites<T> locate_in_sites(const BrickFrame& f, const double* x, c
   LocatedInSites<T> p{sx - cx, sy - cy, sz - cz, {}};
   constexpr int width = LaneTraits<T>::width;
   double node[width];
-  constexpr double side = lattice_points.side();
-  store(node, cx + T(side) * (cy + T(side) * cz));
+  store(node, cx + T(double(side)) * (cy + T(double(side)) * cz));
   for (int i = 0; i < width; ++i) p.node[i] = static_cast<int>(node[i]);
   return p;
 }
@@ -76,8 +76,8 @@ struct LinearPlace {
 constexpr int corner_node(int n) { return lattice_points.index(n & 1, n >> 1 & 1, n >> 2); }
 
 /// f(lowest node, lanes) for each cell that holds particles of the block, with their lanes.
-template <class F>
-inline void for_each_cell(const LinearPlace& place, F f) {
+template <class Place, class F>
+inline void for_each_cell(const Place& place, F f) {
   using Mask = LaneMask<block_lanes>;
   typedef int Nodes __attribute__((vector_size(block_lanes * sizeof(int))));
   Nodes nodes;

@@ -8,6 +8,8 @@ namespace mpm::core {
 // Compiled one by one, in passes_<shape>.cpp.
 extern template class PassesWith<Linear, Flip>;
 extern template class PassesWith<Sgmp, Flip>;
+extern template class PassesWith<QuadraticBSpline, Flip>;
+extern template class PassesWith<CubicBSpline, Flip>;
 
 std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo) {
   return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> std::unique_ptr<Passes> {

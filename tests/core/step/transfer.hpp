@@ -29,6 +29,28 @@ inline AlongAxis along_axis(const core::Sgmp&, int, double r) {
   return {d < 0.5 ? 0.5 : 0.5 * outside, d < 0.5 ? -2 * r : (r > 0 ? -outside : outside)};
 }
 
+/// B-splines as convolutions of boxes: second and third differences of truncated powers.
+inline AlongAxis along_axis(const core::QuadraticBSpline&, int, double r) {
+  double value = 0, slope = 0;
+  const double factor[4] = {1, -3, 3, -1};
+  for (int k = 0; k < 4; ++k) {
+    const double t = std::max(r + 1.5 - k, 0.0);
+    value += factor[k] * t * t / 2;
+    slope += factor[k] * t;
+  }
+  return {value, slope};
+}
+inline AlongAxis along_axis(const core::CubicBSpline&, int, double r) {
+  double value = 0, slope = 0;
+  const double factor[5] = {1, -4, 6, -4, 1};
+  for (int k = 0; k < 5; ++k) {
+    const double t = std::max(r + 2 - k, 0.0);
+    value += factor[k] * t * t * t / 6;
+    slope += factor[k] * t * t / 2;
+  }
+  return {value, slope};
+}
+
 /// 10 x 11 x 9 oblong cells, origin negative: the last bricks are partial.
 inline core::GridGeometry transfer_geometry(core::Site site) {
   core::GridGeometry g;

@@ -1,0 +1,236 @@
+// Shape functions that are products over the axes of functions with n = 3 or 4 nodes each: B-splines, GIMP.
+//
+//   S_i(x) = a(x) b(y) c(z),   grad S_i = (a' b c, a b' c, a b c')
+//
+// Along supplies the functions of one axis: static constexpr int nodes, and
+//   evaluate(position in the site, values[nodes], slopes[nodes])   in cells; particles in the lanes.
+// Three nodes per axis are those around the nearest node: bricks take particles by node; four are those
+// around the particle's cell. Either way a particle's lowest node has the number of its site in the node
+// block.
+//
+// Particles to grid: one particle at a time, a node's record in the lanes; sums over the axes are nested, so
+// that a node costs two multiply-adds of eight lanes. Grid to particles: particles in the lanes, each
+// distinct site among the eight visited once.
+#pragma once
+
+#include <cstdint>
+
+#include "core/shape/linear.hpp"
+
+namespace mpm::core {
+
+/// A block's particles: values and slopes (1/length) on their nodes along each axis.
+template <class Along>
+struct SeparablePlace {
+  static constexpr int n = Along::nodes;
+  static constexpr int side = brick_cells + n - 1;
+  alignas(64) double value[3][n][block_lanes];
+  alignas(64) double slope[3][n][block_lanes];
+  alignas(64) double position[3][block_lanes];  ///< within the site, 0 to 1
+  int node[block_lanes];                        ///< the lowest one's number
+
+  SeparablePlace() = default;
+  SeparablePlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+    find(frame, layout, block);
+  }
+  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+    const double* x = block + layout.offset(Column::position_x);
+    for (int l = 0; l < block_lanes; l += real_width) {
+      const auto p = locate_in_sites<Real, side>(frame, x + l, x + block_lanes + l, x + 2 * block_lanes + l);
+      const Real within[3] = {p.fx, p.fy, p.fz};
+      for (int a = 0; a < 3; ++a) {
+        Real values[n], slopes[n];
+        Along::evaluate(within[a], values, slopes);
+        store(position[a] + l, within[a]);
+        for (int i = 0; i < n; ++i) {
+          store(value[a][i] + l, values[i]);
+          store(slope[a][i] + l, slopes[i] * Real(frame.inverse_cell[a]));
+        }
+      }
+      for (int i = 0; i < real_width; ++i) node[l + i] = p.node[i];
+    }
+  }
+};
+
+namespace separable {
+
+/// x in the lower four lanes, y in the upper ones.
+inline Lanes<8> halves(double x, double y) { return Lanes<8>::vector{x, x, x, x, y, y, y, y}; }
+
+}  // namespace separable
+
+template <NodeFields what, class Along>
+struct SeparableScatter {
+  void clear() {}
+  void flush(const BrickFrame&, double*) {}
+
+  /// Particle `i` of the block.
+  [[gnu::always_inline]] void add(const BrickFrame&, const SeparablePlace<Along>& place, int i,
+                                  const MappedRows& rows, double* contributions) {
+    constexpr int n = Along::nodes, side = SeparablePlace<Along>::side;
+    constexpr int width = record_doubles(what.array);
+    double* lowest = contributions + width * place.node[i];
+    const auto& w = place.value;
+    const auto& d = place.slope;
+    if constexpr (maps_force(what)) {
+      using R = Lanes<8>;
+      using V = R::vector;
+      const auto s = [&](int c) { return -rows.stress[c][i]; };
+      // (p m | -V sigma_z), and the other rows of -V sigma in the place of the force.
+      R mapped = V{0, 0, 0, 0, s(5), s(4), s(2), 0};
+      if constexpr (maps_momentum(what))
+        mapped = V{
+            rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i], rows.mass[i], s(5), s(4), s(2), 0};
+      const R y_stress = V{0, 0, 0, 0, s(3), s(1), s(4), 0}, x_stress = V{0, 0, 0, 0, s(0), s(3), s(5), 0};
+      R wy[n], dy[n];
+      for (int j = 0; j < n; ++j) wy[j] = R(w[1][j][i]), dy[j] = R(d[1][j][i]);
+      for (int k = 0; k < n; ++k) {
+        const double wz = w[2][k][i];
+        const R u = mapped * separable::halves(wz, d[2][k][i]);
+        const R v = y_stress * R(wz), x = x_stress * R(wz);
+        for (int j = 0; j < n; ++j) {
+          const R p = u * wy[j] + v * dy[j], q = x * wy[j];
+          double* at = lowest + width * side * (j + side * k);
+          for (int m = 0; m < n; ++m, at += width)
+            store(at, load<R>(at) + (p * R(w[0][m][i]) + q * R(d[0][m][i])));
+        }
+      }
+    } else {
+      using H = Lanes<4>;
+      const H mapped = H::vector{rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i],
+                                 maps_mass(what) ? rows.mass[i] : 0.0};
+      for (int k = 0; k < n; ++k) {
+        const H u = mapped * H(w[2][k][i]);
+        for (int j = 0; j < n; ++j) {
+          const H p = u * H(w[1][j][i]);
+          double* at = lowest + width * side * (j + side * k);
+          for (int m = 0; m < n; ++m, at += width) store(at, load<H>(at) + p * H(w[0][m][i]));
+        }
+      }
+    }
+  }
+};
+
+template <class Along>
+struct SeparableInterpolation {
+  using R = Lanes<8>;
+  R value[3];
+  SeparableInterpolation(const SeparablePlace<Along>& place, const double* nodes) : value{0.0, 0.0, 0.0} {
+    constexpr int n = Along::nodes, side = SeparablePlace<Along>::side;
+    const auto w = [&](int axis, int i) { return load<R>(place.value[axis][i]); };
+    for_each_cell(place, [&](int node, auto here) {
+      const double* lowest = nodes + node_doubles * node;
+      R sum[3] = {0.0, 0.0, 0.0};
+      for (int k = 0; k < n; ++k) {
+        R plane[3] = {0.0, 0.0, 0.0};
+        for (int j = 0; j < n; ++j) {
+          const double* at = lowest + node_doubles * side * (j + side * k);
+          for (int c = 0; c < 3; ++c) {
+            R row = w(0, 0) * R(at[c]);
+            for (int i = 1; i < n; ++i) row += w(0, i) * R(at[node_doubles * i + c]);
+            plane[c] += w(1, j) * row;
+          }
+        }
+        for (int c = 0; c < 3; ++c) sum[c] += w(2, k) * plane[c];
+      }
+      for (int c = 0; c < 3; ++c) value[c] = select(here, sum[c], value[c]);
+    });
+  }
+};
+
+/// A policy (shape.hpp) but for its name.
+template <class Along>
+struct Separable {
+  static constexpr int nodes_per_axis = Along::nodes;
+  static_assert(nodes_per_axis == 3 || nodes_per_axis == 4);
+  static constexpr Site site = nodes_per_axis == 3 ? Site::node : Site::cell;
+  static constexpr NodeBlockShape node_block{1, nodes_per_axis == 3 ? 0 : 1};
+  using Place = SeparablePlace<Along>;
+  using Interpolation = SeparableInterpolation<Along>;
+  template <NodeFields what>
+  using Scatter = SeparableScatter<what, Along>;
+  template <NodeFields what>
+  using Sums = Linear::Sums<what>;
+  using Field = Linear::Field;
+
+  template <class Rows>
+  static void gradient(const BrickFrame&, const Place& place, const Field& field, Rows& rows, int at) {
+    using R = Lanes<8>;
+    constexpr int n = nodes_per_axis, side = Place::side;
+    const auto w = [&](int axis, int i) { return load<R>(place.value[axis][i]); };
+    const auto d = [&](int axis, int i) { return load<R>(place.slope[axis][i]); };
+    R gradient[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    for_each_cell(place, [&](int node, auto here) {
+      const double* lowest = field.nodes + Motion::strain_velocity_at + node_doubles * node;
+      for (int c = 0; c < 3; ++c) {
+        R gx(0.0), gy(0.0), gz(0.0);
+        for (int k = 0; k < n; ++k) {
+          R x(0.0), y(0.0), z(0.0);
+          for (int j = 0; j < n; ++j) {
+            const double* row = lowest + node_doubles * side * (j + side * k) + c;
+            R value = w(0, 0) * R(row[0]), slope = d(0, 0) * R(row[0]);
+            for (int i = 1; i < n; ++i) {
+              value += w(0, i) * R(row[node_doubles * i]);
+              slope += d(0, i) * R(row[node_doubles * i]);
+            }
+            x += w(1, j) * slope;
+            y += d(1, j) * value;
+            z += w(1, j) * value;
+          }
+          gx += w(2, k) * x;
+          gy += w(2, k) * y;
+          gz += d(2, k) * z;
+        }
+        R* const g = gradient + 3 * c;
+        g[0] = select(here, gx, g[0]);
+        g[1] = select(here, gy, g[1]);
+        g[2] = select(here, gz, g[2]);
+      }
+    });
+    for (int i = 0; i < 9; ++i) store(rows[i] + at, gradient[i]);
+  }
+
+  /// From the mean differences of the nodal velocities along the edges of the particle's cell.
+  static void cell_divergence(const BrickFrame& frame, const Place& place, const Field& field, double factor,
+                              double* row, int at) {
+    constexpr int side = Place::side;
+    for (int l = 0; l < block_lanes; ++l) {
+      int lowest = place.node[l];
+      const int stride[3] = {1, side, side * side};
+      for (int a = 0; a < 3; ++a)
+        lowest += stride[a] * (site == Site::cell || place.position[a][l] >= 0.5 ? 1 : 0);
+      double divergence = 0;
+      for (int a = 0; a < 3; ++a) {
+        double difference = 0;
+        for (int c = 0; c < 8; ++c) {
+          const int node = lowest + (c & 1) + side * ((c >> 1 & 1) + side * (c >> 2));
+          const double v = field.nodes[node_doubles * node + Motion::strain_velocity_at + a];
+          difference += (c >> a & 1) != 0 ? v : -v;
+        }
+        divergence += 0.25 * frame.inverse_cell[a] * difference;
+      }
+      row[at + l] = divergence * factor;
+    }
+  }
+
+  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
+    return g.site_index(x, axis) - 1;
+  }
+  template <class F>
+  static void for_each_node(const Place& place, int lane, const Vec3<double>&, F f) {
+    constexpr int n = nodes_per_axis, side = Place::side;
+    const auto w = [&](int axis, int i) { return place.value[axis][i][lane]; };
+    const auto d = [&](int axis, int i) { return place.slope[axis][i][lane]; };
+    for (int k = 0; k < n; ++k) {
+      for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+          f(place.node[lane] + i + side * (j + side * k), NodeOffset{{i, j, k}}, w(0, i) * w(1, j) * w(2, k),
+            Vec3<double>{d(0, i) * w(1, j) * w(2, k), w(0, i) * d(1, j) * w(2, k),
+                         w(0, i) * w(1, j) * d(2, k)});
+        }
+      }
+    }
+  }
+};
+
+}  // namespace mpm::core
