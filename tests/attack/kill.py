@@ -4,7 +4,7 @@ and every file must be those of a run that nobody disturbed.
     kill.py [trials, 300] [seed, 1]
 
 The moments are uniform over the time that an undisturbed run takes, and it is made to take a few times what a start
-takes, so that kills hit every phase on any machine."""
+takes, so that kills hit every phase on any machine. Runs that end before their moment shorten that time."""
 
 import os
 import pathlib
@@ -17,6 +17,7 @@ import _attack
 from _attack import _mpm, _resume
 
 MOST_KILLS = 30  # of one trial; from then on it is left alone
+PATIENCE = 20  # seconds for mpirun to end when none of its ranks lives any more
 
 
 class Length:
@@ -66,16 +67,37 @@ def strike(process, ranks, chance):
             pass
 
 
+def end_of_killed(process, ranks, count):
+    """The outcome of a run of which something was killed. Now and then mpirun waits for ever for a rank that is dead
+    (Open MPI 4.1): it is killed when it has no living rank for a while."""
+    alone_since = None
+    while ranks > 1 and process.poll() is None:
+        now = time.monotonic()
+        alone_since = None if any(map(lives, _resume.ranks_of(process, ranks))) else alone_since or now
+        if alone_since and now - alone_since > PATIENCE:
+            count["mpirun left over"] += 1
+            os.killpg(process.pid, signal.SIGKILL)
+        time.sleep(0.05)
+    return _mpm.finish(process)
+
+
+def lives(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 def wait_until_gone(process):
     """Until no process of its session lives: a rank may outlive its mpirun by a moment, and write."""
-    def lives(stat):
+    def is_member(stat):
         try:
             words = stat.read_text().rpartition(")")[2].split()
         except OSError:
             return False
         return words[0] not in "ZX" and int(words[3]) == process.pid
 
-    while any(lives(path) for path in pathlib.Path("/proc").glob("[0-9]*/stat")):
+    while any(is_member(path) for path in pathlib.Path("/proc").glob("[0-9]*/stat")):
         time.sleep(0.01)
 
 
@@ -89,6 +111,7 @@ def trial(length, out, ranks, chance, count):
             wait_until_gone(process)
             there = _mpm.restarts(out)
         process = _mpm.start([out / "case.pe" if there else length.case, "--output-dir", out], ranks=ranks)
+        begun = time.monotonic()
         if kills < MOST_KILLS:
             try:
                 process.wait(chance.uniform(0, length.seconds[ranks]))
@@ -97,12 +120,14 @@ def trial(length, out, ranks, chance, count):
                 count["kills"] += 1
                 count["before the first restart file"] += not there
                 strike(process, ranks, chance)
-                outcome = _mpm.finish(process)
+                outcome = end_of_killed(process, ranks, count)
                 if outcome.code is None:
                     return f"killed run does not end: {outcome}"
                 if outcome.code != 0:
                     continue
             else:
+                if not kills:
+                    length.seconds[ranks] = min(length.seconds[ranks], time.monotonic() - begun)
                 outcome = _mpm.finish(process)
         else:
             outcome = _mpm.finish(process)
@@ -121,7 +146,7 @@ def main():
     ground = _attack.Ground("kill")
     length = Length(ground)
     chance = random.Random(seed)
-    count = {"kills": 0, "before the first restart file": 0}
+    count = {"kills": 0, "before the first restart file": 0, "mpirun left over": 0}
     for n in range(trials):
         out = ground.folder / f"trial{n}"
         wrong = trial(length, out, 1 + n % 2, chance, count)
@@ -130,7 +155,7 @@ def main():
         else:
             shutil.rmtree(out)
     print(f"{trials} trials, {count['kills']} kills, {count['before the first restart file']} of them before the first "
-          "restart file")
+          f"restart file; mpirun had to be killed {count['mpirun left over']} time(s)")
     ground.end()
 
 
