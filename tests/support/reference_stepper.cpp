@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include <time.h>
-
 namespace mpm::tests {
 namespace {
-
-constexpr double bar_length = 25.4, bar_diameter = 7.6;
 
 Matrix product(const Matrix& a, const Matrix& b) {
   Matrix c{};
@@ -147,8 +142,15 @@ void update_stress(const ReferenceMaterial& material, double length, double dt, 
 }
 
 ReferenceStepper::ReferenceStepper(ReferenceCase setup) : case_(std::move(setup)) {
+  geometry_ = {.shape = case_.shape,
+               .origin = case_.origin,
+               .cell = case_.cell,
+               .cells = case_.cells,
+               .boundary = case_.boundary,
+               .half_size = case_.gimp_half_size};
+  layer_ = case_.shape == ReferenceShape::linear ? 0 : 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    nodes_[a] = static_cast<std::size_t>(case_.cells[a]) + 1;
+    nodes_[a] = static_cast<std::size_t>(case_.cells[a]) + 1 + 2 * layer_;
     inverse_cell_[a] = 1 / case_.cell[a];
   }
   length_ = std::min({case_.cell[0], case_.cell[1], case_.cell[2]});
@@ -171,25 +173,34 @@ double ReferenceStepper::dt() const {
 }
 
 void ReferenceStepper::step() {
+  if (case_.shape == ReferenceShape::linear)
+    step_with<CellSupport>();
+  else
+    step_with<AnySupport>();
+}
+
+template <class Support>
+void ReferenceStepper::step_with() {
   const double dt = this->dt();
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
   const bool usf = case_.scheme == ReferenceScheme::usf;
-  particles_to_grid();
+  particles_to_grid<Support>();
   if (usf) {
     initial_velocities();
-    update_stresses(dt);
+    update_stresses<Support>(dt);
   }
   integrate_momentum(dt);
-  grid_to_particles(dt);
+  grid_to_particles<Support>(dt);
   if (!usf) {
     final_velocities();
-    update_stresses(dt);
+    update_stresses<Support>(dt);
   }
   for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].x = next_x_[n];
   time_ += dt;
 }
 
-ReferenceStepper::Support ReferenceStepper::support(const Vector& x) const {
+template <>
+ReferenceStepper::CellSupport ReferenceStepper::support(const Vector& x) const {
   std::array<std::size_t, 3> first{};
   double N[3][2], dN[3][2];
   for (std::size_t a = 0; a < 3; ++a) {
@@ -203,7 +214,7 @@ ReferenceStepper::Support ReferenceStepper::support(const Vector& x) const {
     dN[a][1] = inverse_cell_[a];
     dN[a][0] = -dN[a][1];
   }
-  Support result;
+  CellSupport result;
   std::size_t n = 0;
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t j = 0; j < 2; ++j)
@@ -216,12 +227,30 @@ ReferenceStepper::Support ReferenceStepper::support(const Vector& x) const {
   return result;
 }
 
+template <>
+ReferenceStepper::AnySupport ReferenceStepper::support(const Vector& x) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double position = (x[a] - case_.origin[a]) / case_.cell[a];
+    if (!(position >= 0 && position <= case_.cells[a])) report_outside(x);
+  }
+  AnySupport result;
+  result.wide = wide_support(geometry_, x);
+  result.count = result.wide.count;
+  for (std::size_t n = 0; n < result.count; ++n) {
+    std::size_t at = 0;
+    for (std::size_t a = 3; a-- > 0;)
+      at = at * nodes_[a] + static_cast<std::size_t>(result.wide.entry[n].node[a] + 1);
+    result.node[n] = at;
+  }
+  return result;
+}
+
 /// What the faces of the grid do to component `axis` of a velocity at node (i, j, k).
 ReferenceStepper::Stop ReferenceStepper::stop(const Index& node, std::size_t axis, double velocity) const {
   Stop result = Stop::none;
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t side = 0; side < 2; ++side) {
-      if (node[a] != (side == 0 ? 0 : nodes_[a] - 1)) continue;
+      if (node[a] != (side == 0 ? layer_ : nodes_[a] - 1 - layer_)) continue;
       const int kind = case_.boundary[2 * a + side];
       if (kind == 1 || (kind == 2 && a == axis)) return Stop::held;
       if (kind == 4 && a == axis && (side == 0 ? velocity < 0 : velocity > 0)) result = Stop::wall;
@@ -239,14 +268,15 @@ void ReferenceStepper::for_active_nodes(Operation&& operation) {
 }
 
 /// 2-31, 2-32; the forces at once unless USF has yet to update the stress.
+template <class Support>
 void ReferenceStepper::particles_to_grid() {
   std::fill(grid_.begin(), grid_.end(), Node{});
   for (const auto& particle : case_.particles) {
-    const Support at = support(particle.x);
-    for (std::size_t n = 0; n < 8; ++n) {
+    const Support at = support<Support>(particle.x);
+    for (std::size_t n = 0; n < at.count; ++n) {
       Node& node = grid_[at.node[n]];
-      node.m += particle.m * at.S[n];
-      for (std::size_t a = 0; a < 3; ++a) node.p[a] += particle.m * particle.v[a] * at.S[n];
+      node.m += particle.m * at.mass(n);
+      for (std::size_t a = 0; a < 3; ++a) node.p[a] += particle.m * particle.v[a] * at.value(n, a);
     }
     if (case_.scheme != ReferenceScheme::usf) add_force(particle, at);
   }
@@ -255,15 +285,18 @@ void ReferenceStepper::particles_to_grid() {
 }
 
 /// 2-38 to 2-40.
+template <class Support>
 void ReferenceStepper::add_force(const ReferenceParticle& particle, const Support& at) {
   Matrix sigma = particle.s;
   for (std::size_t a = 0; a < 3; ++a) sigma[a][a] -= particle.p + particle.q;
-  for (std::size_t n = 0; n < 8; ++n) {
+  for (std::size_t n = 0; n < at.count; ++n) {
     Node& node = grid_[at.node[n]];
-    const Vector& G = at.G[n];
-    for (std::size_t a = 0; a < 3; ++a)
-      node.f[a] += particle.m * at.S[n] * case_.gravity[a] -
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Vector& G = at.slope(n, a);
+      const double weight = case_.nodal_gravity ? at.mass(n) : at.value(n, a);
+      node.f[a] += particle.m * weight * case_.gravity[a] -
                    particle.V * (sigma[a][0] * G[0] + sigma[a][1] * G[1] + sigma[a][2] * G[2]);
+    }
   }
 }
 
@@ -302,22 +335,24 @@ void ReferenceStepper::integrate_momentum(double dt) {
 }
 
 /// 2-42, 2-43, and the sum of 2-45.
+template <class Support>
 void ReferenceStepper::grid_to_particles(double dt) {
   for (std::size_t index = 0; index < case_.particles.size(); ++index) {
     auto& particle = case_.particles[index];
-    const Support at = support(particle.x);
+    const Support at = support<Support>(particle.x);
     next_x_[index] = particle.x;
-    for (std::size_t n = 0; n < 8; ++n) {
+    for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
       if (!node.active) continue;
       for (std::size_t a = 0; a < 3; ++a) {
-        next_x_[index][a] += dt * at.S[n] * node.v[a];
-        particle.v[a] += dt * at.S[n] * node.a[a];
+        next_x_[index][a] += dt * at.value(n, a) * node.v[a];
+        particle.v[a] += dt * at.value(n, a) * node.a[a];
       }
     }
     if (case_.scheme != ReferenceScheme::musl) continue;
-    for (std::size_t n = 0; n < 8; ++n)
-      for (std::size_t a = 0; a < 3; ++a) grid_[at.node[n]].w[a] += particle.m * particle.v[a] * at.S[n];
+    for (std::size_t n = 0; n < at.count; ++n)
+      for (std::size_t a = 0; a < 3; ++a)
+        grid_[at.node[n]].w[a] += particle.m * particle.v[a] * at.value(n, a);
   }
 }
 
@@ -333,15 +368,16 @@ void ReferenceStepper::final_velocities() {
   });
 }
 
+template <class Support>
 void ReferenceStepper::update_stresses(double dt) {
   for (auto& particle : case_.particles) {
-    const Support at = support(particle.x);
+    const Support at = support<Support>(particle.x);
     Matrix L{};
-    for (std::size_t n = 0; n < 8; ++n) {
+    for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
       if (!node.active) continue;
       for (std::size_t a = 0; a < 3; ++a)
-        for (std::size_t b = 0; b < 3; ++b) L[a][b] += node.w[a] * at.G[n][b];
+        for (std::size_t b = 0; b < 3; ++b) L[a][b] += node.w[a] * at.slope(n, a)[b];
     }
     update_stress(case_.material, length_, dt, L, particle);
     if (!(particle.V > 0)) throw std::runtime_error("a particle's volume is " + std::to_string(particle.V));
@@ -366,81 +402,6 @@ Vector ReferenceStepper::momentum() const {
   for (const auto& particle : case_.particles)
     for (std::size_t a = 0; a < 3; ++a) sum[a] += particle.m * particle.v[a];
   return sum;
-}
-
-ReferenceCase taylor_bar(double dp) {
-  constexpr double impact_speed = 190;
-  ReferenceCase setup;
-  setup.material = {.density = 8.93e-3,
-                    .young = 117e3,
-                    .poisson = 0.35,
-                    .yield = 157,
-                    .plastic_modulus = 425,
-                    .gruneisen = true,
-                    .c0 = 3940,
-                    .s = 1.49,
-                    .gamma0 = 1.96,
-                    .bq1 = 1.5,
-                    .bq2 = 0.06};
-  const double cell = 2 * dp;
-  const int half = static_cast<int>(std::ceil(1.1 * bar_diameter / cell));  // the foot grows to 0.9 diameters
-  setup.cell = {cell, cell, cell};
-  setup.origin = {-half * cell, -half * cell, 0};
-  setup.cells = {2 * half, 2 * half, static_cast<int>(std::ceil(bar_length / cell)) + 1};
-  setup.boundary = {0, 0, 0, 0, 2, 0};
-
-  const int layers = static_cast<int>(std::lround(bar_length / dp));
-  const double dz = bar_length / layers;
-  const int side = static_cast<int>(std::ceil(bar_diameter / 2 / dp));
-  for (int k = 0; k < layers; ++k)
-    for (int j = -side; j < side; ++j)
-      for (int i = -side; i < side; ++i) {
-        const double x = (i + 0.5) * dp, y = (j + 0.5) * dp;
-        if (4 * (x * x + y * y) > bar_diameter * bar_diameter) continue;
-        ReferenceParticle particle;
-        particle.x = {x, y, (k + 0.5) * dz};
-        particle.v = {0, 0, -impact_speed};
-        particle.V = dp * dp * dz;
-        particle.m = setup.material.density * particle.V;
-        setup.particles.push_back(particle);
-      }
-  return setup;
-}
-
-BarShape bar_shape(const ReferenceCase& initial, std::span<const ReferenceParticle> particles) {
-  struct Reach {
-    double z = 0, r = 0;
-  };
-  const auto reach = [](std::span<const ReferenceParticle> bar) {
-    Reach most;
-    for (const auto& particle : bar) {
-      most.z = std::max(most.z, particle.x[2]);
-      most.r = std::max(most.r, std::hypot(particle.x[0], particle.x[1]));
-    }
-    return most;
-  };
-  const Reach before = reach(initial.particles), now = reach(particles);
-  const double height = 0.2 * bar_length, width = initial.cell[2];
-  double area = 0;
-  for (const auto& particle : particles)
-    area += particle.V * std::max(0.0, 1 - std::abs(particle.x[2] - height) / width) / width;
-  return {.length = now.z + bar_length - before.z,
-          .foot_diameter = now.r / before.r * bar_diameter,
-          .diameter = std::sqrt(4 * area / std::numbers::pi)};
-}
-
-double run_reference(int particles_target, int steps) {
-  const double bar_volume = std::numbers::pi / 4 * bar_diameter * bar_diameter * bar_length;
-  ReferenceStepper stepper(taylor_bar(std::cbrt(bar_volume / particles_target)));
-  stepper.step();  // the first one touches the memory
-  const auto cpu_ns = [] {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-  };
-  const double start = cpu_ns();
-  for (int n = 0; n < steps; ++n) stepper.step();
-  return (cpu_ns() - start) / (static_cast<double>(stepper.particles().size()) * steps);
 }
 
 }  // namespace mpm::tests

@@ -1,8 +1,8 @@
 // The oracle: a naive, textbook material point method, one struct per particle and one dense grid, in plain
-// double. Steps of thesis 2.2.2 (USF, USL, MUSL), FLIP transfer, trilinear shape functions (2-17), stress
-// update 2.4.1, J2 return 2.4.3, Mie-Grueneisen 2-130, bulk viscosity 2-69. It shares no code with the
-// production kernels. Limits: one material, one rank, uniform grid, no contact, no failure. Shown by
-// tests/core/reference.
+// double. Steps of thesis 2.2.2 (USF, USL, MUSL), FLIP transfer, trilinear shape functions (2-17) or those of
+// reference_shape.hpp, stress update 2.4.1, J2 return 2.4.3, Mie-Grueneisen 2-130, bulk viscosity 2-69. It
+// shares no code with the production kernels. Limits: one material, one rank, uniform grid, no contact, no
+// failure. Shown by tests/core/reference.
 //
 // Symbols: S_ip, G_ip shape function and gradient; m_i, p_i, f_i mass, momentum, force of a node; index p a
 // particle. Units are the user's; the Taylor bar uses mm, g, ms, hence MPa.
@@ -14,11 +14,9 @@
 #include <span>
 #include <vector>
 
-namespace mpm::tests {
+#include "tests/support/reference_shape.hpp"
 
-using Vector = std::array<double, 3>;
-/// [row][column]; a velocity gradient has dv_row/dx_column.
-using Matrix = std::array<std::array<double, 3>, 3>;
+namespace mpm::tests {
 
 enum class ReferenceScheme { usf, usl, musl };
 
@@ -70,7 +68,13 @@ struct ReferenceCase {
   /// their speed towards it and a rigid wall hardly lets go of them. With this, the force at a rigid wall is
   /// the one that stops the node.
   bool wall_reaction = false;
+  ReferenceShape shape = ReferenceShape::linear;
+  Vector gimp_half_size{};  ///< of a particle's domain, length, for ugimp
   Vector gravity{};
+  /// Gravity as an acceleration of the nodes, hence a force m_i g. Otherwise particles map m_p g as they map
+  /// their momentum, so that its power is that of the particles' weight; the two differ where particles reach
+  /// beyond a fixed or symmetry face. The remedy of USL below takes m_i g for gravity's part in both.
+  bool nodal_gravity = false;
   ReferenceScheme scheme = ReferenceScheme::musl;
   double dt_factor = 0.5;                                       ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
@@ -113,27 +117,50 @@ class ReferenceStepper {
     Vector w{};           ///< velocity of the strain rate
     bool active = false;  ///< heavier than the cutoff
   };
-  struct Support {
-    std::array<std::size_t, 8> node;
-    std::array<double, 8> S;
-    std::array<Vector, 8> G;
+  /// The eight nodes of a cell.
+  struct CellSupport {
+    static constexpr std::size_t count = 8;
+    std::array<std::size_t, count> node;
+    std::array<double, count> S;
+    std::array<Vector, count> G;
+    double mass(std::size_t n) const { return S[n]; }
+    double value(std::size_t n, std::size_t) const { return S[n]; }
+    const Vector& slope(std::size_t n, std::size_t) const { return G[n]; }
+  };
+  /// Any shape, with its weights per component.
+  struct AnySupport {
+    WideSupport wide;
+    std::array<std::size_t, 64> node;
+    std::size_t count;
+    double mass(std::size_t n) const { return wide.entry[n].mass; }
+    double value(std::size_t n, std::size_t component) const { return wide.entry[n].value[component]; }
+    const Vector& slope(std::size_t n, std::size_t component) const { return wide.entry[n].slope[component]; }
   };
 
+  template <class Support>
   Support support(const Vector& x) const;
   Stop stop(const Index& node, std::size_t axis, double velocity) const;
   template <class Operation>
   void for_active_nodes(Operation&& operation);
 
+  template <class Support>
+  void step_with();
+  template <class Support>
   void particles_to_grid();
+  template <class Support>
   void add_force(const ReferenceParticle& particle, const Support& at);
   void initial_velocities();
   void integrate_momentum(double dt);
+  template <class Support>
   void grid_to_particles(double dt);
   void final_velocities();
+  template <class Support>
   void update_stresses(double dt);
 
   ReferenceCase case_;
-  Index nodes_{};  ///< along each axis
+  Index nodes_{};          ///< along each axis
+  std::size_t layer_ = 0;  ///< layers of nodes outside the grid
+  ReferenceGrid geometry_;
   Vector inverse_cell_{};
   double length_ = 0;          ///< smallest cell edge
   double node_mass_unit_ = 0;  ///< rho_0 * cell volume

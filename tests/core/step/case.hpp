@@ -4,16 +4,22 @@
 // trial.
 
 #include <algorithm>
+#include <array>
 #include <cfenv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
+#include <stdexcept>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "core/communication/solo.hpp"
 #include "core/particle_range.hpp"
 #include "core/particles/tile_order.hpp"
+#include "core/shape/list.hpp"
+#include "core/step/passes.hpp"
 #include "core/step/speeds.hpp"
 #include "core/step/stepper.hpp"
 #include "tests/support/reference_stepper.hpp"
@@ -130,6 +136,26 @@ inline core::Scheme scheme_of(ReferenceScheme s) {
                                      : core::Scheme::musl;
 }
 
+inline core::ShapeFunction shape_function_of(ReferenceShape s) {
+  switch (s) {
+    case ReferenceShape::linear: return core::ShapeFunction::linear;
+    case ReferenceShape::sgmp: return core::ShapeFunction::sgmp;
+    case ReferenceShape::quadratic_bspline: return core::ShapeFunction::quadratic_bspline;
+    case ReferenceShape::cubic_bspline: return core::ShapeFunction::cubic_bspline;
+    case ReferenceShape::ugimp: return core::ShapeFunction::uniform_gimp;
+  }
+  throw std::logic_error("a shape that only the oracle has");
+}
+
+/// The oracle's shape of a policy. A policy without one does not compile: add it here.
+constexpr ReferenceShape reference_shape(std::type_identity<core::Linear>) { return ReferenceShape::linear; }
+constexpr ReferenceShape reference_shape(std::type_identity<core::Sgmp>) { return ReferenceShape::sgmp; }
+
+/// The shapes of the program's list.
+inline constexpr auto reference_shapes = []<class... S>(std::type_identity<std::tuple<S...>>) {
+  return std::array<ReferenceShape, sizeof...(S)>{reference_shape(std::type_identity<S>())...};
+}(std::type_identity<core::Shapes>());
+
 /// One run of the production stepper. Bodies: particles [0, split) of the case are the first, the rest the
 /// second.
 struct SmallRun {
@@ -144,6 +170,7 @@ struct SmallRun {
     scene->solution.end_time = 1e30;
     scene->solution.time_step.factor = c.dt_factor;
     scene->solution.gravity = {c.gravity[0], c.gravity[1], c.gravity[2]};
+    scene->grid.shape = shape_function_of(c.shape);
     model.scene = scene;
     model.materials.push_back(std::make_unique<OracleLaw>(c.material));
     core::GridGeometry g;
@@ -155,8 +182,9 @@ struct SmallRun {
       g.cells[i] = c.cells[i];
     }
     for (std::size_t f = 0; f < 6; ++f) g.boundary[f] = static_cast<core::Boundary>(c.boundary[f]);
+    g.site = core::site_of(*scene);
     g.mass_cutoff = c.mass_cutoff * c.material.density * g.cell_volume();
-    model.grid = std::make_unique<core::BrickGrid>(g);
+    model.grid = std::make_unique<core::BrickGrid>(g, core::node_block_of(*scene));
     core::ColumnSet columns = core::ColumnSet::mechanics();
     columns.add(model.materials[0]->columns({}));
     for (const core::Boundary b : g.boundary) {
@@ -261,6 +289,7 @@ inline ReferenceCase tumbling_block() {
   c.origin = {-3.1, -7.3, -5.2};
   c.cell = {1, 0.8, 1.25};
   c.cells = {14, 18, 11};
+  c.gimp_half_size = {0.25, 0.2, 0.3125};
   const Vector dx{0.5, 0.4, 0.625}, centre{2.4, 0.35, 1.1};
   for (int k = 0; k < 8; ++k) {
     for (int j = 0; j < 9; ++j) {

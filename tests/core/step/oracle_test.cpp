@@ -79,11 +79,14 @@ void run_both(ReferenceCase c, int steps, double tolerance) {
 }  // namespace
 
 TEST_CASE("A Taylor bar moves as the naive stepper moves it") {
-  for (const ReferenceScheme scheme : schemes) {
-    INFO("scheme " << static_cast<int>(scheme));
-    ReferenceCase c = taylor_bar(1.27);
-    c.scheme = scheme;
-    run_both(c, 50, 1e-9);
+  for (const ReferenceShape shape : reference_shapes) {
+    for (const ReferenceScheme scheme : schemes) {
+      INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
+      ReferenceCase c = taylor_bar(1.27);
+      c.shape = shape;
+      c.scheme = scheme;
+      run_both(c, 50, 1e-9);
+    }
   }
 }
 
@@ -91,16 +94,24 @@ namespace {
 
 /// The block in free space (boundary 0) or thrown into the corner of the lower y and the upper x and z.
 void tumble(ReferenceScheme scheme, int boundary) {
-  INFO("scheme " << static_cast<int>(scheme) << ", boundary " << boundary);
-  ReferenceCase c = tumbling_block();
-  c.scheme = scheme;
-  c.boundary.fill(boundary);
-  c.wall_reaction = true;
-  c.gravity = {-30, 20, 40};
-  for (ReferenceParticle& p : c.particles) {
-    if (boundary != 0) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
+  for (const ReferenceShape shape : reference_shapes) {
+    INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", boundary "
+                  << boundary);
+    ReferenceCase c = tumbling_block();
+    c.shape = shape;
+    c.scheme = scheme;
+    c.boundary.fill(boundary);
+    c.wall_reaction = true;
+    c.gravity = {-30, 20, 40};
+    c.nodal_gravity = true;  // as in core/step/node_update.cpp
+    for (ReferenceParticle& p : c.particles) {
+      // It shrinks, too: the viscosity jumps where the rate of volume change goes through zero, and in a
+      // rigid motion the rounding of the first step would decide it.
+      for (std::size_t a = 0; a < 3; ++a) p.v[a] -= 0.02 * p.x[a];
+      if (boundary != 0) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
+    }
+    run_both(c, 30, 1e-9);
   }
-  run_both(c, 30, 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,127 @@
+#include "tests/support/reference_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mpm::tests {
+namespace {
+
+double hat(double r) { return std::max(0.0, 1 - std::abs(r)); }
+
+/// Integral of the hat up to r.
+double area_of_hat(double r) {
+  if (r <= -1) return 0;
+  if (r >= 1) return 1;
+  return r < 0 ? 0.5 * (1 + r) * (1 + r) : 1 - 0.5 * (1 - r) * (1 - r);
+}
+
+/// The weights of one node along one axis, with the walls: for mass, and by component.
+struct AxisEntry {
+  int node = 0;
+  double mass = 0;
+  Vector value{}, slope{};
+};
+struct AxisSupport {
+  std::array<AxisEntry, 4> entry;
+  std::size_t count = 0;
+
+  AxisEntry& at(int node) {
+    for (std::size_t n = 0; n < count; ++n)
+      if (entry[n].node == node) return entry[n];
+    entry.at(count) = {.node = node};
+    return entry[count++];
+  }
+};
+
+/// Adds node `outer`, which is beyond the wall at node `wall`, to the nodes that determine its velocity.
+void add_mirrored(AxisSupport& to, int outer, int wall, int boundary, std::size_t axis, ShapeOnAxis shape) {
+  AxisEntry& inner = to.at(2 * wall - outer);
+  const bool rigid = boundary == 4;
+  inner.mass += rigid ? -shape.value : shape.value;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double sign = rigid || boundary == 1 || c == axis ? -1 : 1;
+    inner.value[c] += sign * shape.value;
+    inner.slope[c] += sign * shape.slope;
+  }
+  if (!rigid) return;
+  AxisEntry& on_wall = to.at(wall);
+  on_wall.mass += 2 * shape.value;
+  for (std::size_t c = 0; c < 3; ++c) {
+    on_wall.value[c] += 2 * shape.value;
+    on_wall.slope[c] += 2 * shape.slope;
+  }
+}
+
+AxisSupport axis_support(const ReferenceGrid& grid, double x, std::size_t axis) {
+  const double position = (x - grid.origin[axis]) / grid.cell[axis];
+  const int below = static_cast<int>(std::floor(position)), last = grid.cells[axis];
+  AxisSupport result;
+  for (int i = below - 1; i <= below + 2; ++i) {
+    const ShapeOnAxis shape = shape_on_axis(grid.shape, position - i, grid.half_size[axis] / grid.cell[axis]);
+    if (shape.value == 0 && shape.slope == 0) continue;
+    const bool outside = i < 0 || i > last;
+    const int boundary = grid.boundary[2 * axis + (i < 0 ? 0 : 1)];
+    if (outside && boundary != 0) {
+      add_mirrored(result, i, i < 0 ? 0 : last, boundary, axis, shape);
+      continue;
+    }
+    AxisEntry& entry = result.at(i);
+    entry.mass += shape.value;
+    for (std::size_t c = 0; c < 3; ++c) {
+      entry.value[c] += shape.value;
+      entry.slope[c] += shape.slope;
+    }
+  }
+  for (std::size_t n = 0; n < result.count; ++n)
+    for (double& slope : result.entry[n].slope) slope /= grid.cell[axis];
+  return result;
+}
+
+}  // namespace
+
+ShapeOnAxis shape_on_axis(ReferenceShape shape, double r, double half_size) {
+  const double d = std::abs(r), sign = r < 0 ? -1 : 1;
+  switch (shape) {
+    case ReferenceShape::linear:  // a particle on a face is in the cell above
+      return {hat(r), r < -1 || r >= 1 ? 0.0 : -sign};
+    case ReferenceShape::sgmp: return {0.5 * (hat(r - 0.5) + hat(r + 0.5)), hat(r + 0.5) - hat(r - 0.5)};
+    case ReferenceShape::quadratic_bspline:
+      if (d <= 0.5) return {0.75 - r * r, -2 * r};
+      if (d < 1.5) return {0.5 * (1.5 - d) * (1.5 - d), -sign * (1.5 - d)};
+      return {0, 0};
+    case ReferenceShape::cubic_bspline:
+      if (d <= 1) return {2.0 / 3 - r * r + 0.5 * d * d * d, r * (1.5 * d - 2)};
+      if (d < 2) return {(2 - d) * (2 - d) * (2 - d) / 6, -0.5 * sign * (2 - d) * (2 - d)};
+      return {0, 0};
+    case ReferenceShape::ugimp: {
+      const double l = half_size;
+      return {(area_of_hat(r + l) - area_of_hat(r - l)) / (2 * l), (hat(r + l) - hat(r - l)) / (2 * l)};
+    }
+  }
+  return {0, 0};
+}
+
+WideSupport wide_support(const ReferenceGrid& grid, const Vector& x) {
+  const AxisSupport along[3] = {axis_support(grid, x[0], 0), axis_support(grid, x[1], 1),
+                                axis_support(grid, x[2], 2)};
+  WideSupport result;
+  for (std::size_t k = 0; k < along[2].count; ++k)
+    for (std::size_t j = 0; j < along[1].count; ++j)
+      for (std::size_t i = 0; i < along[0].count; ++i) {
+        const AxisEntry* const on[3] = {&along[0].entry[i], &along[1].entry[j], &along[2].entry[k]};
+        WideSupport::Entry& entry = result.entry[result.count++];
+        entry.node = {on[0]->node, on[1]->node, on[2]->node};
+        entry.mass = on[0]->mass * on[1]->mass * on[2]->mass;
+        for (std::size_t c = 0; c < 3; ++c) {
+          entry.value[c] = on[0]->value[c] * on[1]->value[c] * on[2]->value[c];
+          for (std::size_t b = 0; b < 3; ++b) {
+            entry.slope[c][b] = 1;
+            for (std::size_t a = 0; a < 3; ++a)
+              entry.slope[c][b] *= a == b ? on[a]->slope[c] : on[a]->value[c];
+          }
+        }
+      }
+  return result;
+}
+
+}  // namespace mpm::tests

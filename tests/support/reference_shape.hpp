@@ -1,0 +1,67 @@
+// The oracle's shape functions, straight from their definitions on an unbounded uniform grid, and what walls
+// make of them. r = (x - x_i)/h; hat(r) = max(0, 1 - |r|); S_i, G_i value and derivative times h along an
+// axis.
+//   linear            S = hat(r)                                                  2 nodes along an axis
+//   quadratic_bspline S = hat * box, the box one cell wide                                       3
+//   cubic_bspline     S = hat * hat                                                              4
+//   ugimp             S = mean of hat over the particle's domain r - l .. r + l,  l <= 1/2       3
+//                     (Bardenhagen and Kober, CMES 5 (2004) 477; the domain keeps its initial size)
+//   sgmp              S = sum of hat(x - x_c)/2 over the two cell centres c beside the node,     3
+//                     G = sum of +-hat(x - x_c), + for the centre below (Liang et al., CMAME 352 (2019) 85)
+// S and G of a node are products over the axes. All S are positive, add up to 1 and reproduce linear fields.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace mpm::tests {
+
+using Vector = std::array<double, 3>;
+/// [row][column]; a velocity gradient has dv_row/dx_column.
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+enum class ReferenceShape { linear, sgmp, quadratic_bspline, cubic_bspline, ugimp };
+
+struct ShapeOnAxis {
+  double value, slope;
+};
+/// S and G of a node r cells below the particle; `half_size` is l, in cells, of ugimp.
+ShapeOnAxis shape_on_axis(ReferenceShape shape, double r, double half_size);
+
+struct ReferenceGrid {
+  ReferenceShape shape = ReferenceShape::linear;
+  Vector origin{};
+  Vector cell{};
+  std::array<int, 3> cells{};
+  std::array<int, 6> boundary{};  ///< as ReferenceCase's
+  Vector half_size{};             ///< ugimp, length
+};
+
+/// A particle's shape functions of any width, with the walls in them. Nodes have indices -1 .. cells + 1
+/// along an axis: one layer outside the grid, whose nodes beyond a free face are nodes like others. Beyond a
+/// wall there are none: the velocity u_o there is a linear function of the velocities of the wall's node w
+/// and the mirror image m inside (below, per component c), so that node o's share of any interpolation is one
+/// of w's and m's,
+///   sum_i S_i u_i = ... + S_o u_o = ... + S_m' u_m + S_w' u_w,
+///   symmetry    S_mc' = S_m + S_o (-S_o for the component normal to the wall)
+///   fixed       S_mc' = S_m - S_o
+///   rigid wall  S_mc' = S_m - S_o,  S_wc' = S_w + 2 S_o
+/// and G likewise. Momentum sum_p m v_c S_ic' and force -sum_p V sigma_cb G_icb' are then the transpose of
+/// the same matrix: what a particle would map to o arrives at m and w times the same coefficients. So is the
+/// power of the forces on the nodes that of the stresses in the particles, whichever way the nodes are
+/// stored. Mass takes the coefficients of a component that is not reversed; at a rigid wall these are those
+/// above. The rules of two axes act on different factors of the products, so their order is of no concern.
+struct WideSupport {
+  struct Entry {
+    std::array<int, 3> node;
+    double mass;   ///< weight of the particle's mass
+    Vector value;  ///< by component of velocity, momentum and force
+    Matrix slope;  ///< [component][axis]: gradient
+  };
+  std::array<Entry, 64> entry;
+  std::size_t count = 0;
+};
+/// x lies in the grid.
+WideSupport wide_support(const ReferenceGrid& grid, const Vector& x);
+
+}  // namespace mpm::tests
