@@ -92,23 +92,33 @@ TEST_CASE("A Taylor bar moves as the naive stepper moves it") {
 
 namespace {
 
-/// The block in free space (boundary 0) or thrown into the corner of the lower y and the upper x and z.
-void tumble(ReferenceScheme scheme, int boundary) {
+ReferenceCase shrinking_block(ReferenceShape shape, ReferenceScheme scheme, int boundary) {
+  ReferenceCase c = tumbling_block();
+  c.shape = shape;
+  c.scheme = scheme;
+  c.boundary.fill(boundary);
+  c.wall_reaction = true;
+  c.gravity = {-30, 20, 40};
+  c.nodal_gravity = true;  // as in core/step/node_update.cpp
+  // The viscosity jumps where the rate of volume change goes through zero: in a rigid motion the rounding of
+  // the first step would decide it.
+  for (ReferenceParticle& p : c.particles)
+    for (std::size_t a = 0; a < 3; ++a) p.v[a] -= 0.02 * p.x[a];
+  return c;
+}
+
+/// The block in free space (boundary 0) or thrown into the corner of the lower y and the upper x and z, on a
+/// grid with so many cells more along x and z.
+void tumble(ReferenceScheme scheme, int boundary, int more_x = 0, int more_z = 0) {
   for (const ReferenceShape shape : reference_shapes) {
     INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", boundary "
-                  << boundary);
-    ReferenceCase c = tumbling_block();
-    c.shape = shape;
-    c.scheme = scheme;
-    c.boundary.fill(boundary);
-    c.wall_reaction = true;
-    c.gravity = {-30, 20, 40};
-    c.nodal_gravity = true;  // as in core/step/node_update.cpp
+                  << boundary << ", cells " << more_x << " " << more_z);
+    ReferenceCase c = shrinking_block(shape, scheme, boundary);
+    c.cells[0] += more_x;
+    c.cells[2] += more_z;
     for (ReferenceParticle& p : c.particles) {
-      // It shrinks, too: the viscosity jumps where the rate of volume change goes through zero, and in a
-      // rigid motion the rounding of the first step would decide it.
-      for (std::size_t a = 0; a < 3; ++a) p.v[a] -= 0.02 * p.x[a];
-      if (boundary != 0) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
+      if (boundary != 0)
+        p.x = {p.x[0] + 5.7 + more_x * c.cell[0], p.x[1] - 5.4, p.x[2] + 4.7 + more_z * c.cell[2]};
     }
     run_both(c, 30, 1e-9);
   }
@@ -129,4 +139,31 @@ TEST_CASE("USF and MUSL: a block hits walls as the naive stepper lets it") {
 
 TEST_CASE("USL: a block hits walls as the naive stepper lets it") {
   for (const int boundary : {1, 2, 4}) tumble(ReferenceScheme::usl, boundary);
+}
+
+TEST_CASE("Walls at the faces of bricks, one cell and two cells beyond them are as the naive stepper's") {
+  for (const int boundary : {1, 2, 4}) {
+    tumble(ReferenceScheme::musl, boundary, 2, 1);    // 16 and 12 cells
+    tumble(ReferenceScheme::musl, boundary, -1, -2);  // 13 and 9
+    tumble(ReferenceScheme::musl, boundary, 4, 3);    // 18 and 14
+  }
+}
+
+TEST_CASE("A plate one cell thick between two walls moves as the naive stepper moves it") {
+  for (const ReferenceShape shape : reference_shapes) {
+    for (const ReferenceScheme scheme : schemes) {
+      for (const int boundary : {0, 1, 2, 4}) {
+        INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", boundary "
+                      << boundary);
+        ReferenceCase c = shrinking_block(shape, scheme, 0);
+        c.boundary[2] = c.boundary[3] = boundary;
+        c.origin[1] = 0.15;
+        c.cells[1] = 1;
+        c.gravity[1] = 1;
+        std::erase_if(c.particles, [](const ReferenceParticle& p) { return p.x[1] < 0.15 || p.x[1] > 0.95; });
+        for (ReferenceParticle& p : c.particles) p.v[1] *= 0.02;  // it stays between the faces
+        run_both(c, 30, 1e-9);
+      }
+    }
+  }
 }
