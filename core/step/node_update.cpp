@@ -79,20 +79,17 @@ BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape&
 }
 
 template <class F>
-void BoundaryFaces::for_each_outer_node(F f) const {
+void BoundaryFaces::for_each_outer_node(const Face& face, F f) const {
+  if (!has_outer_nodes(face)) return;
   const int s = shape_.side();
-  for (int i = 0; i < count_; ++i) {
-    const Face& face = face_[i];
-    if (!has_outer_nodes(face)) continue;
-    const int strides[3] = {1, s, s * s};
-    const int along = strides[face.axis] * face.sign;
-    const int u = strides[(face.axis + 1) % 3], v = strides[(face.axis + 2) % 3];
-    const int first = (face.layer + shape_.below) * strides[face.axis];
-    for (int a = 0; a < s; ++a) {
-      for (int b = 0; b < s; ++b) {
-        const int wall = first + a * u + b * v;
-        f(face, wall + along, wall, wall - along);
-      }
+  const int strides[3] = {1, s, s * s};
+  const int along = strides[face.axis] * face.sign;
+  const int u = strides[(face.axis + 1) % 3], v = strides[(face.axis + 2) % 3];
+  const int first = (face.layer + shape_.below) * strides[face.axis];
+  for (int a = 0; a < s; ++a) {
+    for (int b = 0; b < s; ++b) {
+      const int wall = first + a * u + b * v;
+      f(face, wall + along, wall, wall - along);
     }
   }
 }
@@ -111,6 +108,12 @@ int axis_of(NodeFields what, int c) {
 
 bool is_mechanics(NodeFields what) { return maps_momentum(what) || maps_force(what); }
 
+/// Both arrays hold the mass in the same component.
+bool is_mass(NodeFields what, int c) {
+  static_assert(node_field::mass.first == node_field::second_mass.first);
+  return maps_mass(what) && c == node_field::mass.first;
+}
+
 }  // namespace
 
 void BoundaryFaces::fold(NodeFields what, double* contributions) const {
@@ -125,9 +128,42 @@ void BoundaryFaces::fold(NodeFields what, double* contributions) const {
           extrapolates || (axis >= 0 && (face.boundary == Boundary::fixed || axis == face.axis));
       if (extrapolates) to_wall[c] += 2 * from[c];
       to_mirror[c] += reverses ? -from[c] : from[c];
-      from[c] = 0;
+      if (extrapolates || !is_mass(what, c)) from[c] = 0;
     }
   });
+}
+
+void BoundaryFaces::reverse_weights(const Vec3<double>& gravity, NodeArray of, const double* masses,
+                                    double* forces) const {
+  const auto mirrors = [&](const Face& face) {
+    return has_outer_nodes(face) && face.boundary != Boundary::rigid_wall;
+  };
+  if (gravity == Vec3<double>{} || std::none_of(face_, face_ + count_, mirrors)) return;
+  const auto mass = [&](int n) { return masses[record_doubles(of) * n + node_field::mass.first]; };
+  std::array<Vec3<double>, NodeBlockShape{most_layers, most_layers}.nodes()> weight;
+  for (int n = 0; n < shape_.nodes(); ++n) weight[static_cast<std::size_t>(n)] = {mass(n), mass(n), mass(n)};
+  // The masses before the folds, then the folds of the weights.
+  for (int i = count_ - 1; i >= 0; --i) {
+    if (!mirrors(face_[i])) continue;
+    for_each_outer_node(face_[i], [&](const Face&, int outer, int, int inside) {
+      Vec3<double>& w = weight[static_cast<std::size_t>(inside)];
+      w = w - weight[static_cast<std::size_t>(outer)];
+    });
+  }
+  for (int i = 0; i < count_; ++i) {
+    if (!mirrors(face_[i])) continue;
+    for_each_outer_node(face_[i], [&](const Face& face, int outer, int, int inside) {
+      for (int a = 0; a < 3; ++a) {
+        const double w = weight[static_cast<std::size_t>(outer)][a];
+        weight[static_cast<std::size_t>(inside)][a] +=
+            face.boundary == Boundary::fixed || a == face.axis ? -w : w;
+      }
+    });
+  }
+  for (int n = 0; n < shape_.nodes(); ++n) {
+    double* force = MappedRecord<double>{forces + node_doubles * n}.force();
+    for (int a = 0; a < 3; ++a) force[a] += (weight[static_cast<std::size_t>(n)][a] - mass(n)) * gravity[a];
+  }
 }
 
 void BoundaryFaces::fill(double* record) const {

@@ -77,8 +77,13 @@ class BoundaryFaces {
   template <class F>
   void for_each_node(double* nodes, F f) const;
 
-  /// Adds the contributions to outer nodes, in the records of what.array, to the inner ones and clears them.
+  /// Adds the contributions to outer nodes, in the records of what.array, to the inner ones and clears them;
+  /// mirrored masses stay in the outer nodes as well, for reverse_weights().
   void fold(NodeFields what, double* contributions) const;
+  /// The weight of a mirrored mass is reversed as its momentum is. Subtracts from `forces`, folded
+  /// contributions to the first array, what the products of nodal masses and gravity have in excess;
+  /// `masses`: folded contributions to array `of` with the masses of the same particles.
+  void reverse_weights(const Vec3<double>& gravity, NodeArray of, const double* masses, double* forces) const;
   /// Sets the outer nodes' MotionRecords.
   void fill(double* record) const;
   /// Sets component `i` of the outer nodes' records to that of their mirror image.
@@ -94,7 +99,11 @@ class BoundaryFaces {
   }
   /// f(face, outer, wall, mirror) with the numbers of corresponding nodes.
   template <class F>
-  void for_each_outer_node(F f) const;
+  void for_each_outer_node(F f) const {
+    for (int i = 0; i < count_; ++i) for_each_outer_node(face_[i], f);
+  }
+  template <class F>
+  void for_each_outer_node(const Face& face, F f) const;
 
   NodeBlockShape shape_;
   Face face_[6];

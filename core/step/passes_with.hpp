@@ -69,6 +69,8 @@ class PassesWith final : public Passes {
   void map_to_grid();
   template <NodeFields what, class F>
   void map_brick(Slot s, F before);
+  template <NodeFields what>
+  void fold_at_walls(Slot s, double* contributions);
   void update_nodes_of_brick(Slot s, Scratch& at);
   void velocities_of_brick(Slot s, Scratch& at);
   double velocities_and_motion_of_brick(Slot s, Scratch& at);
@@ -278,7 +280,20 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
   }
   cell.flush(frame, sums.records);
   sums.finish(frame);
-  if constexpr (S::node_block != lattice_points) faces(s).fold(what, contributions);
+  if constexpr (S::node_block != lattice_points) fold_at_walls<what>(s, contributions);
+}
+
+/// Adds to the inner nodes what has been mapped beyond the grid's constrained faces.
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what>
+void PassesWith<S, T>::fold_at_walls(Slot s, double* contributions) {
+  const BoundaryFaces walls = faces(s);
+  if (walls.none()) return;
+  walls.fold(what, contributions);
+  if constexpr (maps_force(what)) {
+    constexpr NodeArray masses = maps_mass(what) ? what.array : NodeArray::second;
+    walls.reverse_weights(forces_.gravity, masses, model_.grid->contributions(masses, s), contributions);
+  }
 }
 
 template <ShapePolicy S, TransferPolicy T>

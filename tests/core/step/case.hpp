@@ -150,6 +150,12 @@ inline core::ShapeFunction shape_function_of(ReferenceShape s) {
 /// The oracle's shape of a policy. A policy without one does not compile: add it here.
 constexpr ReferenceShape reference_shape(std::type_identity<core::Linear>) { return ReferenceShape::linear; }
 constexpr ReferenceShape reference_shape(std::type_identity<core::Sgmp>) { return ReferenceShape::sgmp; }
+constexpr ReferenceShape reference_shape(std::type_identity<core::QuadraticBSpline>) {
+  return ReferenceShape::quadratic_bspline;
+}
+constexpr ReferenceShape reference_shape(std::type_identity<core::CubicBSpline>) {
+  return ReferenceShape::cubic_bspline;
+}
 
 /// The shapes of the program's list.
 inline constexpr auto reference_shapes = []<class... S>(std::type_identity<std::tuple<S...>>) {

@@ -99,7 +99,6 @@ ReferenceCase shrinking_block(ReferenceShape shape, ReferenceScheme scheme, int 
   c.boundary.fill(boundary);
   c.wall_reaction = true;
   c.gravity = {-30, 20, 40};
-  c.nodal_gravity = true;  // as in core/step/node_update.cpp
   // The viscosity jumps where the rate of volume change goes through zero: in a rigid motion the rounding of
   // the first step would decide it.
   for (ReferenceParticle& p : c.particles)
