@@ -327,8 +327,9 @@ class Run {
   /// Reports states that were corrected or limited, in particles times steps. Collective.
   void say_what_was_counted() {
     const core::MaterialEvents& events = model_.ledger.events;
-    std::int64_t counts[] = {events.failed,         events.negative_volume, events.volume_limited,
-                             events.undefined_root, events.unresolved,      model_.ledger.velocity_limited};
+    std::int64_t counts[] = {
+        events.failed,     events.negative_volume,         events.volume_limited,     events.undefined_root,
+        events.unresolved, model_.ledger.velocity_limited, model_.ledger.wide_domains};
     static constexpr const char* words[] = {
         "failed",
         "would have had no volume and kept the old one",
@@ -337,7 +338,8 @@ class Run {
         "beyond the equation's limit",
         "strained too far in one step for their law to end on its yield surface: take a smaller TimeStep "
         "factor",
-        "held by LimitVelocity"};
+        "held by LimitVelocity",
+        "with a domain wider than a cell, taken as a cell wide: use CPDI or larger cells"};
     communication_.reductions.sum(std::span<std::int64_t>(counts));
     for (std::size_t i = 0; i < std::size(counts); ++i) {
       if (counts[i] > 0) log_->say("counted    {} particle(s) {}", counts[i], words[i]);

@@ -62,6 +62,10 @@ enum class Column : int {
   thermal_strain,
   bulking_pressure,
   sound_speed,
+  // Of the particle's domain along the axes (core/shape/gimp.hpp).
+  half_size_x,
+  half_size_y,
+  half_size_z,
   history_0,
   history_1,
   history_2,
@@ -129,6 +133,9 @@ inline constexpr std::array<ColumnInfo, column_count> column_table{{
     {"thermal_strain", "1"},  // volumetric; the part already included in the pressure
     {"bulking_pressure", "stress"},
     {"sound_speed", "velocity"},
+    {"half_size_x", "length"},
+    {"half_size_y", "length"},
+    {"half_size_z", "length"},
     {"history_0", "1"},
     {"history_1", "1"},
     {"history_2", "1"},

@@ -144,6 +144,9 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
   set(Column::mass, seed.mass);
   set(Column::volume, seed.volume);
   set(Column::identity, identity);
+  for (int a = 0; a < 3; ++a) {
+    if (const Column c = next(Column::half_size_x, a); layout.has(c)) set(c, 0.5 * std::cbrt(seed.volume));
+  }
   if (input.initial_temperature && layout.has(Column::temperature))
     set(Column::temperature, *input.initial_temperature);
 }

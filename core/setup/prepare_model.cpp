@@ -101,6 +101,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     ColumnSet columns = ColumnSet::mechanics();
     columns.add(body.model->columns(model.options));
     columns.add(output_columns);
+    columns.add(shape_columns(*scene));
     columns.add(transfer_columns(*scene));
     if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
         model.grid->geometry().boundary.end())

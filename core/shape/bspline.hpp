@@ -9,6 +9,7 @@ namespace mpm::core {
 /// Around a node, t = s - 1/2 from it: (1/2 - t)^2 / 2, 3/4 - t^2, (1/2 + t)^2 / 2.
 struct QuadraticAlong {
   static constexpr int nodes = 3;
+  static constexpr bool has_size = false;
   template <class T>
   static void evaluate(T s, T* value, T* slope) {
     const T t = s - T(0.5), u = T(1.0) - s;
@@ -24,6 +25,7 @@ struct QuadraticAlong {
 /// In a cell, s from its lower node.
 struct CubicAlong {
   static constexpr int nodes = 4;
+  static constexpr bool has_size = false;
   template <class T>
   static void evaluate(T s, T* value, T* slope) {
     const T u = T(1.0) - s, sixth(1.0 / 6.0), half(0.5);

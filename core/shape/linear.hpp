@@ -249,6 +249,7 @@ struct Linear {
   static constexpr Site site = Site::cell;
   static constexpr NodeBlockShape node_block = lattice_points;
   static constexpr int nodes_per_axis = 2;
+  static ColumnSet columns() { return {}; }
   using Place = LinearPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>

@@ -2,8 +2,9 @@
 //
 //   S_i(x) = a(x) b(y) c(z),   grad S_i = (a' b c, a b' c, a b c')
 //
-// Along supplies the functions of one axis: static constexpr int nodes, and
-//   evaluate(position in the site, values[nodes], slopes[nodes])   in cells; particles in the lanes.
+// Along supplies the functions of one axis: static constexpr int nodes; bool has_size, whether they depend on
+// the size of the particle's domain; and, in cells, particles in the lanes,
+//   evaluate(position in the site, [half-size,] values[nodes], slopes[nodes])
 // Three nodes per axis are those around the nearest node: bricks take particles by node; four are those
 // around the particle's cell. Either way a particle's lowest node has the number of its site in the node
 // block.
@@ -40,7 +41,12 @@ struct SeparablePlace {
       const Real within[3] = {p.fx, p.fy, p.fz};
       for (int a = 0; a < 3; ++a) {
         Real values[n], slopes[n];
-        Along::evaluate(within[a], values, slopes);
+        if constexpr (Along::has_size) {
+          const double* half = block + layout.offset(next(Column::half_size_x, a));
+          Along::evaluate(within[a], load<Real>(half + l) * Real(frame.inverse_cell[a]), values, slopes);
+        } else {
+          Along::evaluate(within[a], values, slopes);
+        }
         store(position[a] + l, within[a]);
         for (int i = 0; i < n; ++i) {
           store(value[a][i] + l, values[i]);
@@ -145,6 +151,11 @@ struct Separable {
   static_assert(nodes_per_axis == 3 || nodes_per_axis == 4);
   static constexpr Site site = nodes_per_axis == 3 ? Site::node : Site::cell;
   static constexpr NodeBlockShape node_block{1, nodes_per_axis == 3 ? 0 : 1};
+  static ColumnSet columns() {
+    ColumnSet set;
+    if (Along::has_size) set.add_range(Column::half_size_x, 3);
+    return set;
+  }
   using Place = SeparablePlace<Along>;
   using Interpolation = SeparableInterpolation<Along>;
   template <NodeFields what>

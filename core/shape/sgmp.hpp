@@ -60,6 +60,7 @@ struct Sgmp {
   static constexpr Site site = Site::node;
   static constexpr NodeBlockShape node_block{1, 0};
   static constexpr int nodes_per_axis = 3;
+  static ColumnSet columns() { return {}; }
   using Place = LinearPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>

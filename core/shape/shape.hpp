@@ -12,6 +12,8 @@
 //   columns
 //                       at .. at + 7
 //   cell_divergence     mean of div u over the cell of each particle, times `factor` (volume update `cell`)
+//   columns             the columns that its particles need beyond the mechanics
+//   deform              optional: follows the particle's deformation
 //   nodes_per_axis, lowest_node   the nodes of a particle along an axis
 //   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: infrequent
 //   terms
@@ -32,6 +34,7 @@ concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layo
                                const typename S::Place& place) {
   { S::site } -> std::convertible_to<Site>;
   { S::node_block } -> std::convertible_to<NodeBlockShape>;
+  { S::columns() } -> std::same_as<ColumnSet>;
   typename S::template Scatter<mapped::momentum_mass_force>;
   typename S::template Sums<mapped::momentum_mass_force>;
   typename S::Field;

@@ -30,8 +30,9 @@ struct DepartingParticle {
 
 /// What a rank collects during a step, to be combined over the ranks at its end.
 struct StepStatistics {
-  double fastest = 0;        ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
-  std::int64_t limited = 0;  ///< velocities limited by LimitVelocity
+  double fastest = 0;             ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
+  std::int64_t limited = 0;       ///< velocities limited by LimitVelocity
+  std::int64_t wide_domains = 0;  ///< particle domains wider than a cell (core/shape/gimp.hpp)
   MaterialEvents events;
   OffendingParticles vanishing,
       negative;   ///< particles of negative volume and energy, where the scene checks for them

@@ -8,6 +8,8 @@ namespace mpm::core {
 // Compiled one by one, in passes_<shape>.cpp.
 extern template class PassesWith<Linear, Flip>;
 extern template class PassesWith<Sgmp, Flip>;
+extern template class PassesWith<UniformGimp, Flip>;
+extern template class PassesWith<ContiguousGimp, Flip>;
 extern template class PassesWith<QuadraticBSpline, Flip>;
 extern template class PassesWith<CubicBSpline, Flip>;
 
@@ -15,6 +17,10 @@ std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo) {
   return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> std::unique_ptr<Passes> {
     return std::make_unique<PassesWith<S, Flip>>(model, halo);
   });
+}
+
+ColumnSet shape_columns(const Scene& scene) {
+  return with_shape(scene.grid.shape, []<class S>(std::type_identity<S>) { return S::columns(); });
 }
 
 ColumnSet transfer_columns(const Scene&) { return Flip::columns(); }

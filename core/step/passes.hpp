@@ -46,7 +46,8 @@ class Passes {
 
 /// The passes for the scene's shape functions and transfer: the only place where they are chosen.
 std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo);
-/// The columns that the scene's transfer adds to every particle.
+/// The columns that the scene's shape functions and transfer add to every particle.
+ColumnSet shape_columns(const Scene& scene);
 ColumnSet transfer_columns(const Scene& scene);
 /// How bricks take particles for the scene's shape functions, and the nodes that a brick keeps.
 Site site_of(const Scene& scene);

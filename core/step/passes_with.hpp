@@ -45,6 +45,8 @@ class PassesWith final : public Passes {
 
  private:
   using Place = typename S::Place;
+  /// Whether particles have domains that deform with them.
+  static constexpr bool deforms = requires { &S::template deform<Row[9]>; };
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
     typename S::Field field;
@@ -82,6 +84,8 @@ class PassesWith final : public Passes {
   // Operations on a block or a batch.
   void update_velocities(Slot s, int body, const Place& place, double* block, int used, Scratch& at);
   void move(int body, const Place& place, double* block, int used, Scratch& at);
+  void deform(const BrickFrame& frame, const ColumnLayout& layout, int b, double* block, int used,
+              Scratch& at);
   void strain_batch_block(const BrickFrame& frame, const Place& place, int b, Scratch& at);
   void update_material(const Body& body, Scratch& at);
 
@@ -351,6 +355,16 @@ void PassesWith<S, T>::move(int body, const Place& place, double* block, int use
   if (does_work) add_work_of_motion(forces_, layout, block, used, at);
 }
 
+/// The particles' domains by the velocity gradient of the batch's block `b`.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::deform(const BrickFrame& frame,
+                                                            const ColumnLayout& layout, int b, double* block,
+                                                            int used, Scratch& at) {
+  if constexpr (deforms)
+    at.statistics.wide_domains +=
+        S::deform(frame, layout, at.batch.gradient, block_lanes * b, dt, block, used);
+}
+
 template <ShapePolicy S, TransferPolicy T>
 [[gnu::noinline]] void PassesWith<S, T>::velocities_of_brick(Slot s, Scratch& at) {
   const BrickFrame frame = this->frame(s);
@@ -368,6 +382,15 @@ template <ShapePolicy S, TransferPolicy T>
   auto first = prefetch_nodes<NodeArray::first>(s);
   auto second = prefetch_nodes<NodeArray::second>(s);
   double fastest_square = 0;
+  // The forces of this step were mapped with the domains of its start; those follow now, by the gradient of
+  // the velocity that moves the particles.
+  typename S::Field moving;
+  if constexpr (deforms) {
+    for (int n = 0; n < shared_.nodes(); ++n)
+      std::copy_n(at.nodes.data() + node_doubles * n + Motion::velocity_at, 3,
+                  at.sums.data() + node_doubles * n + Motion::strain_velocity_at);
+    moving.take_strain(frame, at.sums.data());
+  }
   for_each_block(s, columns_to_mass,
                  [&](int c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
                    first.next();
@@ -375,6 +398,8 @@ template <ShapePolicy S, TransferPolicy T>
                    const Place place(frame, layout, block);
                    update_velocities(s, body, place, block, used, at);
                    move(body, place, block, used, at);
+                   if constexpr (deforms) S::gradient(frame, place, moving, at.batch.gradient, 0);
+                   deform(frame, layout, 0, block, used, at);
                    for (int l = 0; l < used; l += real_width)
                      fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
                    find_departing(c, b, frame, erosion_volume_, layout, block, used,
@@ -429,7 +454,10 @@ template <bool moves, class F>
   const auto kinematics = [&](int body, int b, int used) {
     prefetch_nodes();
     strain_batch_block(frame, at.places[b], b, at);
-    if constexpr (moves) move(body, at.places[b], batch.block[b], used, at);
+    if constexpr (moves) {
+      move(body, at.places[b], batch.block[b], used, at);
+      deform(frame, *batch.layout, b, batch.block[b], used, at);
+    }
   };
   const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
     update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
@@ -540,6 +568,7 @@ StepStatistics PassesWith<S, T>::take_statistics() {
   for (Scratch& w : scratch_) {
     total.fastest = std::max(total.fastest, w.statistics.fastest);
     total.limited += w.statistics.limited;
+    total.wide_domains += w.statistics.wide_domains;
     total.events += w.statistics.events;
     total.vanishing.merge(w.statistics.vanishing);
     total.negative.merge(w.statistics.negative);

@@ -30,7 +30,8 @@ struct CountName {
 constexpr CountName count_names[] = {{"left_grid", &Ledger::left_grid},
                                      {"eroded", &Ledger::eroded},
                                      {"failed", &Ledger::failed},
-                                     {"velocity_limited", &Ledger::velocity_limited}};
+                                     {"velocity_limited", &Ledger::velocity_limited},
+                                     {"wide_domains", &Ledger::wide_domains}};
 
 struct EventName {
   const char* name;
@@ -191,6 +192,7 @@ void write_grid(hid_t file, const core::GridGeometry& grid) {
   hdf5::write_all(group, "origin", std::array{grid.origin.x, grid.origin.y, grid.origin.z});
   hdf5::write_all(group, "cell", std::array{grid.cell.x, grid.cell.y, grid.cell.z});
   hdf5::write_all(group, "cells", std::span<const std::int64_t>(grid.cells));
+  hdf5::write_attribute(group, "bricks_of_nodes", std::int64_t{grid.site == core::Site::node});
 }
 
 core::GridGeometry read_grid(hid_t file) {
@@ -201,6 +203,7 @@ core::GridGeometry read_grid(hid_t file) {
   if (origin.size() != 3 || cell.size() != 3 || cells.size() != 3)
     throw FileError("the grid is not of three dimensions");
   core::GridGeometry grid;
+  grid.site = hdf5::read_int64(group, "bricks_of_nodes") != 0 ? core::Site::node : core::Site::cell;
   for (int a = 0; a < 3; ++a) {
     const auto i = static_cast<std::size_t>(a);
     grid.origin[a] = origin[i];

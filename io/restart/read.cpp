@@ -16,7 +16,7 @@ namespace mpm::io {
 namespace {
 
 bool same_grid(const core::GridGeometry& a, const core::GridGeometry& b) {
-  return a.origin == b.origin && a.cell == b.cell && a.cells == b.cells;
+  return a.origin == b.origin && a.cell == b.cell && a.cells == b.cells && a.site == b.site;
 }
 
 /// The records that a rank reads before bricks have owners: about equal numbers of particles per rank.

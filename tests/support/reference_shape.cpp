@@ -93,7 +93,8 @@ ShapeOnAxis shape_on_axis(ReferenceShape shape, double r, double half_size) {
       if (d <= 1) return {2.0 / 3 - r * r + 0.5 * d * d * d, r * (1.5 * d - 2)};
       if (d < 2) return {(2 - d) * (2 - d) * (2 - d) / 6, -0.5 * sign * (2 - d) * (2 - d)};
       return {0, 0};
-    case ReferenceShape::ugimp: {
+    case ReferenceShape::ugimp:
+    case ReferenceShape::cpgimp: {
       const double l = half_size;
       return {(area_of_hat(r + l) - area_of_hat(r - l)) / (2 * l), (hat(r + l) - hat(r - l)) / (2 * l)};
     }

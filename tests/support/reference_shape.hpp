@@ -5,6 +5,7 @@
 //   quadratic_bspline S = hat * box, the box one cell wide                                       3
 //   cubic_bspline     S = hat * hat                                                              4
 //   ugimp             S = mean of hat over the particle's domain r - l .. r + l,  l <= 1/2       3
+//   cpgimp            the same; l follows the stretch along each axis
 //                     (Bardenhagen and Kober, CMES 5 (2004) 477; the domain keeps its initial size)
 //   sgmp              S = sum of hat(x - x_c)/2 over the two cell centres c beside the node,     3
 //                     G = sum of +-hat(x - x_c), + for the centre below (Liang et al., CMAME 352 (2019) 85)
@@ -20,7 +21,7 @@ using Vector = std::array<double, 3>;
 /// [row][column]; a velocity gradient has dv_row/dx_column.
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-enum class ReferenceShape { linear, sgmp, quadratic_bspline, cubic_bspline, ugimp };
+enum class ReferenceShape { linear, sgmp, quadratic_bspline, cubic_bspline, ugimp, cpgimp };
 
 struct ShapeOnAxis {
   double value, slope;

@@ -146,8 +146,8 @@ ReferenceStepper::ReferenceStepper(ReferenceCase setup) : case_(std::move(setup)
                .origin = case_.origin,
                .cell = case_.cell,
                .cells = case_.cells,
-               .boundary = case_.boundary,
-               .half_size = case_.gimp_half_size};
+               .boundary = case_.boundary};
+  for (auto& particle : case_.particles) particle.half_size = case_.gimp_half_size;
   layer_ = case_.shape == ReferenceShape::linear ? 0 : 1;
   for (std::size_t a = 0; a < 3; ++a) {
     nodes_[a] = static_cast<std::size_t>(case_.cells[a]) + 1 + 2 * layer_;
@@ -200,7 +200,8 @@ void ReferenceStepper::step_with() {
 }
 
 template <>
-ReferenceStepper::CellSupport ReferenceStepper::support(const Vector& x) const {
+ReferenceStepper::CellSupport ReferenceStepper::support(const ReferenceParticle& particle) const {
+  const Vector& x = particle.x;
   std::array<std::size_t, 3> first{};
   double N[3][2], dN[3][2];
   for (std::size_t a = 0; a < 3; ++a) {
@@ -228,13 +229,17 @@ ReferenceStepper::CellSupport ReferenceStepper::support(const Vector& x) const {
 }
 
 template <>
-ReferenceStepper::AnySupport ReferenceStepper::support(const Vector& x) const {
+ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& particle) const {
+  const Vector& x = particle.x;
   for (std::size_t a = 0; a < 3; ++a) {
     const double position = (x[a] - case_.origin[a]) / case_.cell[a];
     if (!(position >= 0 && position <= case_.cells[a])) report_outside(x);
   }
   AnySupport result;
-  result.wide = wide_support(geometry_, x);
+  ReferenceGrid grid = geometry_;
+  for (std::size_t a = 0; a < 3; ++a)  // a wider domain counts as one cell wide
+    grid.half_size[a] = std::min(particle.half_size[a], 0.5 * case_.cell[a]);
+  result.wide = wide_support(grid, x);
   result.count = result.wide.count;
   for (std::size_t n = 0; n < result.count; ++n) {
     std::size_t at = 0;
@@ -272,7 +277,7 @@ template <class Support>
 void ReferenceStepper::particles_to_grid() {
   std::fill(grid_.begin(), grid_.end(), Node{});
   for (const auto& particle : case_.particles) {
-    const Support at = support<Support>(particle.x);
+    const Support at = support<Support>(particle);
     for (std::size_t n = 0; n < at.count; ++n) {
       Node& node = grid_[at.node[n]];
       node.m += particle.m * at.mass(n);
@@ -339,7 +344,7 @@ template <class Support>
 void ReferenceStepper::grid_to_particles(double dt) {
   for (std::size_t index = 0; index < case_.particles.size(); ++index) {
     auto& particle = case_.particles[index];
-    const Support at = support<Support>(particle.x);
+    const Support at = support<Support>(particle);
     next_x_[index] = particle.x;
     for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
@@ -348,6 +353,13 @@ void ReferenceStepper::grid_to_particles(double dt) {
         next_x_[index][a] += dt * at.value(n, a) * node.v[a];
         particle.v[a] += dt * at.value(n, a) * node.a[a];
       }
+    }
+    if (case_.shape == ReferenceShape::cpgimp && case_.scheme == ReferenceScheme::usf) {
+      Vector stretch{};
+      for (std::size_t n = 0; n < at.count; ++n)
+        for (std::size_t a = 0; a < 3; ++a)
+          if (grid_[at.node[n]].active) stretch[a] += grid_[at.node[n]].v[a] * at.slope(n, a)[a];
+      for (std::size_t a = 0; a < 3; ++a) particle.half_size[a] *= 1 + dt * stretch[a];
     }
     if (case_.scheme != ReferenceScheme::musl) continue;
     for (std::size_t n = 0; n < at.count; ++n)
@@ -371,7 +383,7 @@ void ReferenceStepper::final_velocities() {
 template <class Support>
 void ReferenceStepper::update_stresses(double dt) {
   for (auto& particle : case_.particles) {
-    const Support at = support<Support>(particle.x);
+    const Support at = support<Support>(particle);
     Matrix L{};
     for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
@@ -381,6 +393,8 @@ void ReferenceStepper::update_stresses(double dt) {
     }
     update_stress(case_.material, length_, dt, L, particle);
     if (!(particle.V > 0)) throw std::runtime_error("a particle's volume is " + std::to_string(particle.V));
+    if (case_.shape == ReferenceShape::cpgimp && case_.scheme != ReferenceScheme::usf)
+      for (std::size_t a = 0; a < 3; ++a) particle.half_size[a] *= 1 + dt * L[a][a];
     if (case_.scheme == ReferenceScheme::usf) add_force(particle, at);
   }
 }

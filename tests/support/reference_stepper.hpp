@@ -40,14 +40,15 @@ constexpr double plastic_modulus(double young, double tangent) { return young * 
 struct ReferenceParticle {
   Vector x{}, v{};
   double m = 0;
-  double V = 0;     ///< current volume
-  Matrix s{};       ///< deviator of the Cauchy stress
-  double p = 0;     ///< pressure, positive in compression, without q
-  double q = 0;     ///< artificial viscous pressure
-  double E = 0;     ///< internal energy per unit of initial volume m/rho_0
-  double epef = 0;  ///< effective plastic strain
-  double c = 0;     ///< wave speed 2-57; set by the stepper
-  double D = 0;     ///< volumetric strain rate of the latest stress update
+  double V = 0;        ///< current volume
+  Matrix s{};          ///< deviator of the Cauchy stress
+  double p = 0;        ///< pressure, positive in compression, without q
+  double q = 0;        ///< artificial viscous pressure
+  double E = 0;        ///< internal energy per unit of initial volume m/rho_0
+  double epef = 0;     ///< effective plastic strain
+  double c = 0;        ///< wave speed 2-57; set by the stepper
+  double D = 0;        ///< volumetric strain rate of the latest stress update
+  Vector half_size{};  ///< of its domain, length, for ugimp and cpgimp; set by the stepper
 };
 
 /// One stress update over dt at velocity gradient L: s, p, q, E, epef, V, c and D, thesis 2.4.
@@ -69,7 +70,7 @@ struct ReferenceCase {
   /// the one that stops the node.
   bool wall_reaction = false;
   ReferenceShape shape = ReferenceShape::linear;
-  Vector gimp_half_size{};  ///< of a particle's domain, length, for ugimp
+  Vector gimp_half_size{};  ///< of a particle's first domain, length, for ugimp and cpgimp
   Vector gravity{};
   /// Gravity as an acceleration of the nodes, hence a force m_i g. Otherwise particles map m_p g as they map
   /// their momentum, so that its power is that of the particles' weight; the two differ where particles reach
@@ -138,7 +139,7 @@ class ReferenceStepper {
   };
 
   template <class Support>
-  Support support(const Vector& x) const;
+  Support support(const ReferenceParticle& particle) const;
   Stop stop(const Index& node, std::size_t axis, double velocity) const;
   template <class Operation>
   void for_active_nodes(Operation&& operation);

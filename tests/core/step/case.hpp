@@ -143,6 +143,7 @@ inline core::ShapeFunction shape_function_of(ReferenceShape s) {
     case ReferenceShape::quadratic_bspline: return core::ShapeFunction::quadratic_bspline;
     case ReferenceShape::cubic_bspline: return core::ShapeFunction::cubic_bspline;
     case ReferenceShape::ugimp: return core::ShapeFunction::uniform_gimp;
+    case ReferenceShape::cpgimp: return core::ShapeFunction::contiguous_particle_gimp;
   }
   throw std::logic_error("a shape that only the oracle has");
 }
@@ -150,6 +151,12 @@ inline core::ShapeFunction shape_function_of(ReferenceShape s) {
 /// The oracle's shape of a policy. A policy without one does not compile: add it here.
 constexpr ReferenceShape reference_shape(std::type_identity<core::Linear>) { return ReferenceShape::linear; }
 constexpr ReferenceShape reference_shape(std::type_identity<core::Sgmp>) { return ReferenceShape::sgmp; }
+constexpr ReferenceShape reference_shape(std::type_identity<core::UniformGimp>) {
+  return ReferenceShape::ugimp;
+}
+constexpr ReferenceShape reference_shape(std::type_identity<core::ContiguousGimp>) {
+  return ReferenceShape::cpgimp;
+}
 constexpr ReferenceShape reference_shape(std::type_identity<core::QuadraticBSpline>) {
   return ReferenceShape::quadratic_bspline;
 }
@@ -193,6 +200,7 @@ struct SmallRun {
     model.grid = std::make_unique<core::BrickGrid>(g, core::node_block_of(*scene));
     core::ColumnSet columns = core::ColumnSet::mechanics();
     columns.add(model.materials[0]->columns({}));
+    columns.add(core::shape_columns(*scene));
     for (const core::Boundary b : g.boundary) {
       if (b == core::Boundary::nonreflecting) columns.add(core::Column::sound_speed);
     }
@@ -218,6 +226,12 @@ struct SmallRun {
       block[static_cast<std::size_t>(layout.offset(core::Column::identity))] = static_cast<double>(n);
       if (layout.has(core::Column::sound_speed))
         block[static_cast<std::size_t>(layout.offset(core::Column::sound_speed))] = p.c;
+      for (int a = 0; a < 3; ++a) {
+        const core::Column half = next(core::Column::half_size_x, a);
+        if (layout.has(half))
+          block[static_cast<std::size_t>(layout.offset(half))] =
+              c.gimp_half_size[static_cast<std::size_t>(a)];
+      }
       for (std::size_t k = 0; k < flat.size(); ++k) flat[k] = block[core::block_lanes * k];
       const core::BrickCoord to = g.brick_at({p.x[0], p.x[1], p.x[2]});
       moving.add(to, n < split ? 0 : 1, flat.data(), layout.columns());

@@ -40,6 +40,15 @@ inline AlongAxis along_axis(const core::QuadraticBSpline&, int, double r) {
   }
   return {value, slope};
 }
+/// Mean of the hat function over the particle's domain, of half-size l.
+inline AlongAxis along_axis(const core::Separable<core::GimpAlong>&, int, double r, double l) {
+  const auto area = [](double x) {  // of the hat up to x
+    x = std::min(std::max(x, -1.0), 1.0);
+    return x < 0 ? 0.5 * (1 + x) * (1 + x) : 1 - 0.5 * (1 - x) * (1 - x);
+  };
+  const auto hat = [](double x) { return std::max(1 - std::abs(x), 0.0); };
+  return {(area(r + l) - area(r - l)) / (2 * l), (hat(r + l) - hat(r - l)) / (2 * l)};
+}
 inline AlongAxis along_axis(const core::CubicBSpline&, int, double r) {
   double value = 0, slope = 0;
   const double factor[5] = {1, -4, 6, -4, 1};
@@ -64,10 +73,15 @@ inline core::GridGeometry transfer_geometry(core::Site site) {
 
 template <class S>
 struct TransferCase {
+  static core::ColumnSet columns() {
+    core::ColumnSet set = core::ColumnSet::mechanics();
+    set.add(S::columns());
+    return set;
+  }
   core::GridGeometry geometry = transfer_geometry(S::site);
   core::NodeBlockShape shape = S::node_block;
   core::BrickCoord brick;
-  core::BlockPool pool{core::ColumnLayout()};
+  core::BlockPool pool{core::ColumnLayout(columns())};
   core::ParticleTile tile;
   std::vector<std::vector<double>> particles;  ///< their columns, in the order of ColumnSet::mechanics()
 
@@ -87,6 +101,11 @@ struct TransferCase {
       }
       p[6] = 0.5 + unit(random);  // mass
       p[7] = 0.5 + unit(random);  // volume
+      for (int a = 0; a < 3; ++a) {
+        const core::Column half = next(core::Column::half_size_x, a);
+        if (pool.layout().has(half))
+          p[pool.layout().index(half)] = geometry.cell[a] * (n % 7 == 3 ? 0.5 : 0.15 + 0.35 * unit(random));
+      }
       append(pool, tile, p.data());
     }
   }
@@ -130,7 +149,14 @@ struct TransferCase {
       for (int a = 0; a < 3; ++a) {
         const auto k = static_cast<std::size_t>(a);
         node[a] = at.lowest[k] + d[a];
-        const AlongAxis along = along_axis(S(), d[a], at.position[k] - node[a]);
+        const AlongAxis along = [&] {
+          const double r = at.position[k] - node[a];
+          const core::Column half = next(core::Column::half_size_x, a);
+          if constexpr (requires { along_axis(S(), d[a], r, 0.0); })
+            return along_axis(S(), d[a], r, p[pool.layout().index(half)] / geometry.cell[a]);
+          else
+            return along_axis(S(), d[a], r);
+        }();
         w[a] = along.value;
         dw[a] = along.slope / geometry.cell[a];
       }
