@@ -240,19 +240,26 @@ class Run {
     });
     bool elsewhere = false;
     std::string cut;
+    std::vector<std::string> superseded;
     if (!options_.dry_run) {
       lock_.emplace(file(".lock"), communication_);
       elsewhere = continuation_ && goes_on_elsewhere() &&
                   forget_what_is_elsewhere(file(""), *continuation_, communication_);
-      if (communication_.reductions.rank() == 0) {
+      io::together(communication_, [&] {
+        if (communication_.reductions.rank() != 0) return;
         io::remove_file(
             file(".summary.json"));  // of an earlier run, in case this one ends before writing its own
+        superseded =
+            io::set_aside_superseded(options_.output_dir, case_.scene->provenance.job_name, case_.restart);
         if (continuation_) cut = log_notice(file(".out"), *continuation_);
-      }
+      });
     }
     log_.emplace(file(".out"), continues_files() || options_.dry_run, true, communication_);
     for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
     if (lock_ && !lock_->notice().empty()) log_->note("note       {}", lock_->notice());
+    for (const std::string& path : superseded)
+      log_->note("note       a restart file of an earlier run, later than where this one begins, is now {}",
+                 path);
     if (!cut.empty()) log_->warn("{}", cut);
     if (elsewhere)
       log_->note("note       some files of the earlier run are missing in this folder: they begin anew");

@@ -80,5 +80,7 @@ void write_attribute(hid_t object, const ProvenanceLines& lines);
 std::string read_string(hid_t object, const std::string& name);
 double read_double(hid_t object, const std::string& name);
 std::int64_t read_int64(hid_t object, const std::string& name);
+/// Whether the object has an attribute of this name.
+bool has_attribute(hid_t object, const std::string& name);
 
 }  // namespace mpm::io::hdf5

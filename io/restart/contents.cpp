@@ -151,7 +151,10 @@ Ledger read_ledger(hid_t file) {
     if (limbs.size() != raw.size()) throw FileError("an exact sum has another number of limbs");
     std::copy(limbs.begin(), limbs.end(), raw.begin());
   }
-  for (const auto& [name, count] : count_names) ledger.*count = hdf5::read_int64(group, name);
+  for (const auto& [name, count] : count_names) {
+    // Files of earlier versions do not have all.
+    if (hdf5::has_attribute(group, name)) ledger.*count = hdf5::read_int64(group, name);
+  }
   for (const auto& [name, count] : event_names)
     ledger.events.*count = static_cast<long>(hdf5::read_int64(group, name));
   return ledger;
@@ -187,12 +190,14 @@ BodyRecord read_body(hid_t group) {
   return b;
 }
 
+constexpr const char* bricks_of_nodes = "bricks_of_nodes";  ///< Site::node; absent in earlier versions
+
 void write_grid(hid_t file, const core::GridGeometry& grid) {
   const hdf5::Handle group = hdf5::create_group(file, "grid");
   hdf5::write_all(group, "origin", std::array{grid.origin.x, grid.origin.y, grid.origin.z});
   hdf5::write_all(group, "cell", std::array{grid.cell.x, grid.cell.y, grid.cell.z});
   hdf5::write_all(group, "cells", std::span<const std::int64_t>(grid.cells));
-  hdf5::write_attribute(group, "bricks_of_nodes", std::int64_t{grid.site == core::Site::node});
+  hdf5::write_attribute(group, bricks_of_nodes, std::int64_t{grid.site == core::Site::node});
 }
 
 core::GridGeometry read_grid(hid_t file) {
@@ -203,7 +208,8 @@ core::GridGeometry read_grid(hid_t file) {
   if (origin.size() != 3 || cell.size() != 3 || cells.size() != 3)
     throw FileError("the grid is not of three dimensions");
   core::GridGeometry grid;
-  grid.site = hdf5::read_int64(group, "bricks_of_nodes") != 0 ? core::Site::node : core::Site::cell;
+  if (hdf5::has_attribute(group, bricks_of_nodes) && hdf5::read_int64(group, bricks_of_nodes) != 0)
+    grid.site = core::Site::node;
   for (int a = 0; a < 3; ++a) {
     const auto i = static_cast<std::size_t>(a);
     grid.origin[a] = origin[i];

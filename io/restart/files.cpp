@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -102,6 +103,20 @@ RestartFiles restart_files(const std::string& folder, const std::string& job) {
 std::int64_t youngest(const std::string& folder, const std::string& job) {
   const auto files = readable(folder, job);
   return files.empty() ? 0 : std::max<std::int64_t>(0, files.front().first);
+}
+
+std::vector<std::string> set_aside_superseded(const std::string& folder, const std::string& job,
+                                              const std::optional<std::string>& start) {
+  const std::int64_t last = start ? read_guard(*start).written : std::numeric_limits<std::int64_t>::min();
+  std::vector<std::string> set_aside;
+  for (const auto& [written, path] : readable(folder, job)) {
+    if (written <= last) continue;
+    set_aside.push_back(path + ".superseded");
+    std::error_code error;
+    std::filesystem::rename(path, set_aside.back(), error);
+    if (error) throw FileError("cannot rename " + path + " to " + set_aside.back() + ": " + error.message());
+  }
+  return set_aside;
 }
 
 void remove_older(const std::string& folder, const std::string& job) {

@@ -76,6 +76,30 @@ class Killed(Resume):
         self.check_same_files()
 
 
+    def test_killed_while_going_on_from_an_older_restart_file(self):
+        """What the later file refers to is overwritten by then: it does not count any more."""
+        _resume.start_and_kill(self.case, self.out, files=3)
+        older, newer = _mpm.restarts(self.out)
+        process = _mpm.start([older, "--output-dir", self.out])
+        self.assertTrue(_resume.wait_for(lambda: not newer.exists(), process))
+        _resume.kill(process)
+        self.assertTrue(newer.with_name(newer.name + ".superseded").exists())
+        self.shorten()
+        outcome = self.go_on()
+        self.assertEqual(outcome.state, self.state)
+        self.assertNotIn("warning", outcome.out)
+        self.check_same_files()
+
+    def test_killed_before_its_first_restart_file_where_an_older_run_was(self):
+        _resume.start_and_kill(self.case, self.out, files=2)
+        there = _mpm.restarts(self.out)
+        process = _mpm.start([self.case, "--output-dir", self.out])
+        self.assertTrue(_resume.wait_for(lambda: not any(path.exists() for path in there), process))
+        _resume.kill(process)
+        outcome = self.run_in("out", [self.out / "case.pe"], code=_mpm.FILE_ERROR)
+        self.assertIn("no such file", outcome.err)
+
+
 class Stopped(Resume):
     def test_stopped_runs_leave_no_trace_in_the_files(self):
         """The row and the picture at the stop are for the user; what goes on has those of its intervals."""
