@@ -122,6 +122,7 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
       if (geometry) body.geometry = *geometry;
       body.density = before->density;
       body.initial_velocity = before->initial_velocity;
+      body.initial_velocity_expressions = before->initial_velocity_expressions;
       body.initial_temperature = before->initial_temperature;
       body.work_plane = before->work_plane;
       compare(stated.source, "Body", stated.name, !geometry);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scene/errors.hpp"
+#include "core/scene/expression.hpp"
 #include "core/scene/geometry.hpp"
 #include "core/tensor/vec3.hpp"
 
@@ -44,6 +45,12 @@ struct HarmonicExcitation {
   Vec3<double> end_time{};
 };
 
+/// Force per mass, constant or of place and time; the expressions' numbers are 0.
+struct BodyForce {
+  Vec3<double> number{};  ///< length/time^2
+  Expressions expressions;
+};
+
 /// A pressure on the whole surface of a body, or a traction on the surfaces with one axis as normal;
 /// restricted to the part of the surface inside the box, if given. Factors over time: linear between the
 /// points, zero outside.
@@ -55,6 +62,9 @@ struct SurfaceLoad {
   double pressure = 0;      ///< stress, positive inwards
   Vec3<double> traction{};  ///< stress
   int normal = -1;          ///< axis of `traction`; -1: none
+  /// In place of components of `traction` (0, 1, 2) and of `pressure` (3).
+  Expressions expressions;
+  static constexpr int pressure_component = 3;
   Vec3<double> lower{-1e300, -1e300, -1e300};
   Vec3<double> upper{1e300, 1e300, 1e300};
   std::optional<double>
@@ -81,10 +91,13 @@ struct BodyInput {
   bool for_bool = false;                  ///< operand of a Bool body; removed once that is made
   bool no_output = false;                 ///< takes part, but is not written
   Vec3<double> initial_velocity{};
+  Expressions initial_velocity_expressions;   ///< of the first place, in place of some of its components
   std::optional<double> initial_temperature;  ///< > 0; the material's without
   std::optional<Vec3<double>> prescribed_velocity;
+  Expressions prescribed_velocity_expressions;  ///< in place of some of its components
   std::optional<PrescribedAcceleration> prescribed_acceleration;
   std::optional<HarmonicExcitation> harmonic_excitation;
+  std::optional<BodyForce> body_force;
   std::vector<SurfaceLoad> surface_loads;
   bool constrain_rigid_position = false;   ///< keeps its prescribed motion, loads included
   std::optional<double> adaptive_split;    ///< splits when longer than this fraction of a cell

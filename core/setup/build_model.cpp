@@ -57,6 +57,7 @@ SeedCount count_checked(const Model& model, std::span<const BodySeeds> seeds, Re
   SeedCount count = count_seeds(geometry, seeds, ranks);
   refuse_empty(*model.scene, seeds, count, ranks);
   refuse_outside(*model.scene, geometry, count, ranks);
+  refuse_undefined_velocities(seeds, model.next_identity, model.clock.time, ranks);
   return count;
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint64_t most_units =
     1 << 16;  // units of a body that may be empty before the first with particles
+constexpr double most_looked_at = 1 << 30;  // particles, each of which is created to be checked
 
 /// A few particles of a body, whose initial state is like that of all others.
 std::vector<Seed> sample_of(const SeedSource& source) {
@@ -35,10 +36,11 @@ void check_start(Model model, const std::vector<const BodyInput*>& inputs,
   std::vector<double> columns;
   for (std::size_t b = 0; b < samples.size(); ++b) {
     const ColumnLayout& layout = model.bodies[b].pool->layout();
+    StartVelocity velocity(*inputs[b], model.clock.time);
     for (const Seed& s : samples[b]) {
       const Vec3<double>& x = s.position;
       if (!geometry.contains(x)) continue;
-      fill_columns(layout, model.bodies[b], *inputs[b], s, static_cast<double>(s.identity), columns);
+      fill_columns(layout, *inputs[b], velocity, s, static_cast<double>(s.identity), columns);
       counts.push_back({geometry.brick_at(x), 1});
       particles.add(counts.back().brick, static_cast<int>(b), columns.data(), layout.columns());
     }
@@ -68,9 +70,10 @@ double check_setup(std::shared_ptr<const Scene> scene,
   }
   wrong.raise_if_any();
   refuse_uncounted(bodies, 0);
+  SoloCommunication alone;
+  if (particles <= most_looked_at) refuse_undefined_velocities(bodies, 0, 0, alone);
   const GridGeometry geometry = geometry_of(*scene);
   // A body whose box is inside has no particle outside; for the others every particle is checked.
-  constexpr double most_looked_at = 1 << 30;
   std::vector<std::vector<Seed>> samples;
   std::vector<BodySeeds> doubtful;
   for (BodySeeds& body : bodies) {
@@ -83,7 +86,6 @@ double check_setup(std::shared_ptr<const Scene> scene,
     doubtful.push_back(std::move(body));
   }
   wrong.raise_if_any();
-  SoloCommunication alone;
   refuse_outside(*scene, geometry, count_seeds(geometry, doubtful, alone.reductions), alone);
   check_start(prepare_model(scene, std::move(materials), output_columns), inputs, samples);
   return particles;

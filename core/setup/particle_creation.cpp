@@ -6,6 +6,7 @@
 
 #include "core/discretise/shape_check.hpp"
 #include "core/particles/tile_order.hpp"
+#include "core/step/offending_particle.hpp"
 
 namespace mpm::core {
 
@@ -132,14 +133,15 @@ void refuse_empty(const Scene& scene, std::span<const BodySeeds> bodies, const S
   wrong.raise_if_any();
 }
 
-void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
-                  double identity, std::vector<double>& columns) {
+void fill_columns(const ColumnLayout& layout, const BodyInput& input, StartVelocity& velocity,
+                  const Seed& seed, double identity, std::vector<double>& columns) {
   columns.assign(static_cast<std::size_t>(layout.columns()), 0.0);
   const auto set = [&](Column c, double v) { columns[layout.index(c)] = v; };
+  const Vec3<double> v = velocity.at(seed.position);
   for (int a = 0; a < 3; ++a) {
     set(next(Column::position_x, a), seed.position[a]);
-    const double v = body.prescribed_velocity ? (*body.prescribed_velocity)[a] : input.initial_velocity[a];
-    set(next(Column::velocity_x, a), v);
+    set(next(Column::velocity_x, a), v[a]);
+    if (layout.has(next(Column::first_x, a))) set(next(Column::first_x, a), seed.position[a]);
   }
   set(Column::mass, seed.mass);
   set(Column::volume, seed.volume);
@@ -149,6 +151,44 @@ void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput&
   }
   if (input.initial_temperature && layout.has(Column::temperature))
     set(Column::temperature, *input.initial_temperature);
+}
+
+void refuse_undefined_velocities(std::span<const BodySeeds> bodies, std::uint64_t first_identity, double time,
+                                 Reductions& ranks) {
+  OffendingParticle mine;  // its words begin with the numbers of the body and of the expression
+  bool varies = false;
+  auto base = static_cast<double>(first_identity);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const BodyInput& input = *bodies[b].input;
+    StartVelocity velocity(input, time);
+    varies = varies || velocity.varies();
+    if (velocity.varies()) {
+      for_each_piece(*bodies[b].source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
+        for (const Seed& s : seeds) {
+          const std::optional<StartVelocity::Fault> fault = velocity.first_not_finite(s.position);
+          if (!fault) continue;
+          const double identity = base + static_cast<double>(s.identity);
+          const Vec3<double>& x = s.position;
+          mine.offer(identity, [&] {
+            return fmt::format(
+                "{} {} {} for particle {:.0f} of body \"{}\" at ({:.6g}, {:.6g}, {:.6g}), t = "
+                "{:.9g}: give an expression that is finite there",
+                b, fault->expression, not_finite_in_words(fault->value), identity, input.name, x.x, x.y, x.z,
+                time);
+          });
+        }
+      });
+    }
+    base += static_cast<double>(bodies[b].source->identities());
+  }
+  if (!varies) return;
+  const std::string first = first_of_all(ranks, mine).words;
+  if (first.empty()) return;
+  std::size_t body_end = 0, end = 0;
+  const BodyInput& input = *bodies[std::stoul(first, &body_end)].input;
+  const Expression& e = StartVelocity::expressions_of(input)[std::stoul(first.substr(body_end), &end)];
+  throw InputErrors({Diagnostic{e.source.file, e.source.line, e.element, e.attribute, e.text,
+                                first.substr(body_end + end + 1)}});
 }
 
 void create_particles(Model& model, std::span<const BodySeeds> bodies, Communication& communication) {
@@ -166,9 +206,10 @@ void create_particles(Model& model, std::span<const BodySeeds> bodies, Communica
       particles.clear();
     };
     const auto base = static_cast<double>(model.next_identity);
+    StartVelocity velocity(*of.input, model.clock.time);
     for_each_piece(*of.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
       for (const Seed& s : seeds) {
-        fill_columns(layout, body, *of.input, s, base + static_cast<double>(s.identity), values);
+        fill_columns(layout, *of.input, velocity, s, base + static_cast<double>(s.identity), values);
         const BrickCoord to = model.grid->geometry().brick_at(s.position);
         particles.add(to, static_cast<int>(of.body), values.data(), layout.columns());
       }

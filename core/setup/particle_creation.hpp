@@ -15,6 +15,7 @@
 #include "core/communication/communication.hpp"
 #include "core/discretise/seeds.hpp"
 #include "core/model.hpp"
+#include "core/setup/start_velocity.hpp"
 
 namespace mpm::core {
 
@@ -57,8 +58,13 @@ void refuse_empty(const Scene& scene, std::span<const BodySeeds> bodies, const S
 
 /// The columns of a particle as given by the body's input, in the order of `layout`; the material's own start
 /// from zero (ConstitutiveModel::initialise).
-void fill_columns(const ColumnLayout& layout, const Body& body, const BodyInput& input, const Seed& seed,
-                  double identity, std::vector<double>& columns);
+void fill_columns(const ColumnLayout& layout, const BodyInput& input, StartVelocity& velocity,
+                  const Seed& seed, double identity, std::vector<double>& columns);
+
+/// Throws InputErrors on every rank where an expression of a velocity has no finite value for a particle at
+/// its creation at `time`; names the first one. Identities continue from `first_identity`. Collective.
+void refuse_undefined_velocities(std::span<const BodySeeds> bodies, std::uint64_t first_identity, double time,
+                                 Reductions& ranks);
 
 /// Creates the particles and sends each to its brick, which some rank owns; identities continue from the
 /// model's next one. Afterwards tiles are ordered by cell and, within a cell, by identity. Collective.

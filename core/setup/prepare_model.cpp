@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/discretise/seeds.hpp"
+#include "core/expressions/formula.hpp"
 #include "core/scene/limits.hpp"
 #include "core/step/passes.hpp"
 
@@ -61,6 +62,21 @@ void refuse_temperature(const BodyInput& input, const ConstitutiveModel& materia
                   material.name(), input.name));
 }
 
+/// The components of the first place that expressions of the run use.
+ColumnSet columns_of_expressions(const BodyInput& input) {
+  ColumnSet columns;
+  const auto add = [&](const Expressions& expressions) {
+    for (const Expression& e : expressions) {
+      const VariableSet uses = Formula::check(e.text).uses;
+      for (int a = 0; a < 3; ++a)
+        if (uses[static_cast<std::size_t>(3 + a)]) columns.add(next(Column::first_x, a));
+    }
+  };
+  add(input.prescribed_velocity_expressions);
+  if (input.body_force) add(input.body_force->expressions);
+  return columns;
+}
+
 }  // namespace
 
 void check_material_of(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
@@ -106,6 +122,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
         model.grid->geometry().boundary.end())
       columns.add(Column::sound_speed);  // for the dashpots there
+    columns.add(columns_of_expressions(input));
     body.pool = pools.of(columns);
     model.bodies.push_back(std::move(body));
   });

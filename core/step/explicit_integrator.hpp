@@ -15,7 +15,11 @@ class ExplicitIntegrator final : public Integrator {
   double next_step(const Clock& clock) const override;
   void begin_step(double dt) override { passes_->begin_step(dt); }
   double stable_step(const StepStatistics& statistics) const override;
-  StepStatistics take_statistics() override { return passes_->take_statistics(); }
+  StepStatistics take_statistics() override {
+    StepStatistics statistics = passes_->take_statistics();
+    statistics.undefined = passes_->loads().take_fault();
+    return statistics;
+  }
   std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
 
  private:

@@ -35,8 +35,9 @@ struct StepStatistics {
   std::int64_t wide_domains = 0;  ///< particle domains wider than a cell (core/shape/gimp.hpp)
   MaterialEvents events;
   OffendingParticles vanishing,
-      negative;   ///< particles of negative volume and energy, where the scene checks for them
-  ExactSum work;  ///< external work
+      negative;                 ///< particles of negative volume and energy, where the scene checks for them
+  ExactSum work;                ///< external work
+  OffendingParticle undefined;  ///< for which an expression of the input has no finite value
 };
 
 class Integrator {

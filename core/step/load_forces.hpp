@@ -30,7 +30,8 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
                          const typename S::Place& place, const double* block, int used, F f) {
   const Loads::OfBody& mine = loads.of(body);
   const GridGeometry& g = model.grid->geometry();
-  const ColumnLayout& layout = model.bodies[static_cast<std::size_t>(body)].pool->layout();
+  const Body& of_body = model.bodies[static_cast<std::size_t>(body)];
+  const ColumnLayout& layout = of_body.pool->layout();
   const bool dashpots = loads.nonreflecting() && loads.touches_nonreflecting(*model.grid, slot);
 
   for (int l = 0; l < used; ++l) {
@@ -41,12 +42,21 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
     Vec3<double> per_gradient[3]{};  // columns
     if (mine.loaded) {
       per_shape = m * mine.acceleration;
+      if (!mine.force.of_place.empty())
+        per_shape = per_shape + m * loads.varying_acceleration(mine, of_body, block + l);
       for (const Loads::Surface& s : mine.surfaces) {
         Vec3<double> slope{};
         const double weight = box_weight(*s.input, s.ramp, x, slope);
+        const Vec3<double>* column = s.column;
+        Loads::Stress varying;
+        if (weight > 0 && !s.terms.of_place.empty()) {
+          varying = loads.varying_stress(s, of_body, block + l);
+          column = varying.column;
+          per_shape = per_shape + (volume * weight) * varying.divergence;
+        }
         for (int j = 0; j < 3; ++j) {
-          per_shape = per_shape + (volume * slope[j]) * s.column[j];
-          per_gradient[j] = per_gradient[j] + (volume * weight) * s.column[j];
+          per_shape = per_shape + (volume * slope[j]) * column[j];
+          per_gradient[j] = per_gradient[j] + (volume * weight) * column[j];
         }
       }
     }

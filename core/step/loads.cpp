@@ -62,11 +62,12 @@ Vec3<double> velocity_gained(const BodyInput& input, double time) {
   return v;
 }
 
-Loads::Loads(const Model& model) : motions_(model.bodies.size()) {
+Loads::Loads(const Model& model) : model_(&model), motions_(model.bodies.size()) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     if (body.prescribed_velocity) {
-      motions_[b] = {BodyMotion::Kind::prescribed, *body.prescribed_velocity};
+      motions_[b].kind = BodyMotion::Kind::prescribed;
+      motions_[b].velocity.common = *body.prescribed_velocity;
     } else if (body.rigid) {
       motions_[b].kind = BodyMotion::Kind::rigid;
     }
@@ -82,39 +83,119 @@ Loads::Loads(const Model& model) : motions_(model.bodies.size()) {
     const BodyInput& input = *inputs[b];
     mine.input = &input;
     const bool held = input.constrain_rigid_position || input.prescribed_velocity;
-    mine.loaded =
-        !held && (input.prescribed_acceleration || input.harmonic_excitation || !input.surface_loads.empty());
+    mine.loaded = !held && (input.prescribed_acceleration || input.harmonic_excitation || input.body_force ||
+                            !input.surface_loads.empty());
     for (const SurfaceLoad& load : input.surface_loads)
       mine.surfaces.push_back({{}, &load, load.ramp.value_or(geometry.smallest_cell())});
     acts = acts || mine.loaded || input.constrain_rigid_position;
   }
   if (!acts) bodies_.clear();
+  add_functions(model, inputs);
+}
+
+LoadFunctions& Loads::functions() {
+  if (!functions_) functions_ = std::make_unique<LoadFunctions>();
+  return *functions_;
+}
+
+void Loads::add_functions(const Model& model, const std::vector<const BodyInput*>& inputs) {
+  // The derivative's error, of second order in this step, is far below that of the integration over
+  // particles; round-off stays below 1e-9 of the load.
+  constexpr double part_of_cell = 1.0 / 1024;
+  difference_ = part_of_cell * model.grid->geometry().smallest_cell();
+  for (std::size_t b = 0; b < std::min(model.bodies.size(), inputs.size()); ++b) {
+    const BodyInput& input = *inputs[b];
+    if (!input.prescribed_velocity_expressions.empty()) {
+      LoadFunctions::Terms terms = functions().add(input.prescribed_velocity_expressions);
+      motions_[b].velocity.terms = std::move(terms.of_place);
+      motions_[b].velocity.functions = functions_.get();
+      motions_[b].velocity.body = &model.bodies[b];
+      held_.push_back({b, &input, std::move(terms.of_time)});
+    }
+    if (bodies_.empty() || !bodies_[b].loaded) continue;
+    if (input.body_force && !input.body_force->expressions.empty())
+      bodies_[b].force = functions().add(input.body_force->expressions);
+    for (Surface& s : bodies_[b].surfaces)
+      if (!s.input->expressions.empty()) s.terms = functions().add(s.input->expressions);
+  }
 }
 
 void Loads::begin_step(double time, double dt) {
   dt_ = dt;
-  const double middle = time + 0.5 * dt;
+  middle_ = time + 0.5 * dt;
+  for (const Held& h : held_) {
+    double v[3];
+    for (int a = 0; a < 3; ++a) v[a] = (*h.input->prescribed_velocity)[a];
+    functions_->add_values(h.of_time, model_->bodies[h.body], time + dt, v);
+    motions_[h.body].velocity.common = {v[0], v[1], v[2]};
+    motions_[h.body].velocity.time = time + dt;
+  }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     OfBody& mine = bodies_[b];
     if (mine.input == nullptr) continue;
     const BodyInput& input = *mine.input;
     if (input.constrain_rigid_position) {
-      const Vec3<double> start = input.prescribed_velocity.value_or(input.initial_velocity);
-      motions_[b] = {BodyMotion::Kind::prescribed, start + velocity_gained(input, time + dt)};
+      BodyMotion& motion = motions_[b];
+      const Vec3<double> start = motion.velocity.functions
+                                     ? motion.velocity.common
+                                     : input.prescribed_velocity.value_or(input.initial_velocity);
+      motion.kind = BodyMotion::Kind::prescribed;
+      motion.velocity.common = start + velocity_gained(input, time + dt);
     }
     if (!mine.loaded) continue;
-    mine.acceleration = acceleration_of(input, middle);
-    for (Surface& s : mine.surfaces) {
-      const SurfaceLoad& load = *s.input;
-      const double factor =
-          load.points.empty() ? 1 : between(load.points, middle, [](const auto& p) { return p.factor; });
-      for (int j = 0; j < 3; ++j) {
-        s.column[j] = {};
-        s.column[j][j] = -factor * load.pressure;
-        if (j == load.normal) s.column[j] = s.column[j] + factor * load.traction;
-      }
+    mine.acceleration = acceleration_of(input, middle_);
+    if (input.body_force) {
+      double b_of_time[3] = {input.body_force->number.x, input.body_force->number.y,
+                             input.body_force->number.z};
+      if (!mine.force.of_time.empty())
+        functions_->add_values(mine.force.of_time, model_->bodies[b], middle_, b_of_time);
+      mine.acceleration = mine.acceleration + Vec3<double>{b_of_time[0], b_of_time[1], b_of_time[2]};
     }
+    for (Surface& s : mine.surfaces) set_stress(s, model_->bodies[b]);
   }
+}
+
+/// T of a surface load in this step, or the part of it that is the same in all places.
+void Loads::set_stress(Surface& s, const Body& body) {
+  const SurfaceLoad& load = *s.input;
+  s.factor = load.points.empty() ? 1 : between(load.points, middle_, [](const auto& p) { return p.factor; });
+  double values[4] = {load.traction.x, load.traction.y, load.traction.z, load.pressure};
+  if (!s.terms.of_time.empty()) functions_->add_values(s.terms.of_time, body, middle_, values);
+  for (int j = 0; j < 3; ++j) {
+    s.column[j] = {};
+    s.column[j][j] = -s.factor * values[SurfaceLoad::pressure_component];
+    if (j == load.normal)
+      s.column[j] = s.column[j] + s.factor * Vec3<double>{values[0], values[1], values[2]};
+  }
+}
+
+Vec3<double> Loads::varying_acceleration(const OfBody& of, const Body& body, const double* lane) const {
+  double a[3]{};
+  functions_->add_values(of.force.of_place, body, lane, middle_, a);
+  return {a[0], a[1], a[2]};
+}
+
+Loads::Stress Loads::varying_stress(const Surface& surface, const Body& body, const double* lane) const {
+  constexpr int pressure = SurfaceLoad::pressure_component;
+  const int normal = surface.input->normal;
+  double values[4]{};
+  functions_->add_values(surface.terms.of_place, body, lane, middle_, values);
+  Stress t;
+  for (int j = 0; j < 3; ++j) {
+    t.column[j] = surface.column[j];
+    t.column[j][j] -= surface.factor * values[pressure];
+    if (j == normal)
+      t.column[j] = t.column[j] + surface.factor * Vec3<double>{values[0], values[1], values[2]};
+  }
+  const auto slope = [&](const LoadFunctions::Term& term, int axis) {
+    return surface.factor * functions_->slope(term, body, lane, middle_, axis, difference_);
+  };
+  for (const LoadFunctions::Term& term : surface.terms.of_place) {
+    const int component = term.input->component;
+    if (component != pressure) t.divergence[component] += slope(term, normal);
+    for (int j = 0; component == pressure && j < 3; ++j) t.divergence[j] -= slope(term, j);
+  }
+  return t;
 }
 
 bool Loads::touches_nonreflecting(const BrickGrid& grid, Slot slot) const {

@@ -1,5 +1,5 @@
-// External actions on particles other than gravity: a body's prescribed acceleration over time, a pressure or
-// traction on its surface, and the absorption at non-reflecting faces of the grid. Their nodal forces are
+// External actions on particles other than gravity: a body's force per mass over place and time, a pressure
+// or traction on its surface, and the absorption at non-reflecting faces of the grid. Their nodal forces are
 // added after the particles' internal forces, particle by particle; the same forces over the nodal
 // displacements give the work. Bodies and bricks without loads cost nothing.
 //
@@ -9,7 +9,8 @@
 //   = sum V (phi T grad S_i + S_i T grad phi)
 // phi is 1 in a box and falls linearly to 0 across its edges; without a box it is 1, and T = -p I is a
 // pressure on the whole surface of the body. With a normal axis e, T = t e^T applies the traction t to the
-// surfaces in the box whose normal is +e.
+// surfaces in the box whose normal is +e. Where T varies with the place (expressions), the term S_i phi div T
+// is added; its derivatives are central differences over a small part of a cell.
 //
 // Non-reflecting face: dashpots on its nodes (Lysmer and Kuhlemeyer 1969), rho c_p against the normal
 // velocity, rho c_s against the tangential. The mass of a face's nodes is rho A h/2 for cells of depth h, so
@@ -18,10 +19,12 @@
 // Shown by tests/core/step/loads_test.cpp.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/model.hpp"
+#include "core/step/load_functions.hpp"
 
 namespace mpm::core {
 
@@ -30,12 +33,30 @@ Vec3<double> acceleration_of(const BodyInput& input, double time);
 /// Its integral from time zero.
 Vec3<double> velocity_gained(const BodyInput& input, double time);
 
+/// The velocity that the input gives a body's particles at the end of a step: for all the same, or with
+/// expressions of their places at its beginning.
+struct PrescribedMotion {
+  Vec3<double> common{};
+  std::vector<LoadFunctions::Term> terms;  ///< of place; their values are added
+  LoadFunctions* functions = nullptr;      ///< not null where there are any
+  const Body* body = nullptr;
+  double time = 0;
+
+  /// Of the particle whose column c is lane[layout.offset(c)].
+  Vec3<double> velocity(const double* lane) const {
+    if (terms.empty()) return common;
+    double v[3] = {common.x, common.y, common.z};
+    functions->add_values(terms, *body, lane, time, v);
+    return {v[0], v[1], v[2]};
+  }
+};
+
 /// What determines the velocities of a body's particles: the grid; only gravity and loads (a rigid body); or
 /// the input.
 struct BodyMotion {
   enum class Kind { free, rigid, prescribed };
   Kind kind = Kind::free;
-  Vec3<double> velocity{};  ///< prescribed, at the end of the step
+  PrescribedMotion velocity;
 };
 
 class Loads {
@@ -46,11 +67,11 @@ class Loads {
   static constexpr double nonreflecting_factor = 0.5;
 
   /// Called before a step from `time` to `time + dt`: loads are evaluated at its middle, prescribed
-  /// velocities (ConstrainRigidPosition) at its end.
+  /// velocities (ConstrainRigidPosition, expressions) at its end.
   void begin_step(double time, double dt);
 
   bool any() const { return !bodies_.empty(); }
-  /// Per mass, in this step.
+  /// Per mass, in this step: the part that is the same for all its particles.
   Vec3<double> acceleration(int body) const {
     return any() ? bodies_[static_cast<std::size_t>(body)].acceleration : Vec3<double>{};
   }
@@ -68,23 +89,52 @@ class Loads {
     Vec3<double> column[3]{};  ///< of T
     const SurfaceLoad* input = nullptr;
     double ramp = 0;
+    double factor = 1;             ///< over time
+    LoadFunctions::Terms terms{};  ///< those of time are in `column`
   };
   struct OfBody {
     const BodyInput* input = nullptr;  ///< null in models without
     bool loaded = false;
     Vec3<double> acceleration{};
+    LoadFunctions::Terms force;  ///< of BodyForce; those of time are in `acceleration`
     std::vector<Surface> surfaces;
     double shear_speed = 0;
   };
   const OfBody& of(int body) const { return bodies_[static_cast<std::size_t>(body)]; }
   double step() const { return dt_; }
+
+  /// The part of a body's force per mass that varies with the place, for a particle whose column c is
+  /// lane[layout.offset(c)].
+  Vec3<double> varying_acceleration(const OfBody& of, const Body& body, const double* lane) const;
+  struct Stress {
+    Vec3<double> column[3]{};
+    Vec3<double> divergence{};
+  };
+  /// T and its divergence for a particle, where they vary with the place.
+  Stress varying_stress(const Surface& surface, const Body& body, const double* lane) const;
+  /// The first particle for which an expression of a load was not finite since the last call.
+  OffendingParticle take_fault() const { return functions_ ? functions_->take_fault() : OffendingParticle{}; }
   bool touches_nonreflecting(const BrickGrid& grid, Slot slot) const;
 
  private:
-  std::vector<OfBody> bodies_;  ///< empty without any load
+  void add_functions(const Model& model, const std::vector<const BodyInput*>& inputs);
+  LoadFunctions& functions();
+  void set_stress(Surface& surface, const Body& body);
+
+  const Model* model_;
+  std::vector<OfBody> bodies_;                ///< empty without any load
+  std::unique_ptr<LoadFunctions> functions_;  ///< null without expressions
+  struct Held {
+    std::size_t body = 0;  ///< its number
+    const BodyInput* input = nullptr;
+    std::vector<LoadFunctions::Term> of_time;
+  };
+  std::vector<Held> held_;  ///< bodies whose prescribed velocity has expressions
   std::vector<BodyMotion> motions_;
   bool nonreflecting_ = false;
   double dt_ = 0;
+  double middle_ = 0;      ///< time at the middle of the step
+  double difference_ = 0;  ///< step of the central differences
 };
 
 }  // namespace mpm::core

@@ -8,9 +8,10 @@
 
 namespace mpm::core {
 
-void prescribe_velocities(const ColumnLayout& layout, const Vec3<double>& p, double* block, int used,
-                          ThreadScratch& at) {
+void prescribe_velocities(const ColumnLayout& layout, const PrescribedMotion& prescribed, double* block,
+                          int used, ThreadScratch& at) {
   for (int i = 0; i < used; ++i) {
+    const Vec3<double> p = prescribed.velocity(block + i);
     double* v[3];
     for (int a = 0; a < 3; ++a) v[a] = block + i + layout.offset(next(Column::velocity_x, a));
     const double m = block[layout.offset(Column::mass) + i];

@@ -74,7 +74,7 @@ void Stepper::reduce_status() {
   incidents_ = {found.events, found.vanishing, found.negative, migration_.left_now(),
                 migration_.first_left()};
 
-  const bool failed = found.events.not_finite > 0 || !migration_.fault().empty();
+  const bool failed = found.events.not_finite > 0 || !migration_.fault().empty() || !found.undefined.empty();
   const StepStatus all = communication_.reductions.combine(
       {integrator_->stable_step(found), migration_.wants_new_bricks(), failed, stop_requested_});
   ++clock.step;
@@ -84,7 +84,8 @@ void Stepper::reduce_status() {
   stopping_ = all.stop;
 
   std::string what;
-  if (all.failed) {
+  if (all.failed) what = first_of_all(communication_, found.undefined).words;
+  if (all.failed && what.empty()) {
     OffendingParticle mine = migration_.fault();
     if (found.events.not_finite > 0) {
       const OffendingParticle lost = first_not_finite(model_);

@@ -67,15 +67,38 @@ core::PrescribedAcceleration build_acceleration(const Node& node, const BuildCon
   return load;
 }
 
+/// The expressions among these attributes, the components of a quantity.
+core::Expressions expressions_of(const Node& node, std::initializer_list<std::string_view> attributes,
+                                 const BuildContext& context) {
+  core::Expressions found;
+  int component = 0;
+  for (const std::string_view attribute : attributes) {
+    if (const std::optional<std::string> text = node.expression(attribute))
+      found.push_back({component,
+                       *text,
+                       std::string(node.name()),
+                       std::string(attribute),
+                       {context.at(node).file, node.find(attribute)->line}});
+    ++component;
+  }
+  return found;
+}
+
 core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& context) {
   core::SurfaceLoad load;
   load.pressure = node.real("pressure");
   load.traction = node.reals("tx", "ty", "tz");
-  const bool pulls = load.traction != core::Vec3<double>{};
+  load.expressions = expressions_of(node, {"tx", "ty", "tz", "pressure"}, context);
+  const auto varies = [&](bool pressure) {
+    return std::ranges::any_of(load.expressions, [&](const core::Expression& e) {
+      return (e.component == core::SurfaceLoad::pressure_component) == pressure;
+    });
+  };
+  const bool pulls = load.traction != core::Vec3<double>{} || varies(false);
   if (const auto normal = node.given_integer("normal")) load.normal = static_cast<int>(*normal);
   if (pulls != (load.normal >= 0))
     node.report(context.diagnostics, "normal and tx, ty, tz go together: give both or neither");
-  if (!pulls && load.pressure == 0)
+  if (!pulls && load.pressure == 0 && !varies(true))
     node.report(context.diagnostics, "needs a pressure, or tx, ty, tz and normal");
   static constexpr std::array<std::array<const char*, 2>, 3> sides{
       {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}}};
@@ -102,9 +125,15 @@ core::HarmonicExcitation build_excitation(const Node& node) {
 }
 
 void build_loads(core::BodyInput& body, const Node& node, const BuildContext& context) {
-  if (const auto v = node.child("InitialVelocity")) body.initial_velocity = v->reals("vx", "vy", "vz");
+  if (const auto v = node.child("InitialVelocity")) {
+    body.initial_velocity = v->reals("vx", "vy", "vz");
+    body.initial_velocity_expressions = expressions_of(*v, {"vx", "vy", "vz"}, context);
+  }
   if (const auto t = node.child("InitialTemperature")) body.initial_temperature = t->given_real("value");
-  if (const auto v = node.child("PrescribedVelocity")) body.prescribed_velocity = v->reals("vx", "vy", "vz");
+  if (const auto v = node.child("PrescribedVelocity")) {
+    body.prescribed_velocity = v->reals("vx", "vy", "vz");
+    body.prescribed_velocity_expressions = expressions_of(*v, {"vx", "vy", "vz"}, context);
+  }
   if (const auto a = node.child("PrescribedAcceleration"))
     body.prescribed_acceleration = build_acceleration(*a, context);
   if (const auto h = node.child("HarmExcit")) {
@@ -112,6 +141,8 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
     if (body.prescribed_acceleration)
       h->report(context.diagnostics, "a body has either PrescribedAcceleration or HarmExcit");
   }
+  if (const auto f = node.child("BodyForce"))
+    body.body_force = {f->reals("bx", "by", "bz"), expressions_of(*f, {"bx", "by", "bz"}, context)};
   for (const Node& load : node.children("Traction"))
     body.surface_loads.push_back(build_surface_load(load, context));
   if (const auto c = node.child("ConstrainRigidPosition"))
@@ -134,7 +165,32 @@ void check_held(const core::BodyInput& body, const Node& node, const BuildContex
              "that velocity, or InitialVelocity in its place");
   }
   if (body.prescribed_velocity || body.constrain_rigid_position)
-    refuse("Traction", "has no effect on a body whose velocity is prescribed or held");
+    for (const char* element : {"Traction", "BodyForce"})
+      refuse(element, "has no effect on a body whose velocity is prescribed or held");
+  if (body.constrain_rigid_position && !body.prescribed_velocity) {
+    for (const core::Expression& e : body.initial_velocity_expressions)
+      node.child("InitialVelocity")
+          ->report(context.diagnostics, e.attribute,
+                   "ConstrainRigidPosition holds this velocity for the whole body: give a number, or "
+                   "PrescribedVelocity");
+  }
+}
+
+/// Refuses expressions of the place for a rigid body, whose particles move as one.
+void check_rigid_expressions(const core::BodyInput& body, const Node& node, const BuildContext& context) {
+  const auto check = [&](const char* element, const core::Expressions& expressions) {
+    for (const core::Expression& e : expressions)
+      if ((core::Formula::check(e.text).uses & ~core::variables_named("t")).any())
+        node.child(element)->report(
+            context.diagnostics, e.attribute,
+            "all particles of a rigid body move alike: expected a number or an expression in t alone");
+  };
+  check("PrescribedVelocity", body.prescribed_velocity_expressions);
+  if (body.body_force) check("BodyForce", body.body_force->expressions);
+  for (const core::Expression& e : body.initial_velocity_expressions)
+    node.child("InitialVelocity")
+        ->report(context.diagnostics, e.attribute,
+                 "all particles of a rigid body move alike: expected a number");
 }
 
 /// A rigid body acts on others through contact only: in a single velocity field it would exert no force, so
@@ -152,6 +208,7 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
     if (!takes_part(*bodies[i]) || !rigid(*bodies[i])) continue;
     for (const Node& load : nodes[i].children("Traction"))
       load.report(context.diagnostics, "has no effect on a rigid body; use PrescribedAcceleration");
+    check_rigid_expressions(*bodies[i], nodes[i], context);
     if (deformable == nullptr || scene.contact.enable) continue;
     nodes[i].report(
         context.diagnostics, "material",

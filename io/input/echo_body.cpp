@@ -8,10 +8,21 @@ namespace mpm::io {
 
 namespace {
 
+/// A number, or the expression in its place.
+void echo_component(XmlWriter& w, std::string_view attribute, int component, double value,
+                    const core::Expressions& expressions) {
+  for (const core::Expression& e : expressions)
+    if (e.component == component) return w.text(attribute, e.text);
+  w.number(attribute, value);
+}
+
 void echo_vector(XmlWriter& w, std::string_view name, std::string_view a, std::string_view b,
-                 std::string_view c, const core::Vec3<double>& values) {
+                 std::string_view c, const core::Vec3<double>& values,
+                 const core::Expressions& expressions = {}) {
   const auto scope = w.element(name);
-  w.numbers(a, b, c, values);
+  echo_component(w, a, 0, values.x, expressions);
+  echo_component(w, b, 1, values.y, expressions);
+  echo_component(w, c, 2, values.z, expressions);
 }
 
 void echo_value(XmlWriter& w, std::string_view name, double value) {
@@ -130,10 +141,12 @@ struct GeometryEcho {
 };
 
 void echo_loads(XmlWriter& w, const core::BodyInput& body) {
-  echo_vector(w, "InitialVelocity", "vx", "vy", "vz", body.initial_velocity);
+  echo_vector(w, "InitialVelocity", "vx", "vy", "vz", body.initial_velocity,
+              body.initial_velocity_expressions);
   if (body.initial_temperature) echo_value(w, "InitialTemperature", *body.initial_temperature);
   if (body.prescribed_velocity)
-    echo_vector(w, "PrescribedVelocity", "vx", "vy", "vz", *body.prescribed_velocity);
+    echo_vector(w, "PrescribedVelocity", "vx", "vy", "vz", *body.prescribed_velocity,
+                body.prescribed_velocity_expressions);
   if (body.prescribed_acceleration) {
     const auto scope = w.element("PrescribedAcceleration");
     w.numbers("ax", "ay", "az", body.prescribed_acceleration->linear_amplitude);
@@ -152,11 +165,15 @@ void echo_loads(XmlWriter& w, const core::BodyInput& body) {
     echo_vector(w, "Theta", "x", "y", "z", body.harmonic_excitation->phase);
     echo_vector(w, "EndTime", "x", "y", "z", body.harmonic_excitation->end_time);
   }
+  if (body.body_force)
+    echo_vector(w, "BodyForce", "bx", "by", "bz", body.body_force->number, body.body_force->expressions);
   for (const core::SurfaceLoad& load : body.surface_loads) {
     const auto scope = w.element("Traction");
-    w.number("pressure", load.pressure);
+    echo_component(w, "pressure", core::SurfaceLoad::pressure_component, load.pressure, load.expressions);
     if (load.normal >= 0) {
-      w.numbers("tx", "ty", "tz", load.traction);
+      echo_component(w, "tx", 0, load.traction.x, load.expressions);
+      echo_component(w, "ty", 1, load.traction.y, load.expressions);
+      echo_component(w, "tz", 2, load.traction.z, load.expressions);
       w.integer("normal", load.normal);
     }
     static constexpr const char* lower[3] = {"xmin", "ymin", "zmin"};

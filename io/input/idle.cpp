@@ -224,6 +224,7 @@ const std::vector<Rule>& rules() {
       {"Component/Body/PrescribedVelocity", {}, operand, no_part},
       {"Component/Body/PrescribedAcceleration", {}, operand, no_part},
       {"Component/Body/HarmExcit", {}, operand, no_part},
+      {"Component/Body/BodyForce", {}, operand, no_part},
       {"Component/Body/Traction", {}, operand, no_part},
       {"Component/Body/ConstrainRigidPosition", {}, operand, no_part},
       {"Component/Body/BodyContrl", {}, operand, no_part},

@@ -1,6 +1,7 @@
 #include "io/input/node.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,26 @@ bool allowed(const AttributeSpec& a, double value) {
   return std::ranges::any_of(a.range.words, [&](const std::string& w) { return parse_real(w) == value; });
 }
 
+std::string complaint_about_expression(const AttributeSpec& a, std::string_view value) {
+  const core::Formula::Check found = core::Formula::check(value);
+  const std::string wanted = fmt::format("expected a number, written like 1.5e-3, or an expression in {}",
+                                         core::in_words(a.variables));
+  if (!found.error.empty()) {
+    std::vector<std::string> names = core::Formula::known_names();
+    for (std::size_t i = 0; i < core::variable_names.size(); ++i)
+      if (a.variables[i]) names.emplace_back(1, core::variable_names[i]);
+    const std::string remedy =
+        found.unknown_name.empty() ? "" : did_you_mean(found.unknown_name, {names.begin(), names.end()});
+    return fmt::format("{}; {}{}", wanted, found.error, remedy);
+  }
+  if (const core::VariableSet others = found.uses & ~a.variables; others.any())
+    return fmt::format("{}; {} {} no meaning here", wanted, core::in_words(others),
+                       others.count() == 1 ? "has" : "have");
+  if (found.constant && !std::isfinite(*found.constant))
+    return fmt::format("{}; this is {}", wanted, core::not_finite_in_words(*found.constant));
+  return {};
+}
+
 std::string complaint_about_one(const AttributeSpec& a, std::string_view value) {
   value = canonical_word(a, value);
   if (!a.word.empty() && value == a.word) return {};
@@ -45,6 +66,7 @@ std::string complaint_about_one(const AttributeSpec& a, std::string_view value) 
       if (!number && is_written_real(value))
         return "beyond the range of numbers, which is 0 and 2.3e-308 to 1.7e308 in size; write 0, or choose "
                "other units";
+      if (!number && a.variables.any()) return complaint_about_expression(a, value);
       if (!number) return expected(a, value) + ", written like 1.5e-3";
       return allowed(a, *number) ? std::string() : expected(a, value);
     }
@@ -99,8 +121,19 @@ std::optional<std::string> Node::text(std::string_view attribute, bool with_defa
 
 double Node::real(std::string_view attribute) const {
   const std::optional<std::string> value = text(attribute, true);
-  const std::optional<double> number = value ? parse_real(*value) : std::nullopt;
-  return number.value_or(std::numeric_limits<double>::quiet_NaN());
+  if (!value) return std::numeric_limits<double>::quiet_NaN();
+  if (const std::optional<double> number = parse_real(*value)) return *number;
+  if (spec_->attribute(attribute, type_)->variables.any())
+    return core::Formula::check(*value).constant.value_or(0);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<std::string> Node::expression(std::string_view attribute) const {
+  const AttributeSpec* row = spec_->attribute(attribute, type_);
+  if (!row || row->variables.none()) return {};
+  const std::optional<std::string> value = text(attribute, false);
+  if (!value || parse_real(*value) || core::Formula::check(*value).uses.none()) return {};
+  return value;
 }
 
 std::int64_t Node::integer(std::string_view attribute) const {

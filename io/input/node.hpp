@@ -42,7 +42,10 @@ class Node {
   /// The attribute under its name or its second accepted spelling.
   const XmlAttribute* find(std::string_view attribute) const;
 
-  double real(std::string_view attribute) const;  ///< NaN without value and default
+  /// NaN without value and default; 0 where an expression stands in its place.
+  double real(std::string_view attribute) const;
+  /// The expression in place of the number, where it uses variables.
+  std::optional<std::string> expression(std::string_view attribute) const;
   std::int64_t integer(std::string_view attribute) const;
   int small_integer(std::string_view attribute) const { return static_cast<int>(integer(attribute)); }
   bool boolean(std::string_view attribute) const { return integer(attribute) == 1; }

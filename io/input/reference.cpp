@@ -138,6 +138,13 @@ std::string section(const ElementSpec& element, const std::string& parents, int 
   return text;
 }
 
+std::string functions_in_words() {
+  std::vector<std::string> names;
+  for (const std::string& name : core::Formula::known_names())
+    if (name != "if" && !name.starts_with('_')) names.push_back(fmt::format("`{}`", name));
+  return join(names, " ");
+}
+
 }  // namespace
 
 std::string keyword_reference(const core::Catalogue& catalogue) {
@@ -148,7 +155,19 @@ std::string keyword_reference(const core::Catalogue& catalogue) {
       "Names are case-sensitive. Units are the user's own and consistent; a unit of 1 is a pure number.\n"
       "Pressure is positive in compression, stress in tension. What is marked \"not yet\" is part of the "
       "language and is\n"
-      "refused with a message that says so.\n\n" +
+      "refused with a message that says so.\n\n"
+      "An expression may stand where the table says so, as in `vx=\"0.1*sin(pi*x/25)\"`. Its result is in "
+      "the "
+      "input's own\n"
+      "units. Variables: `x`, `y`, `z`, the particle's place; `X`, `Y`, `Z`, its first place; `t`, the time; "
+      "all "
+      "in the global\n"
+      "frame. Operators: `+ - * / ^`, comparisons (in XML `<` is written `&lt;`), `&&`, `||`, `a ? b : c`. "
+      "Functions and\n"
+      "constants: `if(condition, a, b)`, where a condition is 0 or not, and " +
+      functions_in_words() +
+      ";\n`log` is the natural logarithm like `ln`. A result that is not finite ends the program with the "
+      "particle's name.\n\n" +
       section(language(catalogue), "", 1, catalogue);
   text.pop_back();
   return text;

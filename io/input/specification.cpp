@@ -121,6 +121,8 @@ void parse_detail(AttributeSpec& a, std::string_view key, std::string_view value
     a.twice = value;
   else if (key == "word")
     a.word = value;
+  else if (key == "expression")
+    a.variables = core::variables_named(value);
   else if (key == "later" && value == "*")
     a.later = true;
   else if (key == "later")
@@ -287,6 +289,7 @@ std::string expectation(const AttributeSpec& a) {
     text = interval(a.range, "a whole number");
   } else if (a.type == ValueType::real) {
     text = interval(a.range, "a number");
+    if (a.variables.any()) text += " or an expression in " + core::in_words(a.variables);
   } else {
     text = "a text";
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/expressions/formula.hpp"
 #include "core/scene/catalogue.hpp"
 
 namespace mpm::io {
@@ -44,8 +45,10 @@ struct AttributeSpec {
   std::pair<std::string, std::string> also_word;  ///< accepted spelling of a word, and the word
   std::string twice;                              ///< what is meant where the attribute stands twice
   std::string word;                               ///< accepted in place of a number
-  bool foreign = false;                           ///< a user's Specification has it, this program has not
-  std::vector<std::string> foreign_words;         ///< words that only a user's Specification has
+  /// Variables of an expression that may stand in place of the number (core/expressions/formula.hpp).
+  core::VariableSet variables;
+  bool foreign = false;                    ///< a user's Specification has it, this program has not
+  std::vector<std::string> foreign_words;  ///< words that only a user's Specification has
 
   bool applies_to(std::string_view element_type) const;
 };

@@ -108,8 +108,8 @@ class Fitting {
     if (!missing.empty()) {
       report(where, record.name,
              fmt::format(
-                 "the scene needs state that the restart file does not have: {}; keep the material laws and "
-                 "the volume update of the run that wrote it",
+                 "the scene needs state that the restart file does not have: {}; keep the material laws, the "
+                 "expressions in X, Y, Z and the volume update of the run that wrote it",
                  missing));
     }
     if (!started.empty()) {

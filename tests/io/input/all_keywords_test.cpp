@@ -167,6 +167,11 @@ std::string bodies() {
       "<Traction pressure='1' tx='1' ty='2' tz='3' normal='0' xmin='0' xmax='1' ymin='0' ymax='1' zmin='0' "
       "zmax='1' ramp='0.5'><Coefficient time='0' c='1'/><Coefficient time='1' c='2'/></Traction>");
   text += body("Block", block,
+               "<InitialVelocity vx='0.1*sin(pi*x/25)' vy='X' vz='0'/>"
+               "<BodyForce bx='1' by='if(x > 0, y, z)*t' bz='X + Y + Z'/>"
+               "<Traction pressure='x*t' tx='t' ty='y' tz='z' normal='0'/>");
+  text += body("Block", block, "<PrescribedVelocity vx='t' vy='X*y' vz='0'/>");
+  text += body("Block", block,
                "<HarmExcit><A x='0' y='0' z='1'/><Omega x='1' y='1' z='1'/><Theta x='0' y='0' z='0'/>"
                "<EndTime x='1' y='1' z='1'/></HarmExcit>");
   text += body("Block", block,
@@ -287,7 +292,7 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   CHECK(io::to_text(io::parse_scene(echo, "all.xmp", physics::catalogue(), options)) == echo);
 
   CHECK(scene.materials.size() == 26);
-  CHECK(scene.components[0].bodies.size() == 22);
+  CHECK(scene.components[0].bodies.size() == 24);
   CHECK(std::get<core::BoolGeometry>(scene.components[0].bodies[2].geometry).subtrahend.body == 1);
   CHECK(scene.detonations.size() == 2);
   CHECK(scene.grid.axes[0].segments.size() == 2);
