@@ -71,6 +71,15 @@ inline std::vector<Feature> features() {
       {.time_step = R"(<TimeStep factor="0.4" NotConsiderVisForCp="1"/>)"});
   add("step", "prescribed velocity", "none, at rest", at_rest,
       {.body = R"(<PrescribedVelocity vx="0" vy="0" vz="0"/>)", .velocity = ""});
+  add("expressions", "body force, numbers", "none", bar, {.body = R"(<BodyForce bz="-9.81e-6"/>)"});
+  add("expressions", "body force of t", "none", bar, {.body = R"(<BodyForce bz='-9.81e-6*cos(t)'/>)"});
+  add("expressions", "body force of x and t", "none", bar,
+      {.body = R"(<BodyForce bz='-9.81e-6*cos(x + t)'/>)"});
+  add("expressions", "body force of X and t", "none", bar,
+      {.body = R"(<BodyForce bz='-9.81e-6*cos(X + t)'/>)"});
+  add("expressions", "prescribed velocity of x and t", "prescribed numbers",
+      {.body = R"(<PrescribedVelocity vx="0" vy="0" vz="0"/>)", .velocity = ""},
+      {.body = R"(<PrescribedVelocity vx="0" vy="0" vz='1e-9*sin(x + t)'/>)", .velocity = ""});
 
   for (const char* transfer : {"PIC", "APIC", "TPIC", "XPIC"})
     add("transfer", transfer, "FLIP", bar,
@@ -109,6 +118,8 @@ inline std::vector<Feature> spelled_out() {
       off("TimeStep at its defaults",
           {.time_step = R"(<TimeStep factor="0.4" const="0" specified="0" NotConsiderVisForCp="0"/>)"}),
       off("transfer FLIP", {.solution_attributes = R"(transfer="FLIP" flip_fraction="1")"}),
+      off("initial velocity by an expression",
+          {.velocity = R"(<InitialVelocity vx="0" vy="0*pi" vz='if(x &lt; 1e9, -190, y)'/>)"}),
       off("shape linear", {.grid_attributes = R"(shape="linear" gimp="0")"}),
       off("FailureModel none", {.failure = R"(<FailureModel type="none"/>)"}),
       off("RandomFailure 0", {.failure = R"(<RandomFailure enable="0"/>)"}),

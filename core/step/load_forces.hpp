@@ -60,6 +60,14 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
         }
       }
     }
+    if (!dashpots && mine.surfaces.empty()) {
+      // Without the gradients; the zero rounds the product as the sum with them does, to the same bits.
+      S::for_each_node(place, l, g.inverse_cell,
+                       [&](int node, const NodeOffset&, double shape_value, const Vec3<double>&) {
+                         f(node, shape_value * per_shape + Vec3<double>{});
+                       });
+      continue;
+    }
     // One dashpot per grid face in the particle's reach, acting on the face's nodes.
     Vec3<double> dashpot[3]{};
     int side[3] = {-1, -1, -1};  // the face's nodes, relative to the lowest of the particle's
