@@ -39,6 +39,12 @@ Formula::Check refusal(const mu::ParserError& fault) {
   Formula::Check check;
   std::string token = fault.GetToken();
   while (!token.empty() && token.back() == ' ') token.pop_back();
+  constexpr std::size_t longest = 40;
+  if (token.size() > longest) {
+    std::size_t end = longest;
+    while (end > 0 && (static_cast<unsigned char>(token[end]) & 0xC0) == 0x80) --end;  // a whole character
+    token = token.substr(0, end) + "...";
+  }
   const auto at = [&] { return fmt::format("at character {}", fault.GetPos() + 1); };
   switch (fault.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN:
@@ -47,6 +53,7 @@ Formula::Check refusal(const mu::ParserError& fault) {
       break;
     case mu::ecUNEXPECTED_EOF: check.error = "the expression ends too early"; break;
     case mu::ecEMPTY_EXPRESSION: check.error = "empty"; break;
+    case mu::ecEXPRESSION_TOO_LONG: check.error = "the expression is too long"; break;
     case mu::ecMISSING_PARENS: check.error = "a closing parenthesis is missing"; break;
     case mu::ecTOO_MANY_PARAMS: check.error = fmt::format("too many arguments of '{}'", token); break;
     case mu::ecTOO_FEW_PARAMS: check.error = fmt::format("too few arguments of '{}'", token); break;

@@ -62,6 +62,9 @@ TEST_CASE("The check of a formula names its variables, its constant value or its
   CHECK(error_of("sin(x, 1)") == "too many arguments of 'sin'");
   CHECK(error_of("if(x, 1)") == "too few arguments of 'if'");
   CHECK(error_of("x, y") == "a comma stands outside of a function");
+  CHECK(error_of(std::string(200'000, '(').c_str()) == "the expression is too long");
+  CHECK(error_of(("1" + std::string(90, 'e')).c_str()) ==
+        "'1" + std::string(39, 'e') + "...' at character 1 is not known");
   for (const char* text : {"x = 3", "3 == (x = 4)", "= x"})
     CHECK(error_of(text) == "'=' assigns; equality is written ==");
   for (const char* text : {"x == 3", "x <= 3", "x >= 3", "x != 3"}) CHECK(error_of(text).empty());
