@@ -79,13 +79,26 @@ class Killed(Resume):
     def test_killed_while_going_on_from_an_older_restart_file(self):
         """What the later file refers to is overwritten by then: it does not count any more."""
         _resume.start_and_kill(self.case, self.out, files=3)
-        older, newer = _mpm.restarts(self.out)
+        older, *later = _mpm.restarts(self.out)
         process = _mpm.start([older, "--output-dir", self.out])
-        self.assertTrue(_resume.wait_for(lambda: not newer.exists(), process))
+        self.assertTrue(_resume.wait_for(lambda: not any(path.exists() for path in later), process))
         _resume.kill(process)
-        self.assertTrue(newer.with_name(newer.name + ".superseded").exists())
+        for path in later:
+            self.assertTrue(path.with_name(path.name + ".superseded").exists())
         self.shorten()
         outcome = self.go_on()
+        self.assertEqual(outcome.state, self.state)
+        self.assertNotIn("warning", outcome.out)
+        self.check_same_files()
+
+    def test_killed_when_nothing_is_left_but_the_last_row(self):
+        """A run with no steps left removes its last row and writes it again."""
+        self.write(_resume.scene(0.5))
+        self.state = self.run_in("undisturbed", [self.case]).state
+        self.run_in("out", [self.case])
+        rows = (self.out / "case.sta").read_text().splitlines(keepends=True)
+        (self.out / "case.sta").write_text("".join(rows[:-1]))
+        outcome = self.run_in("out", [self.out / "case.pe"])
         self.assertEqual(outcome.state, self.state)
         self.assertNotIn("warning", outcome.out)
         self.check_same_files()
