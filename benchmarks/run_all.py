@@ -23,11 +23,13 @@ LAWS = "strength law", "equation of state", "failure law"
 
 
 def measure_throughput(options):
-    size = {"quick": ["--sizes", "20e3,200e3", "--seconds", 1, "--empty-space", 50e3],
-            "tiny": ["--sizes", "2e3", "--seconds", 0, "--repeats", 1, "--empty-space", 0, "--reference-limit", 0],
+    size = {"quick": ["--sizes", "20e3,200e3", "--seconds", 1, "--empty-space", 50e3, "--rounds", 2,
+                      "--shapes", 50e3],
+            "tiny": ["--sizes", "2e3", "--seconds", 0, "--repeats", 1, "--empty-space", 0, "--reference-limit", 0,
+                     "--rounds", 1, "--shapes", 2e3],
             "full": []}[options.size]
     said = results.run([results.BIN / "throughput", *size, "--csv", options.out / "throughput.csv",
-                        "--phases-csv", options.out / "phases.csv"], echo=True)
+                        "--shapes-csv", options.out / "shapes.csv", "--phases-csv", options.out / "phases.csv"], echo=True)
     (options.out / "throughput.txt").write_text(said)
 
 
@@ -86,7 +88,12 @@ def throughput_blocks(out):
     said = (out / "throughput.txt").read_text()
     _, _, empty = said.partition("\nempty space: ")
     empty = "; ".join(" ".join(line.split()) for line in empty.splitlines())
-    return {"throughput": f"{ceilings}\n\n{table}" + (f"\n\nEmpty space: {empty}." if empty else ""),
+    _, by_shape = results.read(out / "shapes.csv")
+    shape_table = results.markdown(by_shape, {
+        "scheme": (of("scheme"), ""), "shape": (of("shape"), ""), "best ns": (of("best_ns"), ".1f"),
+        "median ns": (of("median_ns"), ".1f"), "x linear": (of("ratio_to_linear"), ".2f"), "state B": (of("state_bytes"), ".0f")})
+    return {"shapes": f"{by_shape[0]['particles']:.0f} particles, {by_shape[0]['rounds']:.0f} turns:\n\n{shape_table}",
+            "throughput": f"{ceilings}\n\n{table}" + (f"\n\nEmpty space: {empty}." if empty else ""),
             "phases": f"{largest:.0f} particles:\n\n{phase_table}"}
 
 

@@ -1,7 +1,7 @@
 // Speed of the explicit step relative to the limits of the machine: particle-steps per second and core,
 // bytes of state and of traffic per particle-step, shares of the memory and arithmetic ceilings, the ratio to
 // the naive reference stepper, seconds per phase and peak memory, for each scheme and size, all measured in
-// one run. The same bar in a larger box of empty space follows.
+// one run. The same bar with each shape function, and in a larger box of empty space, follow.
 #include <cstdio>
 #include <optional>
 
@@ -17,6 +17,7 @@
 #include "benchmarks/common/cost.hpp"
 #include "benchmarks/common/machine.hpp"
 #include "benchmarks/common/table_file.hpp"
+#include "core/shape/list.hpp"
 #include "core/simd/denormals.hpp"
 #include "tests/support/reference_stepper.hpp"
 
@@ -31,8 +32,10 @@ struct Options {
   int repeats = 5;
   double seconds = 3;            ///< minimum time of all repeats
   double reference_limit = 2e6;  ///< particles; the reference is slow
+  double shapes = 200e3;         ///< particles of the comparison of shape functions; 0: none
+  int rounds = 5;                ///< of that comparison
   double empty_space = 200e3;    ///< particles of that comparison; 0: none
-  std::string csv, phases_csv;
+  std::string csv, phases_csv, shapes_csv;
 };
 
 double peak_memory() {
@@ -249,6 +252,51 @@ void write_phases_csv(const std::string& path, const Facts& facts, const std::ve
   }
 }
 
+/// Every family of shape functions in turns, so that a drift of the machine affects all; each scheme alone.
+void compare_shapes(const Options& o, const Facts& facts) {
+  const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    [&]<class... S>(std::type_identity<std::tuple<S...>>) {
+      (list.emplace_back(S::name), ...);
+    }(std::type_identity<core::Shapes>());
+    return list;
+  }();
+  std::optional<TableFile> file;
+  if (!o.shapes_csv.empty()) {
+    file.emplace(o.shapes_csv, facts);
+    fmt::print(file->handle, "scheme,shape,particles,rounds,best_ns,median_ns,ratio_to_linear,state_bytes\n");
+  }
+  fmt::print("\nshape functions: ns per particle-step of a core, in {} turns\n", o.rounds);
+  fmt::print("{:<5} {:<18} {:>9} {:>8} {:>8} {:>9} {:>8}\n", "", "", "particles", "best ns", "median",
+             "x linear", "state B");
+  for (const std::string& scheme : o.schemes) {
+    std::vector<Series> ns(names.size()), ratio(names.size());
+    std::vector<double> particles(names.size()), bytes(names.size());
+    double linear = 0;
+    for (int round = 0; round < o.rounds; ++round) {
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        const BarInput input{.particles = o.shapes,
+                             .scheme = scheme,
+                             .grid_attributes = fmt::format(R"(shape="{}")", names[i])};
+        const Json r = in_child([&] { return measure(input, o); });
+        const double best = r["best_ns"];
+        if (i == 0) linear = best;
+        ns[i].add(best);
+        ratio[i].add(best / linear);
+        particles[i] = r["particles"];
+        bytes[i] = r["state_bytes"];
+      }
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      fmt::print("{:<5} {:<18} {:>9.0f} {:>8.2f} {:>8.2f} {:>9.2f} {:>8.0f}\n", scheme, names[i],
+                 particles[i], ns[i].best(), ns[i].median(), ratio[i].median(), bytes[i]);
+      if (file)
+        fmt::print(file->handle, "{},{},{:.0f},{},{:.4g},{:.4g},{:.4g},{:.0f}\n", scheme, names[i],
+                   particles[i], o.rounds, ns[i].best(), ns[i].median(), ratio[i].median(), bytes[i]);
+    }
+  }
+}
+
 /// The same bar in a box ten times larger along each axis: should cost nothing.
 void compare_empty_space(const Options& o) {
   Series ns[2], memory[2];
@@ -285,6 +333,12 @@ Options parse(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--empty-space", o.empty_space, "particles of the comparison of boxes; 0: none")
       ->capture_default_str();
+  app.add_option("--shapes", o.shapes, "particles of the comparison of shape functions; 0: none")
+      ->capture_default_str();
+  app.add_option("--rounds", o.rounds, "of that comparison")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--shapes-csv", o.shapes_csv, "file for that comparison");
   app.add_option("--csv", o.csv, "file for the results");
   app.add_option("--phases-csv", o.phases_csv, "file for the table of phases");
   try {
@@ -318,8 +372,9 @@ int run(int argc, char** argv) {
   print_tables(rows, ceilings, o.threads);
   if (!o.csv.empty()) write_csv(o.csv, facts, rows, ceilings, o.threads);
   if (!o.phases_csv.empty()) write_phases_csv(o.phases_csv, facts, rows, o.threads);
+  if (o.shapes > 0) compare_shapes(o, facts);
   if (o.empty_space > 0) compare_empty_space(o);
-  return rows.empty() ? 1 : 0;
+  return rows.empty() && o.shapes <= 0 ? 1 : 0;
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ inline std::vector<Feature> features() {
   for (const char* transfer : {"PIC", "APIC", "TPIC", "XPIC"})
     add("transfer", transfer, "FLIP", bar,
         {.solution_attributes = fmt::format(R"(transfer="{}")", transfer)});
-  for (const char* shape : {"uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "DDMP"})
+  for (const char* shape : {"uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "DDMP", "SGMP"})
     add("shape", shape, "linear", bar, {.grid_attributes = fmt::format(R"(shape="{}")", shape)});
 
   BarInput free = at_rest;

@@ -1,10 +1,9 @@
 // Generalised interpolation (GIMP; Bardenhagen and Kober, CMES 5 (2004) 477; review 2.2.2): the linear
 // functions averaged over the particle's domain, a box of half-sizes l along the axes.
 //   uGIMP    the box keeps its first size
-//   cpGIMP   it is stretched with the particle, dl_a/dt = l_a L_aa: without rotation, boxes that filled a
-//   body
-//            go on filling it. L is that of the strain (MUSL, USL) or of the motion (USF, whose forces follow
-//            the strain in the same step and must act on the nodes that have mass).
+//   cpGIMP   it is stretched with the particle, dl_a/dt = l_a L_aa: without rotation, boxes that filled
+//            a body go on filling it. L is that of the strain (MUSL, USL) or of the motion (USF, whose
+//            forces follow the strain in the same step and must act on the nodes that have mass).
 // The first box is a cube of the particle's volume. A box wider than a cell would reach a fourth node: it
 // counts as one cell wide, and the run says how often that happened.
 #pragma once
@@ -21,9 +20,9 @@ struct GimpAlong {
   static constexpr double widest = 0.5, narrowest = 1e-6;
   template <class T>
   static void evaluate(T s, T half_size, T* value, T* slope) {
-    const T l = min(max(half_size, T(narrowest)), T(widest)), t = s - T(0.5);
+    const T l = min(max(half_size, T(narrowest)), T(widest)), inverse_width = T(0.5) / l, t = s - T(0.5);
     const auto average = [&](T x, T& gradient) {
-      gradient = min(max((x + l) / (T(2.0) * l), T(0.0)), T(1.0));
+      gradient = min(max((x + l) * inverse_width, T(0.0)), T(1.0));
       return select(x < l, l * gradient * gradient, x);
     };
     T lower_slope, upper_slope;
