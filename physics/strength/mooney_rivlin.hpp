@@ -2,28 +2,22 @@
 //   W = A (I1 - 3) + B (I2 - 3) + C (1/I3^2 - 1) + D (I3 - 1)^2                                      (3.18)
 //   C = A/2 + B,   D = (A (5 nu - 2) + B (11 nu - 5))/(2 (1 - 2 nu))                          (3.19, 3.20)
 //   sigma = 2/J ((A + B I1) B - B B^2 + I3 W,3 I),   J = det F
-// so that at rest G = 2 (A + B), K = 2 G (1 + nu)/(3 (1 - 2 nu)). F is the material's deformation gradient
-// (physics/material/deformation.hpp); J is its determinant, not that of the volume column, which may drift
-// with the scene's volume update. Limit: below nu = (2 A + 5 B)/(5 A + 11 B), 0.40 to 0.45, D is negative and
-// large expansion is not resisted. The law computes its own pressure: no EquationOfState. Shown by
-// tests/physics/rubber_test.cpp.
+// so that at rest G = 2 (A + B), K = 2 G (1 + nu)/(3 (1 - 2 nu)). Limit: below nu = (2 A + 5 B)/(5 A + 11 B),
+// 0.40 to 0.45, D is negative and large expansion is not resisted. The law computes its own pressure: no
+// EquationOfState. Shown by tests/physics/rubber_test.cpp.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "core/simd/math.hpp"
-#include "physics/parameter_rows.hpp"
-#include "physics/strength/point.hpp"
+#include "physics/strength/hyperelastic.hpp"
 
 namespace mpm::physics {
 
 struct MooneyRivlin {
   static constexpr std::string_view name = "MooneyRivlin";
   static constexpr std::string_view summary = "rubber, nearly incompressible, hyperelastic";
-  static constexpr std::array state{core::Column::f_xx, core::Column::f_xy, core::Column::f_xz,
-                                    core::Column::f_yx, core::Column::f_yy, core::Column::f_yz,
-                                    core::Column::f_zx, core::Column::f_zy, core::Column::f_zz};
+  static constexpr auto state = deformation_gradient_columns;
   static constexpr bool sets_pressure = true;
   static constexpr bool hyperelastic = true;
 
@@ -52,10 +46,7 @@ struct MooneyRivlin {
   /// A new particle is stretched equally in all directions to its volume.
   template <class T>
   T place(StrengthPoint<T>& point, const T& relative_volume) const {
-    using core::exp;
-    using core::log;
-    const T stretch = exp((1.0 / 3) * log(relative_volume)), square = stretch * stretch;
-    put(point, {stretch, 0.0, 0.0, 0.0, stretch, 0.0, 0.0, 0.0, stretch});
+    const T stretch = stretch_equally(point, relative_volume), square = stretch * stretch;
     const T i3 = square * square * square;
     return 3 * a * (square - 1.0) + 3 * b * (square * square - 1.0) + c * (1.0 / (i3 * i3) - 1.0) +
            d * (i3 - 1.0) * (i3 - 1.0);
@@ -63,12 +54,8 @@ struct MooneyRivlin {
 
   template <class T>
   void update(StrengthPoint<T>& point) const {
-    const core::Mat3<T> f{point.f_xx, point.f_xy, point.f_xz, point.f_yx, point.f_yy,
-                          point.f_yz, point.f_zx, point.f_zy, point.f_zz};
-    const core::Sym3<T> left{
-        f.xx * f.xx + f.xy * f.xy + f.xz * f.xz, f.yx * f.yx + f.yy * f.yy + f.yz * f.yz,
-        f.zx * f.zx + f.zy * f.zy + f.zz * f.zz, f.xx * f.yx + f.xy * f.yy + f.xz * f.yz,
-        f.yx * f.zx + f.yy * f.zy + f.yz * f.zz, f.xx * f.zx + f.xy * f.zy + f.xz * f.zz};
+    const core::Mat3<T> f = deformation_gradient(point);
+    const core::Sym3<T> left = left_cauchy_green(f);
     const core::Sym3<T> square = squared(left);
     const T j = determinant(f), i1 = trace(left), i3 = j * j, inverse = 1.0 / i3;
     const T i2 = 0.5 * (i1 * i1 - trace(square));
@@ -94,26 +81,6 @@ struct MooneyRivlin {
     const T w33 = 2 * d + 6 * c * inverse2 * inverse2;
     return a * (a > 0 ? largest : smallest) + b * (i2 - i3 / (b > 0 ? largest : smallest)) + i3 * w3 +
            2.0 * i3 * i3 * w33;
-  }
-
-  /// The deviator, from differences: exactly zero where all stretches are equal.
-  template <class T>
-  static core::Sym3<T> differences(const core::Sym3<T>& m) {
-    const T xy = (1.0 / 3) * (m.xx - m.yy), yz = (1.0 / 3) * (m.yy - m.zz), zx = (1.0 / 3) * (m.zz - m.xx);
-    return {xy - zx, yz - xy, zx - yz, m.xy, m.yz, m.xz};
-  }
-  template <class T>
-  static core::Sym3<T> squared(const core::Sym3<T>& m) {
-    return {m.xx * m.xx + m.xy * m.xy + m.xz * m.xz, m.xy * m.xy + m.yy * m.yy + m.yz * m.yz,
-            m.xz * m.xz + m.yz * m.yz + m.zz * m.zz, m.xx * m.xy + m.xy * m.yy + m.xz * m.yz,
-            m.xy * m.xz + m.yy * m.yz + m.yz * m.zz, m.xx * m.xz + m.xy * m.yz + m.xz * m.zz};
-  }
-
-  template <class T>
-  static void put(StrengthPoint<T>& point, const core::Mat3<T>& f) {
-    point.f_xx = f.xx, point.f_xy = f.xy, point.f_xz = f.xz;
-    point.f_yx = f.yx, point.f_yy = f.yy, point.f_yz = f.yz;
-    point.f_zx = f.zx, point.f_zy = f.zy, point.f_zz = f.zz;
   }
 };
 
