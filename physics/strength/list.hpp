@@ -3,6 +3,7 @@
 
 #include "physics/laws.hpp"
 #include "physics/strength/cauchy_elastic.hpp"
+#include "physics/strength/corotated.hpp"
 #include "physics/strength/deshpande_fleck.hpp"
 #include "physics/strength/drucker_prager.hpp"
 #include "physics/strength/ela_plastic.hpp"
@@ -14,6 +15,7 @@
 #include "physics/strength/jh2.hpp"
 #include "physics/strength/johnson_cook.hpp"
 #include "physics/strength/mooney_rivlin.hpp"
+#include "physics/strength/neo_hookean.hpp"
 #include "physics/strength/null.hpp"
 #include "physics/strength/rht.hpp"
 #include "physics/strength/rigid.hpp"
@@ -25,6 +27,6 @@ namespace mpm::physics {
 using StrengthModels =
     LawList<IsoElastic, CauchyElastic, Elastic1D, ElaPlastic, IsoHarden, LinHarElaPlastic1D, JohnsonCook,
             SimJohnsonCook, Null, HighExpBurn, HolmquistJohnsonCook, MooneyRivlin, Rigid, RHT, JH2,
-            DruckerPrager, DFFoam, Gurson>;
+            DruckerPrager, DFFoam, Gurson, NeoHookean, Corotated>;
 
 }  // namespace mpm::physics

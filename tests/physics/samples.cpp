@@ -40,7 +40,7 @@ bool solids_are_not(const std::string& type) {
 /// Strength laws that compute the pressure themselves: no equation of state beside them.
 bool own_pressure(const std::string& type) {
   return type == "CauchyElastic" || type == "DruckerPrager" || type == "DFFoam" || type == "Gurson" ||
-         type == "MooneyRivlin" || solids_are_not(type);
+         type == "MooneyRivlin" || type == "NeoHookean" || type == "Corotated" || solids_are_not(type);
 }
 
 /// Strength laws: label, type, parameters, path strain.
@@ -112,6 +112,8 @@ const std::vector<Strength> strengths{
      "MooneyRivlin",
      {{"Mr_A2", 0.4e6}, {"Mr_B2", -0.1e6}, {"Poisson", 0.3}},
      0.1},
+    {"NeoHookean", "NeoHookean", {{"Young", 1e6}, {"Poisson", 0.3}}, 0.1},
+    {"Corotated", "Corotated", {{"Young", 1e6}, {"Poisson", 0.3}}, 0.1},
     {"Elastic_1D", "Elastic_1D", elastic, 0.02},
     {"LinHarElaPlastic_1D",
      "LinHarElaPlastic_1D",

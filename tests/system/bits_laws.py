@@ -52,6 +52,8 @@ MATERIALS = {
     "foam": (300, f'type="DFFoam" {FOAM}', None, ""),
     "voids": (8960, f'type="Gurson" {VOIDS} TangMod="3e9" fN="0.04" sN="0.1" eN="0.3"', None, ""),
     "rubber": (1000, 'type="MooneyRivlin" Mr_A2="0.4e6" Mr_B2="0.1e6" Poisson="0.49"', None, ""),
+    "gel": (1000, 'type="NeoHookean" Young="1e6" Poisson="0.4"', None, ""),
+    "jelly": (1000, 'type="Corotated" Young="1e6" Poisson="0.3"', None, ""),
     "concrete": (2440, f'type="HolmquistJohnsonCook" {CONCRETE}', CRUSHED, ""),
     "porous": (2314, f'type="RHT" {RHT}', P_ALPHA, ""),
     "ceramic": (3163, f'type="JH2" {CERAMIC}', None, ""),

@@ -73,6 +73,7 @@ std::string materials() {
       "DamageToFail='1'" +
       plastic);
   text += material("type='MooneyRivlin' Mr_A2='1' Mr_B2='2'" + common) + material("type='Rigid'");
+  text += material("type='NeoHookean'" + common) + material("type='Corotated'" + common);
   text += material(
       "type='RHT' fc='35' ft_fc='0.1' fs_fc='0.2' A='1.6' N='0.6' Q20='0.7' BQ='0.01' PREFACT='2' "
       "TENSRAT='0.7' "
@@ -291,7 +292,7 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   const std::string echo = io::to_text(scene);
   CHECK(io::to_text(io::parse_scene(echo, "all.xmp", physics::catalogue(), options)) == echo);
 
-  CHECK(scene.materials.size() == 26);
+  CHECK(scene.materials.size() == 28);
   CHECK(scene.components[0].bodies.size() == 24);
   CHECK(std::get<core::BoolGeometry>(scene.components[0].bodies[2].geometry).subtrahend.body == 1);
   CHECK(scene.detonations.size() == 2);
