@@ -14,7 +14,7 @@ enum class Scheme { usf, usl, musl };
 
 enum class Integration { explicit_dynamics, implicit };
 
-enum class Transfer { flip, pic, apic, tpic, xpic };
+enum class Transfer { flip, pic, apic, tpic, aflip, xpic };
 
 struct TimeStepInput {
   double factor = 0.9;            ///< of the critical step, (0, 1]

@@ -70,9 +70,11 @@ struct SeparableScatter {
   void clear() {}
   void flush(const BrickFrame&, double*) {}
 
-  /// Particle `i` of the block.
+  /// Particle `i` of the block; Rows: MappedRows or AffineRows.
+  template <class Rows>
   [[gnu::always_inline]] void add(const BrickFrame&, const SeparablePlace<Along>& place, int i,
-                                  const MappedRows& rows, double* contributions) {
+                                  const Rows& rows, double* contributions) {
+    constexpr bool affine = maps_momentum(what) && requires { rows.increase; };
     constexpr int n = Along::nodes, side = SeparablePlace<Along>::side;
     constexpr int width = record_doubles(what.array);
     double* lowest = contributions + width * place.node[i];
@@ -88,30 +90,51 @@ struct SeparableScatter {
         mapped = V{
             rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i], rows.mass[i], s(5), s(4), s(2), 0};
       const R y_stress = V{0, 0, 0, 0, s(3), s(1), s(4), 0}, x_stress = V{0, 0, 0, 0, s(0), s(3), s(5), 0};
+      R increase[3];
+      if constexpr (affine) {
+        for (int b = 0; b < 3; ++b)
+          increase[b] =
+              V{rows.increase[0][b][i], rows.increase[1][b][i], rows.increase[2][b][i], 0, 0, 0, 0, 0};
+      }
       R wy[n], dy[n];
       for (int j = 0; j < n; ++j) wy[j] = R(w[1][j][i]), dy[j] = R(d[1][j][i]);
       for (int k = 0; k < n; ++k) {
         const double wz = w[2][k][i];
-        const R u = mapped * separable::halves(wz, d[2][k][i]);
+        R u = mapped * separable::halves(wz, d[2][k][i]);
         const R v = y_stress * R(wz), x = x_stress * R(wz);
         for (int j = 0; j < n; ++j) {
-          const R p = u * wy[j] + v * dy[j], q = x * wy[j];
+          R p = u * wy[j] + v * dy[j];
+          const R q = x * wy[j];
           double* at = lowest + width * side * (j + side * k);
-          for (int m = 0; m < n; ++m, at += width)
+          for (int m = 0; m < n; ++m, at += width) {
             store(at, load<R>(at) + (p * R(w[0][m][i]) + q * R(d[0][m][i])));
+            if constexpr (affine) p += increase[0] * R(wz) * wy[j];
+          }
+          if constexpr (affine) u += increase[1] * R(wz);
         }
+        if constexpr (affine) mapped += increase[2];
       }
     } else {
       using H = Lanes<4>;
-      const H mapped = H::vector{rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i],
-                                 maps_mass(what) ? rows.mass[i] : 0.0};
+      H mapped = H::vector{rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i],
+                           maps_mass(what) ? rows.mass[i] : 0.0};
+      H increase[3];
+      if constexpr (affine) {
+        for (int b = 0; b < 3; ++b)
+          increase[b] = H::vector{rows.increase[0][b][i], rows.increase[1][b][i], rows.increase[2][b][i], 0};
+      }
       for (int k = 0; k < n; ++k) {
-        const H u = mapped * H(w[2][k][i]);
+        H u = mapped * H(w[2][k][i]);
         for (int j = 0; j < n; ++j) {
-          const H p = u * H(w[1][j][i]);
+          H p = u * H(w[1][j][i]);
           double* at = lowest + width * side * (j + side * k);
-          for (int m = 0; m < n; ++m, at += width) store(at, load<H>(at) + p * H(w[0][m][i]));
+          for (int m = 0; m < n; ++m, at += width) {
+            store(at, load<H>(at) + p * H(w[0][m][i]));
+            if constexpr (affine) p += increase[0] * H(w[2][k][i]) * H(w[1][j][i]);
+          }
+          if constexpr (affine) u += increase[1] * H(w[2][k][i]);
         }
+        if constexpr (affine) mapped += increase[2];
       }
     }
   }
@@ -166,39 +189,38 @@ struct Separable {
 
   template <class Rows>
   static void gradient(const BrickFrame&, const Place& place, const Field& field, Rows& rows, int at) {
-    using R = Lanes<8>;
-    constexpr int n = nodes_per_axis, side = Place::side;
-    const auto w = [&](int axis, int i) { return load<R>(place.value[axis][i]); };
-    const auto d = [&](int axis, int i) { return load<R>(place.slope[axis][i]); };
-    R gradient[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    for_each_cell(place, [&](int node, auto here) {
-      const double* lowest = field.nodes + Motion::strain_velocity_at + node_doubles * node;
-      for (int c = 0; c < 3; ++c) {
-        R gx(0.0), gy(0.0), gz(0.0);
-        for (int k = 0; k < n; ++k) {
-          R x(0.0), y(0.0), z(0.0);
-          for (int j = 0; j < n; ++j) {
-            const double* row = lowest + node_doubles * side * (j + side * k) + c;
-            R value = w(0, 0) * R(row[0]), slope = d(0, 0) * R(row[0]);
-            for (int i = 1; i < n; ++i) {
-              value += w(0, i) * R(row[node_doubles * i]);
-              slope += d(0, i) * R(row[node_doubles * i]);
-            }
-            x += w(1, j) * slope;
-            y += d(1, j) * value;
-            z += w(1, j) * value;
-          }
-          gx += w(2, k) * x;
-          gy += w(2, k) * y;
-          gz += d(2, k) * z;
-        }
-        R* const g = gradient + 3 * c;
-        g[0] = select(here, gx, g[0]);
-        g[1] = select(here, gy, g[1]);
-        g[2] = select(here, gz, g[2]);
-      }
-    });
+    Lanes<8> value[3], gradient[9];
+    sums(place, place.slope, field.nodes + Motion::strain_velocity_at, value, gradient);
     for (int i = 0; i < 9; ++i) store(rows[i] + at, gradient[i]);
+  }
+
+  // For affine transfers.
+
+  /// Distance of a block's particles from their lowest node along an axis, in cells.
+  static Lanes<8> from_lowest_node(const Place& place, int axis) {
+    return load<Lanes<8>>(place.position[axis]) + Lanes<8>(nodes_per_axis == 3 ? 0.5 : 1.0);
+  }
+  /// sum S_i v_i, and sum v_i (x) grad S_i in the order of Mat3.
+  static void velocity_and_gradient(const Place& place, const Field& field, Lanes<8>* value,
+                                    Lanes<8>* gradient) {
+    sums(place, place.slope, field.velocity(), value, gradient);
+  }
+  /// sum S_i v_i, and B D^-1 (core/transfer/affine.hpp).
+  static void velocity_and_moments(const BrickFrame& frame, const Place& place, const Field& field,
+                                   Lanes<8>* value, Lanes<8>* moments) {
+    using R = Lanes<8>;
+    constexpr int n = nodes_per_axis;
+    alignas(64) double factor[3][n][block_lanes];
+    for (int a = 0; a < 3; ++a) {
+      R distance = -from_lowest_node(place, a), first[n], second(0.0);
+      for (int i = 0; i < n; ++i, distance += R(1.0)) {
+        first[i] = load<R>(place.value[a][i]) * distance;
+        second += first[i] * distance;
+      }
+      const R scale = R(frame.inverse_cell[a]) / second;
+      for (int i = 0; i < n; ++i) store(factor[a][i], first[i] * scale);
+    }
+    sums(place, factor, field.velocity(), value, moments);
   }
 
   /// From the mean differences of the nodal velocities along the edges of the particle's cell.
@@ -241,6 +263,49 @@ struct Separable {
         }
       }
     }
+  }
+
+ private:
+  /// Sums over the nodes of three components u of their records, from `nodes` on: S_i u_i, and u_i times
+  /// (a' b c, a b' c, a b c') with the factors a', b', c' given.
+  [[gnu::always_inline]] static void sums(const Place& place,
+                                          const double (&factor)[3][nodes_per_axis][block_lanes],
+                                          const double* nodes, Lanes<8>* value, Lanes<8>* gradient) {
+    using R = Lanes<8>;
+    constexpr int n = nodes_per_axis, side = Place::side;
+    const auto w = [&](int axis, int i) { return load<R>(place.value[axis][i]); };
+    const auto d = [&](int axis, int i) { return load<R>(factor[axis][i]); };
+    for (int c = 0; c < 3; ++c) value[c] = R(0.0);
+    for (int i = 0; i < 9; ++i) gradient[i] = R(0.0);
+    for_each_cell(place, [&](int node, auto here) {
+      const double* lowest = nodes + node_doubles * node;
+      for (int c = 0; c < 3; ++c) {
+        R u(0.0), gx(0.0), gy(0.0), gz(0.0);
+        for (int k = 0; k < n; ++k) {
+          R x(0.0), y(0.0), z(0.0);
+          for (int j = 0; j < n; ++j) {
+            const double* at = lowest + node_doubles * side * (j + side * k) + c;
+            R row = w(0, 0) * R(at[0]), slope = d(0, 0) * R(at[0]);
+            for (int i = 1; i < n; ++i) {
+              row += w(0, i) * R(at[node_doubles * i]);
+              slope += d(0, i) * R(at[node_doubles * i]);
+            }
+            x += w(1, j) * slope;
+            y += d(1, j) * row;
+            z += w(1, j) * row;
+          }
+          u += w(2, k) * z;
+          gx += w(2, k) * x;
+          gy += w(2, k) * y;
+          gz += d(2, k) * z;
+        }
+        R* const g = gradient + 3 * c;
+        value[c] = select(here, u, value[c]);
+        g[0] = select(here, gx, g[0]);
+        g[1] = select(here, gy, g[1]);
+        g[2] = select(here, gz, g[2]);
+      }
+    });
   }
 };
 

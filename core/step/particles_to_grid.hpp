@@ -26,8 +26,8 @@ template <ShapePolicy S, TransferPolicy T, NodeFields what>
                                              const ColumnLayout& layout, const double* block, int used,
                                              typename S::template Scatter<what>& running, double* records) {
   typename S::template Scatter<what> sums = running;  // a local copy stays in registers
-  MappedRows rows;
-  if constexpr (maps_momentum(what)) T::momentum(layout, block, rows);
+  typename T::Rows rows;
+  if constexpr (maps_momentum(what)) T::template momentum<S>(frame, place, layout, block, rows);
   if constexpr (maps_force(what)) stress_rows(layout, block, rows);
   for (int i = 0; i < used; ++i) sums.add(frame, place, i, rows, records);
   running = sums;

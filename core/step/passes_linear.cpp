@@ -5,5 +5,6 @@
 namespace mpm::core {
 
 template class PassesWith<Linear, Flip>;
+template class PassesWith<Linear, FlipPic>;
 
 }  // namespace mpm::core

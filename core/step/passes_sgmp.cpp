@@ -5,5 +5,6 @@
 namespace mpm::core {
 
 template class PassesWith<Sgmp, Flip>;
+template class PassesWith<Sgmp, FlipPic>;
 
 }  // namespace mpm::core

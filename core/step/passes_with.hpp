@@ -28,6 +28,7 @@ class PassesWith final : public Passes {
   const Loads& loads() const override { return loads_; }
   void begin_step(double length) override {
     dt = length;
+    transfer_step_ = {dt / model_.clock.critical_dt};
     loads_.begin_step(model_.clock.time, dt);
   }
 
@@ -82,7 +83,8 @@ class PassesWith final : public Passes {
   void stress_of_brick(Slot s, Velocities velocities, Scratch& at, F prefetch_nodes);
 
   // Operations on a block or a batch.
-  void update_velocities(Slot s, int body, const Place& place, double* block, int used, Scratch& at);
+  void update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place, double* block,
+                         int used, Scratch& at);
   void move(int body, const Place& place, double* block, int used, Scratch& at);
   void deform(const BrickFrame& frame, const ColumnLayout& layout, int b, double* block, int used,
               Scratch& at);
@@ -115,6 +117,8 @@ class PassesWith final : public Passes {
   SharedNodes shared_;
   NodeForces forces_;
   Loads loads_;
+  T transfer_;
+  TransferStep transfer_step_;
   double dt = 0;           ///< of the current step
   double velocity_limit_;  ///< infinite without LimitVelocity
   double erosion_volume_;
@@ -133,7 +137,11 @@ inline constexpr double usl_mass_floor = 0.2;
 
 template <ShapePolicy S, TransferPolicy T>
 PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
-    : model_(model), halo_(halo), shared_(model.grid->shape()), loads_(model) {
+    : model_(model),
+      halo_(halo),
+      shared_(model.grid->shape()),
+      loads_(model),
+      transfer_(model.scene->solution) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = solution.gravity;
   forces_.damping = solution.damping;
@@ -284,7 +292,7 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
   }
   cell.flush(frame, sums.records);
   sums.finish(frame);
-  if constexpr (S::node_block != lattice_points) fold_at_walls<what>(s, contributions);
+  if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, contributions);
 }
 
 /// Adds to the inner nodes what has been mapped beyond the grid's constrained faces.
@@ -322,19 +330,19 @@ void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
 
 /// v += dv; the work of loads uses the velocities before the update.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_velocities(Slot s, int body, const Place& place, double* block, int used,
-                                         Scratch& at) {
+void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place,
+                                         double* block, int used, Scratch& at) {
   if (loads_.act(*model_.grid, s, body))
     at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data());
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
   const BodyMotion& motion = loads_.motion(body);
   if (motion.kind == BodyMotion::Kind::rigid) {
     std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
-    T::template update_velocities<S>(place, layout, at.field, block);
+    transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
     integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), dt, block, used, at);
     return;
   }
-  T::template update_velocities<S>(place, layout, at.field, block);
+  transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion.velocity, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())
@@ -370,7 +378,7 @@ template <ShapePolicy S, TransferPolicy T>
   const BrickFrame frame = this->frame(s);
   for_each_block(s, columns_to_mass,
                  [&](int, std::size_t, int body, const ColumnLayout& layout, double* block, int used) {
-                   update_velocities(s, body, Place(frame, layout, block), block, used, at);
+                   update_velocities(s, frame, body, Place(frame, layout, block), block, used, at);
                  });
   at.add_work_of_brick();
 }
@@ -396,7 +404,7 @@ template <ShapePolicy S, TransferPolicy T>
                    first.next();
                    second.next();
                    const Place place(frame, layout, block);
-                   update_velocities(s, body, place, block, used, at);
+                   update_velocities(s, frame, body, place, block, used, at);
                    move(body, place, block, used, at);
                    if constexpr (deforms) S::gradient(frame, place, moving, at.batch.gradient, 0);
                    deform(frame, layout, 0, block, used, at);
@@ -488,10 +496,11 @@ void PassesWith<S, T>::update_velocities_and_map_back() {
     keep_motion(shared_.nodes(), at.nodes.data(), motion(s));
     auto nodes = prefetch_nodes<NodeArray::first>(s);
     SpreadPrefetch room = prefetch_motion(s);
+    const BrickFrame frame = this->frame(s);
     map_brick<mapped::momentum>(s, [&](int body, const Place& place, double* block, int used) {
       nodes.next();
       room.next();
-      update_velocities(s, body, place, block, used, at);
+      update_velocities(s, frame, body, place, block, used, at);
     });
     at.add_work_of_brick();
   });

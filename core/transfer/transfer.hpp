@@ -3,19 +3,33 @@
 // chooses one (core/step/make_passes.cpp).
 //
 //   columns             the columns its particles need beyond the mechanics
+//   Rows                what a block maps: MappedRows, or AffineRows
 //   momentum            rows of mass and momentum that a block maps
 //   update_velocities   the particles' velocities from the nodal motion
 #pragma once
 
+#include "core/scene/solution.hpp"
 #include "core/shape/shape.hpp"
 
 namespace mpm::core {
 
+/// A velocity that is linear in space: the momentum at the lowest node of each particle's support, and its
+/// increase from node to node along the axes, [component][axis].
+struct AffineRows : MappedRows {
+  alignas(64) double increase[3][3][block_lanes];
+};
+
+/// What a transfer knows of the step.
+struct TransferStep {
+  double courant = 0;  ///< the step over the critical one
+};
+
 template <class T>
-concept TransferPolicy = requires(const ColumnLayout& layout, const double* block, MappedRows& rows) {
+concept TransferPolicy = requires {
   { T::name } -> std::convertible_to<std::string_view>;
   { T::columns() } -> std::same_as<ColumnSet>;
-  T::momentum(layout, block, rows);
+  typename T::Rows;
+  requires std::constructible_from<T, const SolutionInput&>;
 };
 
 }  // namespace mpm::core

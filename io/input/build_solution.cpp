@@ -44,6 +44,7 @@ core::Transfer transfer(std::string_view word) {
   if (word == "PIC") return core::Transfer::pic;
   if (word == "APIC") return core::Transfer::apic;
   if (word == "TPIC") return core::Transfer::tpic;
+  if (word == "AFLIP") return core::Transfer::aflip;
   if (word == "XPIC") return core::Transfer::xpic;
   return core::Transfer::flip;
 }
@@ -106,6 +107,31 @@ core::FemInput build_fem(const Node& node, const BuildContext& context) {
 
 }  // namespace
 
+void check_method(const Node& root, const core::Scene& scene, const BuildContext& context) {
+  using enum core::ShapeFunction;
+  const core::ShapeFunction shape = scene.grid.shape;
+  const core::Transfer transfer = scene.solution.transfer;
+  const bool affine = transfer == core::Transfer::apic || transfer == core::Transfer::tpic ||
+                      transfer == core::Transfer::aflip;
+  const std::optional<Node> solution = root.child("Solution"), grid = root.child("Grid");
+  if (solution && affine && (shape == linear || shape == sgmp || shape == ddmp)) {
+    solution->report(context.diagnostics, "transfer",
+                     "does not go with this shape: expected QuadraticBSpline, CubicBSpline, uGIMP or cpGIMP");
+  }
+  if (!grid || shape != contiguous_particle_gimp) return;
+  for (const core::ComponentInput& component : scene.components) {
+    for (const core::BodyInput& body : component.bodies) {
+      const auto* sphere = std::get_if<core::SphereGeometry>(&body.geometry);
+      if (sphere != nullptr && sphere->layout == core::Layout::polar)
+        grid->report(
+            context.diagnostics, "shape",
+            fmt::format("body '{}' has spherical shells of particles, whose domains are no boxes along the "
+                        "axes: use uGIMP, or discretization 0",
+                        body.name));
+    }
+  }
+}
+
 core::SolutionInput build_solution(const Node& root, const BuildContext& context) {
   core::SolutionInput solution;
   const std::optional<Node> node = root.child("Solution");
@@ -116,6 +142,9 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
   if (node->word("Integration") == "impl") solution.integration = core::Integration::implicit;
   solution.transfer = transfer(node->word("transfer"));
   solution.flip_fraction = node->real("flip_fraction");
+  if (solution.flip_fraction != 1 && solution.transfer != core::Transfer::flip)
+    node->report(context.diagnostics, "flip_fraction",
+                 fmt::format("has a meaning with transfer FLIP only, not with {}", node->word("transfer")));
   solution.xpic_order = node->small_integer("xpic_order");
   const auto value_of = [&](std::string_view child, std::string_view attribute) -> std::optional<double> {
     const std::optional<Node> found = node->child(child);

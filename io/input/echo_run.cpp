@@ -41,6 +41,7 @@ std::string_view word(core::Transfer transfer) {
     case core::Transfer::pic: return "PIC";
     case core::Transfer::apic: return "APIC";
     case core::Transfer::tpic: return "TPIC";
+    case core::Transfer::aflip: return "AFLIP";
     case core::Transfer::xpic: return "XPIC";
   }
   return {};

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/material/batch.hpp"
-#include "core/transfer/flip.hpp"
+#include "core/step/particles_to_grid.hpp"
 #include "tests/core/step/transfer.hpp"
 
 using namespace mpm::core;
@@ -30,8 +30,8 @@ std::vector<double> random_records(const NodeBlockShape& shape, unsigned seed) {
 
 /// f(particle's columns before, its block, its lane) over the blocks of the case; `work(block)` before each
 /// block.
-template <class S, class W, class F>
-void over(TransferCase<S>& c, W work, F f) {
+template <class S, class T, class W, class F>
+void over(TransferCase<S, T>& c, W work, F f) {
   for (std::size_t b = 0; b < c.tile.blocks.size(); ++b) {
     double* block = c.pool.block(c.tile.blocks[b]);
     work(block);
@@ -42,9 +42,9 @@ void over(TransferCase<S>& c, W work, F f) {
 }
 
 /// Sum of S times a component of the records.
-template <class S>
-double interpolated(const TransferCase<S>& c, const std::vector<double>& nodes, const std::vector<double>& p,
-                    int component) {
+template <class S, class T>
+double interpolated(const TransferCase<S, T>& c, const std::vector<double>& nodes,
+                    const std::vector<double>& p, int component) {
   double sum = 0;
   c.for_each_node(p, [&](int node, double s, const Vec3<double>&) {
     sum += s * nodes[static_cast<std::size_t>(node_doubles * node + component)];
@@ -53,8 +53,8 @@ double interpolated(const TransferCase<S>& c, const std::vector<double>& nodes, 
 }
 
 /// What the kernels read of the nodes' records.
-template <class S>
-typename S::Field field_of(const TransferCase<S>& c, const std::vector<double>& nodes) {
+template <class S, class T>
+typename S::Field field_of(const TransferCase<S, T>& c, const std::vector<double>& nodes) {
   typename S::Field field;
   field.take_motion(nodes.data());
   field.take_strain(c.frame(), nodes.data());
@@ -73,7 +73,9 @@ TEMPLATE_LIST_TEST_CASE("Velocity and position take from the nodes what a plain 
     over(
         c,
         [&](double* block) {
-          Flip::update_velocities<TestType>(c.block_place(block), c.pool.layout(), field, block);
+          Flip(SolutionInput())
+              .update_velocities<TestType>(c.frame(), c.block_place(block), c.pool.layout(), field, {},
+                                           block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -150,7 +152,9 @@ TEMPLATE_LIST_TEST_CASE(
         [&](double* block) {
           TestType::gradient(c.frame(), c.block_place(block), field, g.row, 0);
           TestType::cell_divergence(c.frame(), c.block_place(block), field, 0.01, strain, 0);
-          Flip::update_velocities<TestType>(c.block_place(block), c.pool.layout(), field, block);
+          Flip(SolutionInput())
+              .update_velocities<TestType>(c.frame(), c.block_place(block), c.pool.layout(), field, {},
+                                           block);
         },
         [&](const std::vector<double>& p, const double* block, int lane) {
           for (int a = 0; a < 3; ++a) {
@@ -196,6 +200,110 @@ TEMPLATE_LIST_TEST_CASE("The cell's strain is that of its middle, the same for a
         worst = std::max(worst, std::abs(strain[lane] - sum));
       });
   CHECK(worst < 10 * tolerance);
+}
+
+namespace {
+
+/// Velocity in components 0..2 of the records: constant + linear x.
+template <class S, class T>
+std::vector<double> linear_velocity(const TransferCase<S, T>& c, const double (&linear)[3][3]) {
+  std::vector<double> nodes(static_cast<std::size_t>(node_doubles * c.shape.nodes()));
+  for (int n = 0; n < c.shape.nodes(); ++n) {
+    for (int a = 0; a < 3; ++a) {
+      double v = 1 - a;
+      for (int b = 0; b < 3; ++b) v += linear[a][b] * c.node_position(n)[b];
+      nodes[static_cast<std::size_t>(node_doubles * n + a)] = v;
+    }
+  }
+  return nodes;
+}
+
+template <class S, class T>
+void takes_linear_field() {
+  TransferCase<S, T> c({2, 2, 2}, 100, 21);
+  const double linear[3][3] = {{1, -2, 3}, {0.5, 4, -1}, {-3, 2, 0.25}};
+  const std::vector<double> nodes = linear_velocity(c, linear);
+  const auto field = field_of(c, nodes);
+  const ColumnLayout& layout = c.pool.layout();
+  double worst_v = 0, worst_c = 0;
+  over(
+      c,
+      [&](double* block) {
+        T(SolutionInput())
+            .template update_velocities<S>(c.frame(), c.block_place(block), layout, field, {}, block);
+      },
+      [&](const std::vector<double>& p, const double* block, int lane) {
+        for (int a = 0; a < 3; ++a) {
+          double v = 1 - a;
+          for (int b = 0; b < 3; ++b) {
+            v += linear[a][b] * p[static_cast<std::size_t>(b)];
+            worst_c = std::max(
+                worst_c,
+                std::abs(block[layout.offset(next(Column::affine_xx, 3 * a + b)) + lane] - linear[a][b]));
+          }
+          worst_v = std::max(worst_v, std::abs(block[block_lanes * (3 + a) + lane] - v));
+        }
+      });
+  CHECK(worst_v < 100 * tolerance);  // nodal velocities reach 100
+  CHECK(worst_c < 1000 * tolerance);
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("APIC and TPIC take a linear velocity field whole", "", UniformGimp, QuadraticBSpline,
+                   CubicBSpline) {
+  takes_linear_field<TestType, Apic>();
+  takes_linear_field<TestType, Tpic>();
+}
+
+TEMPLATE_TEST_CASE("APIC's particles take all angular momentum of the nodes", "", UniformGimp,
+                   QuadraticBSpline, CubicBSpline) {
+  TransferCase<TestType, Apic> c({1, 1, 1}, 200, 22);
+  // Momentum to the nodes, and back from their velocities: the sum of x x p, and of the affine parts.
+  std::vector<double> contributions(static_cast<std::size_t>(node_doubles * c.shape.nodes()));
+  typename TestType::template Scatter<mapped::momentum_mass_force> cell;
+  for (std::size_t b = 0; b < c.tile.blocks.size(); ++b) {
+    const double* block = c.pool.block(c.tile.blocks[b]);
+    add_block<TestType, Apic, mapped::momentum_mass_force>(c.frame(), c.block_place(block), c.pool.layout(),
+                                                           block, c.tile.used_lanes(b), cell,
+                                                           contributions.data());
+  }
+  std::vector<double> nodes(contributions.size());
+  Vec3<double> of_nodes{}, of_particles{};
+  double size = 0;
+  for (int n = 0; n < c.shape.nodes(); ++n) {
+    const double* at = contributions.data() + node_doubles * n;
+    const Vec3<double> p{at[0], at[1], at[2]}, x = c.node_position(n);
+    of_nodes = of_nodes + cross(x, p);
+    size += std::sqrt(dot(x, x) * dot(p, p));
+    for (int a = 0; a < 3; ++a)
+      nodes[static_cast<std::size_t>(node_doubles * n + a)] = at[3] > 0 ? at[a] / at[3] : 0;
+  }
+  const auto field = field_of(c, nodes);
+  const ColumnLayout& layout = c.pool.layout();
+  over(
+      c,
+      [&](double* block) {
+        Apic(SolutionInput())
+            .update_velocities<TestType>(c.frame(), c.block_place(block), layout, field, {}, block);
+      },
+      [&](const std::vector<double>& p, const double* block, int lane) {
+        const double m = p[6];
+        const auto get = [&](Column column) { return block[layout.offset(column) + lane]; };
+        const Vec3<double> x{p[0], p[1], p[2]};
+        const Vec3<double> v{get(Column::velocity_x), get(Column::velocity_y), get(Column::velocity_z)};
+        of_particles = of_particles + m * cross(x, v);
+        // sum S_i m (x_i - x) x C (x_i - x), with the diagonal D.
+        Vec3<double> d{};
+        c.for_each_node(p, [&](int node, double s, const Vec3<double>&) {
+          for (int a = 0; a < 3; ++a) d[a] += s * std::pow(c.node_position(node)[a] - x[a], 2);
+        });
+        const auto affine = [&](int a, int b) { return get(next(Column::affine_xx, 3 * a + b)); };
+        of_particles = of_particles + m * Vec3<double>{affine(2, 1) * d.y - affine(1, 2) * d.z,
+                                                       affine(0, 2) * d.z - affine(2, 0) * d.x,
+                                                       affine(1, 0) * d.x - affine(0, 1) * d.y};
+      });
+  for (int a = 0; a < 3; ++a) CHECK(std::abs(of_nodes[a] - of_particles[a]) < 1e-14 * size);
 }
 
 TEST_CASE("Lanes outside the brick are found, lanes out of use are not") {

@@ -7,7 +7,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/transfer/flip.hpp"
 #include "tests/core/step/transfer.hpp"
 
 using namespace mpm::core;
@@ -15,8 +14,8 @@ using mpm::tests::TransferCase;
 
 namespace {
 
-template <NodeFields what, class S>
-std::vector<double> by_kernel(const TransferCase<S>& c) {
+template <NodeFields what, class S, class T>
+std::vector<double> by_kernel(const TransferCase<S, T>& c) {
   constexpr int width = record_doubles(what.array);
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
   typename S::template Sums<what> sums(nodes.data());
@@ -25,26 +24,33 @@ std::vector<double> by_kernel(const TransferCase<S>& c) {
   for (std::size_t b = 0; b < c.tile.blocks.size(); ++b) {
     const int used = c.tile.used_lanes(b);
     const double* block = c.pool.block(c.tile.blocks[b]);
-    add_block<S, Flip, what>(c.frame(), c.block_place(block), c.pool.layout(), block, used, cell,
-                             sums.records);
+    add_block<S, T, what>(c.frame(), c.block_place(block), c.pool.layout(), block, used, cell, sums.records);
   }
   cell.flush(c.frame(), sums.records);
   sums.finish(c.frame());
   return nodes;
 }
 
-template <NodeFields what, class S>
-std::vector<double> plain(const TransferCase<S>& c) {
+/// Affine: each node gets m (v + C (x_i - x)).
+template <NodeFields what, class S, class T>
+std::vector<double> plain(const TransferCase<S, T>& c) {
   constexpr int width = record_doubles(what.array);
   std::vector<double> nodes(static_cast<std::size_t>(width * c.shape.nodes()));
   for (const std::vector<double>& p : c.particles) {
     const double v[3] = {p[3], p[4], p[5]}, m = p[6], volume = p[7], total = p[14] + p[15];
     const double sigma[3][3] = {
         {p[8] - total, p[11], p[13]}, {p[11], p[9] - total, p[12]}, {p[13], p[12], p[10] - total}};
+    const ColumnLayout& layout = c.pool.layout();
     c.for_each_node(p, [&](int node, double s, const Vec3<double>& g) {
       double* at = nodes.data() + width * node;
       for (int a = 0; a < 3; ++a) {
-        if (maps_momentum(what)) at[a] += m * v[a] * s;
+        double u = v[a];
+        for (int b = 0; b < 3; ++b) {
+          const Column affine = next(Column::affine_xx, 3 * a + b);
+          if (layout.has(affine))
+            u += p[layout.index(affine)] * (c.node_position(node)[b] - p[static_cast<std::size_t>(b)]);
+        }
+        if (maps_momentum(what)) at[a] += m * u * s;
         if constexpr (maps_force(what)) {
           for (int b = 0; b < 3; ++b) at[4 + a] -= volume * sigma[a][b] * g[b];
         }
@@ -55,8 +61,8 @@ std::vector<double> plain(const TransferCase<S>& c) {
   return nodes;
 }
 
-template <NodeFields what, class S>
-void compare(const TransferCase<S>& c) {
+template <NodeFields what, class S, class T>
+void compare(const TransferCase<S, T>& c) {
   const std::vector<double> one = by_kernel<what>(c), two = plain<what>(c);
   double worst = 0, scale = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -78,6 +84,16 @@ TEMPLATE_LIST_TEST_CASE("All that is mapped to the nodes is what a plain loop ma
       compare<mapped::momentum>(c);
       compare<mapped::force>(c);
     }
+  }
+}
+
+TEMPLATE_TEST_CASE("Affine velocities are mapped to the nodes as a plain loop maps them", "", UniformGimp,
+                   QuadraticBSpline, CubicBSpline) {
+  for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {2, 2, 2}}) {
+    const TransferCase<TestType, Apic> c(brick, 100, 8);
+    compare<mapped::momentum_mass_force>(c);
+    compare<mapped::momentum_mass>(c);
+    compare<mapped::momentum>(c);
   }
 }
 

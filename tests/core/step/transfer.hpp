@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/particles/block_pool.hpp"
-#include "core/shape/list.hpp"
+#include "core/transfer/list.hpp"
 
 namespace mpm::tests {
 
@@ -71,11 +71,12 @@ inline core::GridGeometry transfer_geometry(core::Site site) {
   return g;
 }
 
-template <class S>
+template <class S, class T = core::Flip>
 struct TransferCase {
   static core::ColumnSet columns() {
     core::ColumnSet set = core::ColumnSet::mechanics();
     set.add(S::columns());
+    set.add(T::columns());
     return set;
   }
   core::GridGeometry geometry = transfer_geometry(S::site);
@@ -165,6 +166,14 @@ struct TransferCase {
     }
   }
 
+  core::Vec3<double> node_position(int node) const {
+    const int side = shape.side();
+    const int at[3] = {node % side, node / side % side, node / (side * side)};
+    core::Vec3<double> x;
+    for (int a = 0; a < 3; ++a)
+      x[a] = geometry.origin[a] + geometry.cell[a] * (first_node(a) + at[a] + shape.lowest());
+    return x;
+  }
   int first_node(int axis) const {
     return core::brick_cells * (axis == 0 ? brick.x : axis == 1 ? brick.y : brick.z);
   }

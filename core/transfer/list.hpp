@@ -1,0 +1,42 @@
+// The velocity transfers, each with its policy, and the shape functions that go with it.
+#pragma once
+
+#include <stdexcept>
+#include <type_traits>
+
+#include "core/shape/list.hpp"
+#include "core/transfer/affine.hpp"
+
+namespace mpm::core {
+
+/// Whether particles may carry an affine velocity: the moments of the shape functions about a particle must
+/// not vanish. Those of linear functions do at the nodes; the staggered grid lost most of the energy of a
+/// Taylor bar with them.
+template <class S>
+inline constexpr bool affine_with = requires {
+  &S::velocity_and_moments;
+};
+
+/// f(std::type_identity<T>()) with the policy of the scene's transfer for the shape functions S.
+template <class S, class F>
+auto with_transfer(const SolutionInput& solution, F f) {
+  const auto affine = [&]<class T>(std::type_identity<T> of) {
+    if constexpr (affine_with<S>)
+      return f(of);
+    else
+      throw std::logic_error("an affine transfer with shape functions that it does not go with");
+    return f(std::type_identity<Flip>());
+  };
+  switch (solution.transfer) {
+    case Transfer::flip:
+      if (solution.flip_fraction == 1) return f(std::type_identity<Flip>());
+      return f(std::type_identity<FlipPic>());
+    case Transfer::pic: return f(std::type_identity<FlipPic>());
+    case Transfer::apic: return affine(std::type_identity<Apic>());
+    case Transfer::tpic: return affine(std::type_identity<Tpic>());
+    case Transfer::aflip: return affine(std::type_identity<Aflip>());
+    default: throw std::logic_error("a transfer without a policy");
+  }
+}
+
+}  // namespace mpm::core
