@@ -81,10 +81,16 @@ inline std::vector<Feature> features() {
       {.body = R"(<PrescribedVelocity vx="0" vy="0" vz="0"/>)", .velocity = ""},
       {.body = R"(<PrescribedVelocity vx="0" vy="0" vz='1e-9*sin(x + t)'/>)", .velocity = ""});
 
-  for (const char* transfer : {"PIC", "APIC", "TPIC", "XPIC"})
+  for (const char* transfer : {"PIC", "XPIC"})
     add("transfer", transfer, "FLIP", bar,
         {.solution_attributes = fmt::format(R"(transfer="{}")", transfer)});
-  for (const char* shape : {"uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "DDMP", "SGMP"})
+  add("transfer", "95 % FLIP", "FLIP", bar, {.solution_attributes = R"(flip_fraction="0.95")"});
+  const std::string quadratic = R"(shape="QuadraticBSpline")";
+  for (const char* transfer : {"PIC", "APIC", "TPIC", "AFLIP"})
+    add("transfer", fmt::format("{}, quadratic", transfer), "FLIP, quadratic", {.grid_attributes = quadratic},
+        {.grid_attributes = quadratic, .solution_attributes = fmt::format(R"(transfer="{}")", transfer)});
+  for (const char* shape :
+       {"uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "DDMP", "SGMP"})
     add("shape", shape, "linear", bar, {.grid_attributes = fmt::format(R"(shape="{}")", shape)});
 
   BarInput free = at_rest;

@@ -1,0 +1,88 @@
+"""Every shape function with every transfer that goes with it: the same bits on other ranks and threads and through a
+restart; what each damps, and what it carries.
+
+A warm block and a cold one meet in a corner of walls of each kind, under gravity and with conduction of heat. Schemes
+take turns over the pairs, so that each shape meets each scheme."""
+
+import _mpm
+from _mpm import INPUT_ERROR, Case
+
+NARROW, WIDE = ("linear", "SGMP"), ("uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline")
+PLAIN = ("FLIP", "PIC", "FLIP 0.95")
+AFFINE = ("APIC", "TPIC", "AFLIP")
+SCHEMES = ("MUSL", "USF", "USL")
+PAIRS = [(shape, transfer) for shape in NARROW + WIDE for transfer in PLAIN + (AFFINE if shape in WIDE else ())]
+END = 0.35
+HEAT = 'SpecHeat="2" CoefficientOfThermalConductivity="3" roomt="{}"'
+MATERIALS = [_mpm.material("warm", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3" ' + HEAT.format(400)),
+             _mpm.material("cold", 2.0, 'type="IsoElastic" Young="1000" Poisson="0.3" ' + HEAT.format(300))]
+# Both end beside brick borders; the corner is at the lower x and z and the upper y.
+BODIES = [_mpm.block("left", (0.2, 5.2, 0.4), (3, 3, 3), (-2, 3, -4), of="warm"),
+          _mpm.block("right", (3.7, 5.7, 0.9), (3, 2.5, 3), (-6, 1, -1), of="cold")]
+GRID = _mpm.grid((0, 0, 0), (12, 9, 8), "200140")
+
+
+def scene(shape, transfer, algorithm, end=END, bodies=BODIES, gravity=-9.8):
+    word, _, fraction = transfer.partition(" ")
+    attributes = f'transfer="{word}"' + (f' flip_fraction="{fraction}"' if fraction else "")
+    return _mpm.scene(bodies, GRID.replace("<Grid>", f'<Grid shape="{shape}">'),
+                      _mpm.solution(end, algorithm, 0.4, attributes, f'<Gravity ax="0" ay="0" az="{gravity}"/>'), MATERIALS,
+                      f'<Console print_time="{END / 2}"/><Restart time_interval="{END / 2}"/>')
+
+
+class Methods(Case):
+    def test_same_bits(self):
+        for n, (shape, transfer) in enumerate(PAIRS):
+            algorithm = SCHEMES[(n + n // len(PLAIN)) % 3]
+            with self.subTest(shape=shape, transfer=transfer, algorithm=algorithm):
+                path = self.write(scene(shape, transfer, algorithm))
+                alone = self.run_in(f"alone{n}", [path]).state
+                ranks, threads = (3, 1) if n % 2 else (2, 2)
+                self.assertEqual(self.run_in(f"other{n}", [path], ranks=ranks, threads=threads).state, alone)
+                halfway = _mpm.restarts(self.folder / f"other{n}")[0]
+                self.assertEqual(self.run_in(f"again{n}", [halfway]).state, alone)
+
+    def test_energy(self):
+        """A block vibrates freely in its longest mode: FLIP keeps its energy, PIC loses it, AFLIP loses little of it."""
+        bar = _mpm.block("bar", (1.3, 2.2, 2.1), (8, 3, 3), ("0.5*cos(pi*(x-1.3)/8)", 0, 0), of="warm")
+        lost = {}
+        for shape in NARROW + WIDE:
+            for transfer in ("FLIP", "PIC") + (("AFLIP",) if shape in WIDE else ()):
+                self.run_in("out", [self.write(scene(shape, transfer, "MUSL", 0.5, [bar], 0))])
+                lost[shape, transfer] = -_mpm.summary(self.folder / "out")["energy"]["relative_drift"]
+        for (shape, transfer), share in lost.items():
+            least, most = {"FLIP": (-0.001, 0.06), "PIC": (0.5, 1), "AFLIP": (0, 0.12)}[transfer]
+            self.assertTrue(least < share < most, f"{shape} with {transfer}: {share}; all: {lost}")
+
+    def test_what_a_method_carries(self):
+        """No column that the method does not need."""
+        said = {}
+        for shape, transfer in (("linear", "FLIP"), ("SGMP", "FLIP"), ("QuadraticBSpline", "PIC"), ("uGIMP", "FLIP"),
+                                ("CubicBSpline", "APIC")):
+            outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL")), "--dry-run"])
+            said[shape] = next(line for line in outcome.out.splitlines() if "bytes a particle" in line)
+        plain = said["linear"]
+        self.assertEqual(said["SGMP"], plain)
+        self.assertEqual(said["QuadraticBSpline"], plain)
+        bytes_of = {shape: int(line.split(" bytes")[0].split()[-1]) for shape, line in said.items()}
+        self.assertEqual(bytes_of["uGIMP"], bytes_of["linear"] + 3 * 8)
+        self.assertEqual(bytes_of["CubicBSpline"], bytes_of["linear"] + 9 * 8)
+
+    def test_pairs_that_do_not_go_together(self):
+        for shape in NARROW:
+            for transfer in AFFINE:
+                outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL"))], INPUT_ERROR)
+                self.assertIn(f'transfer="{transfer}">: does not go with this shape', outcome.err)
+        outcome = self.run_in("out", [self.write(scene("linear", "PIC 0.5", "MUSL"))], INPUT_ERROR)
+        self.assertIn("has a meaning with transfer FLIP only, not with PIC", outcome.err)
+
+    def test_spherical_shells_have_no_boxes(self):
+        ball = ('<Body name="ball" material="warm" type="Sphere"><Geometry dp="0.5" x0="4" y0="4" z0="4" Outer_Radius="2" '
+                'discretization="1"/></Body>')
+        text = scene("cpGIMP", "FLIP", "MUSL").replace("<Component", f"<Component name='b'>{ball}</Component><Component", 1)
+        outcome = self.run_in("out", [self.write(text)], INPUT_ERROR)
+        self.assertIn("spherical shells", outcome.err)
+
+
+if __name__ == "__main__":
+    _mpm.main()
