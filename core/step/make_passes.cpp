@@ -1,33 +1,14 @@
 // The only place where a run's shape functions and transfer are chosen.
-#include "core/step/passes_with.hpp"
+#include "core/step/passes.hpp"
 #include "core/transfer/list.hpp"
 
 namespace mpm::core {
-
-// Compiled one family at a time, in passes_<shape>.cpp.
-#define MPM_PASSES(S)                        \
-  extern template class PassesWith<S, Flip>; \
-  extern template class PassesWith<S, FlipPic>
-#define MPM_AFFINE_PASSES(S)                 \
-  extern template class PassesWith<S, Apic>; \
-  extern template class PassesWith<S, Tpic>; \
-  extern template class PassesWith<S, Aflip>
-MPM_PASSES(Linear);
-MPM_PASSES(Sgmp);
-MPM_PASSES(UniformGimp);
-MPM_AFFINE_PASSES(UniformGimp);
-MPM_PASSES(ContiguousGimp);
-MPM_AFFINE_PASSES(ContiguousGimp);
-MPM_PASSES(QuadraticBSpline);
-MPM_AFFINE_PASSES(QuadraticBSpline);
-MPM_PASSES(CubicBSpline);
-MPM_AFFINE_PASSES(CubicBSpline);
 
 std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo) {
   using Made = std::unique_ptr<Passes>;
   return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> Made {
     return with_transfer<S>(model.scene->solution, [&]<class T>(std::type_identity<T>) -> Made {
-      return std::make_unique<PassesWith<S, T>>(model, halo);
+      return make_passes_with<S, T>(model, halo);
     });
   });
 }

@@ -44,6 +44,9 @@ class Passes {
   virtual StepStatistics take_statistics() = 0;
 };
 
+/// With shape functions S and transfer T; instantiated in passes_<shape>.cpp.
+template <class S, class T>
+std::unique_ptr<Passes> make_passes_with(Model& model, NodeHalo& halo);
 /// The passes for the scene's shape functions and transfer: the only place where they are chosen.
 std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo);
 /// The columns that the scene's shape functions and transfer add to every particle.

@@ -4,10 +4,10 @@
 
 namespace mpm::core {
 
-template class PassesWith<ContiguousGimp, Flip>;
-template class PassesWith<ContiguousGimp, FlipPic>;
-template class PassesWith<ContiguousGimp, Apic>;
-template class PassesWith<ContiguousGimp, Tpic>;
-template class PassesWith<ContiguousGimp, Aflip>;
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Flip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, FlipPic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Apic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Tpic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Aflip>(Model&, NodeHalo&);
 
 }  // namespace mpm::core

@@ -4,10 +4,10 @@
 
 namespace mpm::core {
 
-template class PassesWith<CubicBSpline, Flip>;
-template class PassesWith<CubicBSpline, FlipPic>;
-template class PassesWith<CubicBSpline, Apic>;
-template class PassesWith<CubicBSpline, Tpic>;
-template class PassesWith<CubicBSpline, Aflip>;
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Flip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, FlipPic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Apic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Tpic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Aflip>(Model&, NodeHalo&);
 
 }  // namespace mpm::core

@@ -4,7 +4,7 @@
 
 namespace mpm::core {
 
-template class PassesWith<Linear, Flip>;
-template class PassesWith<Linear, FlipPic>;
+template std::unique_ptr<Passes> make_passes_with<Linear, Flip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Linear, FlipPic>(Model&, NodeHalo&);
 
 }  // namespace mpm::core

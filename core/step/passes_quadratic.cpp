@@ -4,10 +4,10 @@
 
 namespace mpm::core {
 
-template class PassesWith<QuadraticBSpline, Flip>;
-template class PassesWith<QuadraticBSpline, FlipPic>;
-template class PassesWith<QuadraticBSpline, Apic>;
-template class PassesWith<QuadraticBSpline, Tpic>;
-template class PassesWith<QuadraticBSpline, Aflip>;
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Flip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, FlipPic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Apic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Tpic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Aflip>(Model&, NodeHalo&);
 
 }  // namespace mpm::core

@@ -4,7 +4,7 @@
 
 namespace mpm::core {
 
-template class PassesWith<Sgmp, Flip>;
-template class PassesWith<Sgmp, FlipPic>;
+template std::unique_ptr<Passes> make_passes_with<Sgmp, Flip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Sgmp, FlipPic>(Model&, NodeHalo&);
 
 }  // namespace mpm::core

@@ -4,10 +4,10 @@
 
 namespace mpm::core {
 
-template class PassesWith<UniformGimp, Flip>;
-template class PassesWith<UniformGimp, FlipPic>;
-template class PassesWith<UniformGimp, Apic>;
-template class PassesWith<UniformGimp, Tpic>;
-template class PassesWith<UniformGimp, Aflip>;
+template std::unique_ptr<Passes> make_passes_with<UniformGimp, Flip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<UniformGimp, FlipPic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<UniformGimp, Apic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<UniformGimp, Tpic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<UniformGimp, Aflip>(Model&, NodeHalo&);
 
 }  // namespace mpm::core
