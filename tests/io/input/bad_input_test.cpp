@@ -267,10 +267,18 @@ TEST_CASE("known, but not implemented yet") {
         "to its default, expl"}},
       {"<Solution>", "<Solution flip_fraction=\"1.0\" xpic_order=\"2\">", {"ok"}},
       {"<Solution>",
-       "<Solution flip_fraction=\"0.9\">",
-       {"line 25: <Solution flip_fraction=\"0.9\">: known, but not implemented yet; remove the attribute or "
-        "set it "
-        "to its default, 1"}},
+       "<Solution transfer=\"XPIC\">",
+       {"line 25: <Solution transfer=\"XPIC\">: known, but not implemented yet; remove the attribute or set "
+        "it "
+        "to its default, FLIP"}},
+      {"<Solution>", "<Solution flip_fraction=\"0.9\">", {"ok"}},
+      {"<Solution>",
+       "<Solution transfer=\"PIC\" flip_fraction=\"0.9\">",
+       {"line 25: <Solution flip_fraction=\"0.9\">: has a meaning with transfer FLIP only, not with PIC"}},
+      {"<Solution>",
+       "<Solution transfer=\"APIC\">",
+       {"line 25: <Solution transfer=\"APIC\">: does not go with this shape: expected QuadraticBSpline, "
+        "CubicBSpline, uGIMP or cpGIMP"}},
       {"<EndTime", "<FEMSetting/><EndTime", {"line 25: <FEMSetting>: " + remove}},
       {"<EndTime", "<Implicit/><EndTime", {"line 25: <Implicit>: " + remove}},
       {"</PeneBlast>",
