@@ -80,7 +80,7 @@ struct GridGeometry {
   double smallest_cell() const { return std::fmin(cell.x, std::fmin(cell.y, cell.z)); }
   double cell_volume() const { return cell.x * cell.y * cell.z; }
 
-  /// Position in cells from the origin. The kernels subtract their brick's first cell from it, which may
+  /// Position in cells from the origin. The kernels subtract their brick's first site from it, which may
   /// round differently within one ulp of a face: they clamp, and a particle there may be in either brick.
   template <class T>
   static T scaled(T x, double origin, double inverse_cell) {

@@ -214,6 +214,24 @@ struct NodeStore {
   }
 };
 
+/// Mean divergence of three components of the records of a cell's nodes, from those of the lowest on, in a
+/// node block of this shape: from the mean differences along the cell's edges.
+template <NodeBlockShape shape>
+inline double mean_divergence(const BrickFrame& frame, const double* lowest) {
+  constexpr int strides[3] = {1, shape.side(), shape.side() * shape.side()};
+  double divergence = 0;
+  for (int a = 0; a < 3; ++a) {
+    double difference = 0;
+    for (int n = 0; n < 8; ++n) {
+      const int node = (n & 1) * strides[0] + (n >> 1 & 1) * strides[1] + (n >> 2) * strides[2];
+      const double v = lowest[node_doubles * node + a];
+      difference += (n >> a & 1) != 0 ? v : -v;
+    }
+    divergence += 0.25 * frame.inverse_cell[a] * difference;
+  }
+  return divergence;
+}
+
 /// Weights of the eight points for a block's particles.
 struct LinearWeights {
   using R = Lanes<8>;
@@ -300,20 +318,11 @@ struct Linear {
     }
   }
 
-  /// From the mean differences along the cell's edges.
   static void cell_divergence(const BrickFrame& frame, const Place& place, const Field& field, double factor,
                               double* row, int at) {
     const double* nodes = field.nodes + Motion::strain_velocity_at;
     for_each_cell(place, [&](int node, auto here) {
-      double divergence = 0;
-      for (int a = 0; a < 3; ++a) {
-        double difference = 0;
-        for (int n = 0; n < 8; ++n) {
-          const double v = nodes[node_doubles * (node + corner_node(n)) + a];
-          difference += (n >> a & 1) != 0 ? v : -v;
-        }
-        divergence += 0.25 * frame.inverse_cell[a] * difference;
-      }
+      const double divergence = mean_divergence<node_block>(frame, nodes + node_doubles * node);
       store(row + at, select(here, Lanes<8>(divergence * factor), load<Lanes<8>>(row + at)));
     });
   }

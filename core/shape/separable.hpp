@@ -223,7 +223,6 @@ struct Separable {
     sums(place, factor, field.velocity(), value, moments);
   }
 
-  /// From the mean differences of the nodal velocities along the edges of the particle's cell.
   static void cell_divergence(const BrickFrame& frame, const Place& place, const Field& field, double factor,
                               double* row, int at) {
     constexpr int side = Place::side;
@@ -232,17 +231,8 @@ struct Separable {
       const int stride[3] = {1, side, side * side};
       for (int a = 0; a < 3; ++a)
         lowest += stride[a] * (site == Site::cell || place.position[a][l] >= 0.5 ? 1 : 0);
-      double divergence = 0;
-      for (int a = 0; a < 3; ++a) {
-        double difference = 0;
-        for (int c = 0; c < 8; ++c) {
-          const int node = lowest + (c & 1) + side * ((c >> 1 & 1) + side * (c >> 2));
-          const double v = field.nodes[node_doubles * node + Motion::strain_velocity_at + a];
-          difference += (c >> a & 1) != 0 ? v : -v;
-        }
-        divergence += 0.25 * frame.inverse_cell[a] * difference;
-      }
-      row[at + l] = divergence * factor;
+      row[at + l] = factor * mean_divergence<node_block>(
+                                 frame, field.nodes + node_doubles * lowest + Motion::strain_velocity_at);
     }
   }
 

@@ -40,10 +40,7 @@ class ConductionWith final : public Conduction {
   /// f(layout, body, block, place, lanes in use) for the blocks of the bodies that conduct.
   template <class F>
   void for_each_block(Slot s, F f) const;
-  BoundaryFaces faces(Slot s) const {
-    const BrickGrid& grid = *model_.grid;
-    return {grid.geometry(), grid.shape(), grid.brick(s).coord};
-  }
+  BoundaryFaces faces(Slot s) const { return {*model_.grid, s}; }
   /// Capacity and temperature of the brick's nodes, in components 0 and 1.
   void temperatures(Slot s, double* nodes) const;
 

@@ -72,6 +72,8 @@ struct NodeForces {
 class BoundaryFaces {
  public:
   BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape& shape, BrickCoord brick);
+  BoundaryFaces(const BrickGrid& grid, Slot slot)
+      : BoundaryFaces(grid.geometry(), grid.shape(), grid.brick(slot).coord) {}
   bool none() const { return count_ == 0; }
   /// f(axis, outward sign, boundary, record) for every node on every constrained face of this brick.
   template <class F>

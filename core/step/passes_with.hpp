@@ -92,10 +92,7 @@ class PassesWith final : public Passes {
   void strain_batch_block(const BrickFrame& frame, const Place& place, int b, Scratch& at);
   void update_material(const Body& body, Scratch& at);
 
-  BoundaryFaces faces(Slot s) const {
-    const BrickGrid& grid = *model_.grid;
-    return {grid.geometry(), grid.shape(), grid.brick(s).coord};
-  }
+  BoundaryFaces faces(Slot s) const { return {*model_.grid, s}; }
   BrickFrame frame(Slot s) const { return {model_.grid->geometry(), model_.grid->brick(s).coord}; }
   /// Prefetches the contributions to the next brick's nodes while this brick's blocks are processed.
   template <NodeArray of>

@@ -20,12 +20,9 @@ inline constexpr bool affine_with = requires {
 /// f(std::type_identity<T>()) with the policy of the scene's transfer for the shape functions S.
 template <class S, class F>
 auto with_transfer(const SolutionInput& solution, F f) {
-  const auto affine = [&]<class T>(std::type_identity<T> of) {
-    if constexpr (affine_with<S>)
-      return f(of);
-    else
-      throw std::logic_error("an affine transfer with shape functions that it does not go with");
-    return f(std::type_identity<Flip>());
+  const auto affine = [&]<class T>(std::type_identity<T> of) -> decltype(f(std::type_identity<Flip>())) {
+    if constexpr (affine_with<S>) return f(of);
+    throw std::logic_error("an affine transfer with shape functions that it does not go with");
   };
   switch (solution.transfer) {
     case Transfer::flip:

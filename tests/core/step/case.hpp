@@ -240,12 +240,7 @@ struct SmallRun {
     }
     solo.bricks.partition(*model.grid, counts, {});
     core::insert_particles(model, moving);
-    for (core::Brick& brick : model.grid->bricks()) {
-      for (core::ParticleTile& tile : brick.tiles) {
-        core::sort_by_site(*model.grid, brick.coord, *model.bodies[static_cast<std::size_t>(tile.body)].pool,
-                           tile);
-      }
-    }
+    core::sort_tiles(model);
     model.clock.critical_dt = model.clock.first_critical_dt = core::critical_step(*model.grid, fastest);
   }
 
