@@ -305,7 +305,7 @@ class Run {
       particle_steps_ += static_cast<double>(model_.local_particles());
       watch_->after_step(model_, stepper_->incidents(), communication_, *log_);
       outputs_->after_step(model_, communication_);
-      if (outputs_->report_due(model_)) outputs_->report(model_, communication_);
+      if (outputs_->report_due(model_)) note_balance(outputs_->report(model_, communication_));
       if (restart_.due(model_.clock.time)) {
         save();
         restart_.done(model_.clock.time);
@@ -318,6 +318,10 @@ class Run {
         return "a particle is next to an open boundary of the grid";
     }
     return {};
+  }
+
+  void note_balance(const core::Totals& totals) {
+    watch_->note_balance(model_.clock, core::energy_balance(totals, model_.initial_energy), *log_);
   }
 
   void save() {
@@ -367,6 +371,8 @@ class Run {
     report.particle_steps =
         communication_.reductions.spread(particle_steps_).mean * communication_.reductions.size();
     const core::Totals totals = core::compute_totals(model_, communication_);
+    note_balance(totals);
+    report.largest_drift = watch_->largest_drift();
     log_->say("\n{}", io::timing_table(report));
     log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads",
               io::state_hash(model_, communication_));

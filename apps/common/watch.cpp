@@ -72,7 +72,21 @@ void Watch::warn(Kind& kind, std::int64_t count, const core::OffendingParticles&
   log.warn("{}", text);
 }
 
+void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log) {
+  const double drift = balance.relative_drift;
+  if (!(std::abs(drift) > std::abs(largest_drift_))) return;
+  if (std::abs(drift) > notable_drift && std::abs(largest_drift_) <= notable_drift) {
+    log.warn(
+        "step {}, time {:.6g}: the energy balance is off by {:.3g} %, more than {:.3g} %: the results may be "
+        "wrong; reduce TimeStep factor, or choose a wider Grid shape (docs/methods.md)",
+        clock.step, clock.time, 100 * drift, 100 * notable_drift);
+  }
+  largest_drift_ = drift;
+}
+
 void Watch::conclude(io::Log& log) const {
+  if (std::abs(largest_drift_) > notable_drift)
+    log.warn("the energy balance was off by up to {:.3g} %", 100 * largest_drift_);
   if (warn_.level != core::WarnInput::Level::per_particle) return;
   for (const Kind& kind : kinds_) {
     if (kind.incidents > 0)

@@ -1,5 +1,6 @@
-// The scene's guards: Warn, EnergyFraction, near_boundary_stop, loads that end. Only those that the scene
-// requests have a cost. Their messages are the same on any ranks and threads.
+// The scene's guards: Warn, EnergyFraction, near_boundary_stop, loads that end; only those that the scene
+// requests have a cost. And the energy balance, at every row of the status file. Their messages are the same
+// on any ranks and threads.
 #pragma once
 
 #include <map>
@@ -13,6 +14,10 @@
 
 namespace mpm::apps {
 
+/// Energy drift, relative to the largest energy of the balance, above which a run says so without being
+/// asked.
+inline constexpr double notable_drift = 0.01;
+
 class Watch {
  public:
   /// `time`: of the run's start.
@@ -22,7 +27,11 @@ class Watch {
   /// exceeds EnergyFraction, on every rank. Collective.
   void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Reductions& ranks,
                   io::Log& log);
-  /// Reports what level 1 has counted beyond the particles that it named.
+  /// The energy balance at a row of the status file; warns at the first notable drift.
+  void note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log);
+  /// The energy drift that was largest in magnitude since this run's start or continuation.
+  double largest_drift() const { return largest_drift_; }
+  /// Reports a notable drift, and what level 1 has counted beyond the particles that it named.
   void conclude(io::Log& log) const;
   /// True, on all ranks, if the scene requests a stop near the boundary and a particle is in the outermost
   /// cells of an open face. Collective.
@@ -44,6 +53,7 @@ class Watch {
   Kind kinds_[3] = {{"with internal energy below zero", {}, 0},
                     {"whose volume would have vanished", {}, 0},
                     {"left the grid", {}, 0}};
+  double largest_drift_ = 0;
   std::multimap<double, std::string> load_ends_;  ///< end time of each load table, and its owner
 };
 

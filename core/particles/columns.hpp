@@ -38,6 +38,7 @@ enum class Column : int {
   damage,
   temperature,
   failed,
+  void_volume,  ///< between the fragments of a failed particle: not part of its volume
   threshold_factor,
   porosity,
   max_compression,
@@ -122,6 +123,7 @@ inline constexpr std::array<ColumnInfo, column_count> column_table{{
     {"damage", "1"},
     {"temperature", "temperature"},
     {"failed", "1"},
+    {"void_volume", "volume"},
     {"threshold_factor", "1"},
     {"porosity", "1"},
     {"max_compression", "1"},

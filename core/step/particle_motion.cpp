@@ -52,6 +52,16 @@ void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block) 
   for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
 }
 
+void correct_work_of_gravity(const Vec3<double>& gravity, double dt, const ColumnLayout& layout,
+                             const double* block, int used, ThreadScratch& at) {
+  const double* m = block + layout.offset(Column::mass);
+  const double* v = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < used; ++i) {
+    for (int a = 0; a < 3; ++a)
+      at.work -= 0.5 * dt * m[i] * gravity[a] * (v[block_lanes * a + i] - at.old[block_lanes * a + i]);
+  }
+}
+
 void add_work_of_motion(const NodeForces& forces, const ColumnLayout& layout, const double* block, int used,
                         ThreadScratch& at) {
   const Vec3<double> g = forces.gravity;
@@ -64,6 +74,25 @@ void add_work_of_motion(const NodeForces& forces, const ColumnLayout& layout, co
       at.work += m[i] * (g[a] - forces.damping * v[at_a]) * (x[at_a] - at.old[at_a]);
     }
   }
+}
+
+void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_strain) {
+  using R = Lanes<block_lanes>;
+  constexpr double least = 0.1;
+  const auto row = [&](int i) { return load<R>(batch.gradient[i] + at); };
+  const Mat3<R> l{row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7), row(8)};
+  const R one(1.0), k(-dt);
+  const Mat3<R> back{one + k * l.xx, k * l.xy, k * l.xz, k * l.yx,      one + k * l.yy,
+                     k * l.yz,       k * l.zx, k * l.zy, one + k * l.zz};
+  const R determinant_back = determinant(back);
+  const auto invertible = determinant_back > R(least);
+  const Mat3<R> referred = (one / select(invertible, determinant_back, one)) * (adjugate(back) * l);
+  const R values[9] = {referred.xx, referred.xy, referred.xz, referred.yx, referred.yy,
+                       referred.yz, referred.zx, referred.zy, referred.zz};
+  for (int i = 0; i < 9; ++i) store(batch.gradient[i] + at, select(invertible, values[i], row(i)));
+  if (!cell_strain) return;
+  const R e = load<R>(batch.cell_volumetric_strain + at), left = one - e;
+  store(batch.cell_volumetric_strain + at, select(left > R(least), e / max(left, R(least)), e));
 }
 
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch,

@@ -92,6 +92,9 @@ class PassesWith final : public Passes {
   void strain_batch_block(const BrickFrame& frame, const Place& place, int b, Scratch& at);
   void update_material(const Body& body, Scratch& at);
 
+  bool updates_volume_by_cell() const {
+    return model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
+  }
   BoundaryFaces faces(Slot s) const { return {*model_.grid, s}; }
   BrickFrame frame(Slot s) const { return {model_.grid->geometry(), model_.grid->brick(s).coord}; }
   /// Prefetches the contributions to the next brick's nodes while this brick's blocks are processed.
@@ -340,7 +343,10 @@ void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int bo
     integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), dt, block, used, at);
     return;
   }
+  const bool falls = forces_.gravity != Vec3<double>{};
+  if (falls) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
+  if (falls) correct_work_of_gravity(forces_.gravity, dt, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion.velocity, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())
@@ -422,7 +428,7 @@ template <ShapePolicy S, TransferPolicy T>
 [[gnu::always_inline]] inline void PassesWith<S, T>::strain_batch_block(const BrickFrame& frame,
                                                                         const Place& place, int b,
                                                                         Scratch& at) {
-  if (model_.options.volume_update == static_cast<int>(VolumeUpdate::cell))
+  if (updates_volume_by_cell())
     S::cell_divergence(frame, place, at.field, dt, at.batch.cell_volumetric_strain, block_lanes * b);
   S::gradient(frame, place, at.field, at.batch.gradient, block_lanes * b);
 }
@@ -460,7 +466,9 @@ template <bool moves, class F>
   const auto kinematics = [&](int body, int b, int used) {
     prefetch_nodes();
     strain_batch_block(frame, at.places[b], b, at);
-    if constexpr (moves) {
+    if constexpr (!moves) {
+      refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
+    } else {
       move(body, at.places[b], batch.block[b], used, at);
       deform(frame, *batch.layout, b, batch.block[b], used, at);
     }

@@ -3,6 +3,12 @@
 //   4 V0 (1 + e_xx)(1 + e_yy)(1 + e_zz) of the accumulated strain, taken as a ratio from step to step.
 // A volume that would become zero, negative or NaN keeps its old value and is counted; one outside the bounds
 // of Volume min/max is set to the bound and counted.
+//
+// What has failed does not stretch: once its pressure is zero, its fragments keep their volume V and part,
+// which opens a void v between them. Compression closes the void first:
+//   V + v <- (V + v) ratio,   V <- min(V, V + v)
+// Stretched instead, its density would leave the range of any equation of state. At p = a + gamma0 E, with E
+// per unit initial volume, compression from V to V0 multiplies an energy by exp(gamma0 (V/V0 - 1)).
 #pragma once
 
 #include "core/material/batch.hpp"
@@ -77,8 +83,27 @@ T limit_volume(core::Batch& batch, const core::UpdateOptions& options, double re
   return held;
 }
 
-/// Fills volumetric_strain and old_volume of the batch; updates the volume and, where the layout has
-/// them, the accumulated strains.
+/// Divides the volume of failed particles without pressure between their fragments and the void, whose
+/// columns it updates; `stretched` is the volume of the others.
+template <class T>
+T part_fragments(core::Batch& batch, double* block, int row, const T& old_volume, const T& ratio,
+                 const T& stretched) {
+  using core::Column;
+  const core::ColumnLayout& layout = *batch.layout;
+  double* const gap = block + layout.offset(Column::void_volume);
+  const core::MaskOf<T> loose = (core::load<T>(block + layout.offset(Column::failed)) > 0.5) &
+                                (core::load<T>(block + layout.offset(Column::pressure)) == 0.0);
+  if (!core::any(loose)) return stretched;
+  const T whole = (old_volume + core::load<T>(gap)) * core::select(ratio > 0.0, ratio, T(1.0));
+  const T fragments = core::min(whole, old_volume);
+  core::store(gap, core::select(loose, whole - fragments, 0.0));
+  const T strain = core::load<T>(batch.volumetric_strain + row);
+  core::store(batch.volumetric_strain + row, core::select(loose, fragments / old_volume - 1.0, strain));
+  return core::select(loose, fragments, stretched);
+}
+
+/// Fills volumetric_strain (of the material, without voids) and old_volume of the batch; updates the volume
+/// and, where the layout has them, the void and the accumulated strains.
 template <class T>
 [[gnu::noinline, gnu::flatten]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
                                                        double reference_density) {
@@ -86,6 +111,7 @@ template <class T>
   const core::ColumnLayout& layout = *batch.layout;
   const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);
   const int strain_at = layout.offset(Column::strain_xx);
+  const bool parts = layout.has(Column::void_volume);
   const bool limits = options.volume_min > 0 || options.volume_max > 0;
   const double dt = batch.dt;
   const int type = options.volume_update;
@@ -106,6 +132,7 @@ template <class T>
       batch.vanishing |= lanes_of<T>(unusable, row, batch.particles);
     }
     T volume = core::select(unusable, old_volume, old_volume * ratio);
+    if (parts) volume = part_fragments<T>(batch, block, row, old_volume, ratio, volume);
     if (limits) {
       volume = limit_volume(batch, options, reference_density, core::load<T>(block + mass_at), volume, row);
     }

@@ -79,6 +79,23 @@ T damping_speed(const core::Batch& batch, const PressureRules& rules, const T& r
   return damping;
 }
 
+/// The pressure of a failed particle between whose fragments there is a void (kinematics.hpp): none.
+/// Fragments that would press, since they were heated, expand into the void instead, against no resistance.
+template <class T>
+T fill_void(double* gap_column, double* volume_column, const T& volume, const LinearisedPressure<T>& line,
+            const Density<T>& now, const T& pressure, const T& energy) {
+  const T gap = core::load<T>(gap_column);
+  const core::MaskOf<T> open = gap > 0.0;
+  if (!core::any(open)) return pressure;
+  const T modulus = isentropic_modulus(line, now.compression, now.relative_volume, pressure, energy);
+  const core::MaskOf<T> expands = open & (pressure > 0.0);
+  const T step = core::min(gap, core::select(modulus > 0.0, volume * (pressure / modulus), gap));
+  const T growth = core::select(expands, step, 0.0);
+  core::store(gap_column, gap - growth);
+  core::store(volume_column, volume + growth);
+  return core::select(open, 0.0, pressure);
+}
+
 /// Speeds for the time step (2-74) and, where the layout has that column, for output. `damping` is Q of all
 /// viscosity that counts.
 template <class T>
@@ -137,6 +154,7 @@ template <class T, class Eos>
   const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);
   const int pressure_at = layout.offset(Column::pressure), q_at = layout.offset(Column::viscous_pressure);
   const int energy_at = layout.offset(Column::internal_energy), failed_at = layout.offset(Column::failed);
+  const int void_at = layout.offset(Column::void_volume);
   const double length = batch.cell_size, inverse_dt = 1 / batch.dt, rho0 = rules.reference_density;
   const double negligible = -1e-12 * rules.initial_modulus;
 
@@ -182,6 +200,7 @@ template <class T, class Eos>
       p = limit_tension(rules.tension, stated, core::load<T>(batch.lowest_pressure + row), sentence);
     }
     if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, stated), p);
+    if (void_at >= 0) p = fill_void(block + void_at, block + volume_at, volume, line, now, p, energy_star);
     const T energy = energy_star - h * p;
 
     history.store(block, point);

@@ -23,11 +23,12 @@ TEST_CASE("columns follow from what the material can do", "[physics][columns]") 
         ColumnSet{Column::effective_plastic_strain, Column::temperature});
   CHECK(make(copper("JohnsonCook"))->columns({}) ==
         ColumnSet{Column::effective_plastic_strain, Column::temperature});
-  CHECK(make(copper("JohnsonCook damaged"))->columns({}) ==
-        ColumnSet{Column::effective_plastic_strain, Column::temperature, Column::damage, Column::failed});
+  CHECK(make(copper("JohnsonCook damaged"))->columns({}) == ColumnSet{Column::effective_plastic_strain,
+                                                                      Column::temperature, Column::damage,
+                                                                      Column::failed, Column::void_volume});
   core::MaterialInput input = copper("IsoElastic");
   input.failures.push_back({{"Pmin", {{"pmin", -1e6}}, {}}, false});
-  CHECK(make(input)->columns({}) == ColumnSet{Column::failed});
+  CHECK(make(input)->columns({}) == ColumnSet{Column::failed, Column::void_volume});
   CHECK(make(copper("IsoElastic"))->columns({.volume_update = 4}).has(Column::strain_xz));
   CHECK(make(copper("IsoElastic"))->columns({.keep_strain = true}).has(Column::strain_xx));
 }

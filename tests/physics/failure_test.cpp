@@ -110,6 +110,39 @@ TEST_CASE("a failed particle without an equation of state presses only when its 
   CHECK(point.value(Column::pressure) == Approx(bulk * 0.01).epsilon(1e-9));
 }
 
+TEST_CASE("the fragments of a failed particle part instead of stretching", "[physics][failure]") {
+  const auto material = make(brittle(pmin(-500e6), {{"FailViscosity", 30.0}}));
+  PointDriver point(*material, {.update = {.volume_update = 2}});
+  stretch(point, 0.05);
+  REQUIRE(point.value(Column::failed) == 1);
+  const double fragments = point.value(Column::volume), energy = point.energy();
+  const double whole = fragments + point.value(Column::void_volume);
+  for (int i = 0; i < 40; ++i) stretch(point, 0.1);
+  CHECK(point.value(Column::volume) == fragments);
+  CHECK(point.value(Column::void_volume) == Approx(whole * std::exp(4.0) - fragments).epsilon(1e-11));
+  CHECK(point.value(Column::pressure) == 0);
+  CHECK(point.energy() == energy);
+
+  SECTION("and the void closes before they bear load") {
+    for (int i = 0; i < 40; ++i) stretch(point, -0.1);
+    CHECK(point.value(Column::volume) == Approx(fragments).epsilon(1e-12));
+    CHECK(point.energy() == Approx(energy).epsilon(1e-9));
+    stretch(point, -0.08);
+    CHECK(point.value(Column::void_volume) == 0);
+    PointDriver never_parted(*material, {.update = {.volume_update = 2}});
+    stretch(never_parted, 0.05);
+    stretch(never_parted, -0.08);
+    CHECK(point.value(Column::pressure) == Approx(never_parted.value(Column::pressure)).epsilon(1e-9));
+  }
+  SECTION("and heat that comes in between is not multiplied by the compression") {
+    point.step({0, 1e6, 0, 0, 0, 0, 0, 0, 0}, 1e-6);
+    const double heated = point.energy();
+    CHECK(heated > energy);
+    for (int i = 0; i < 40; ++i) stretch(point, -0.1);
+    CHECK(point.energy() == Approx(heated).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("a failed particle has no artificial viscosity", "[physics][failure]") {
   const auto material = make(brittle(plastic_strain(0.5)));
   PointDriver point(*material, {.cell_size = 1e-3});

@@ -380,6 +380,29 @@ void ReferenceStepper::final_velocities() {
   });
 }
 
+namespace {
+/// X of (I - dt L) X = L by elimination. USF has L at the positions that its velocities led to, so that
+/// I + dt X is the deformation from the old ones.
+Matrix relative_to_old_positions(const Matrix& L, double dt) {
+  Matrix A{}, X = L;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) A[i][j] = (i == j ? 1.0 : 0.0) - dt * L[i][j];
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (i == k) continue;
+      const double factor = A[i][k] / A[k][k];
+      for (std::size_t j = 0; j < 3; ++j) {
+        A[i][j] -= factor * A[k][j];
+        X[i][j] -= factor * X[k][j];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) X[i][j] /= A[i][i];
+  return X;
+}
+}  // namespace
+
 template <class Support>
 void ReferenceStepper::update_stresses(double dt) {
   for (auto& particle : case_.particles) {
@@ -391,6 +414,7 @@ void ReferenceStepper::update_stresses(double dt) {
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b) L[a][b] += node.w[a] * at.slope(n, a)[b];
     }
+    if (case_.scheme == ReferenceScheme::usf) L = relative_to_old_positions(L, dt);
     update_stress(case_.material, length_, dt, L, particle);
     if (!(particle.V > 0)) throw std::runtime_error("a particle's volume is " + std::to_string(particle.V));
     if (case_.shape == ReferenceShape::cpgimp && case_.scheme != ReferenceScheme::usf)

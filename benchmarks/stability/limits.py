@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""The largest stable time step of every shape, transfer and scheme, by bisection.
+
+A step counts as stable if the run completes and its energy does not grow: the mean drift over the last quarter of the
+rows of the status file is at most 5 %. (A single row says less: kinetic and internal energy belong to times half a step
+apart, so that their sum oscillates with the waves.) The scenes:
+
+  block   an elastic block that vibrates at strains of some per cent while it drifts obliquely across the cells
+  fluid   a block of fluid with artificial viscosity that starts under pressure, drifting as well
+  bar     a copper cylinder that hits a wall at 190 m/s (benchmarks/taylor_bar, with coarse particles)
+  shock   a copper slab that hits a wall at 1500 m/s, with the default artificial viscosity
+
+Steps are in units of h/(c + |v|), with c the wave speed at rest and |v| the largest speed at the start, and constant
+over the run (TimeStep specified), so that the result does not depend on the program's own limit. Only the shock, where
+sound speed and viscosity change greatly, runs with TimeStep factor: its numbers are fractions of the program's limit,
+up to 1."""
+
+import argparse
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = pathlib.Path(os.environ.get("MPM_BIN", ROOT / "build/release/bin"))
+SHAPES = ["linear", "SGMP", "uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline"]
+SCHEMES = ["MUSL", "USF", "USL"]
+GROWTH = 0.05
+
+
+def grid(lower, upper, faces, cell, shape):
+    sides = "".join(f'<{a}{end} value="{v[i]}" boundary="{faces[2 * i + k]}"/>' for i, a in enumerate("XYZ")
+                    for k, (end, v) in enumerate((("Min", lower), ("Max", upper))))
+    return f'<Grid shape="{shape}"><Cell type="regular">{sides}<DCell dx="{cell}" dy="{cell}" dz="{cell}"/></Cell></Grid>'
+
+
+def scene(material, body, grid, method, end, step):
+    """`step`: the attribute of TimeStep."""
+    shape, transfer, scheme = method
+    return f"""<?xml version="1.0"?>
+<PeneBlast version="1.0">
+{material}
+<Component name="all">{body}</Component>
+{grid}
+<Solution algorithm="{scheme}" transfer="{transfer}"><EndTime value="{end!r}"/><TimeStep {step}/></Solution>
+<Output><Console print_time="{end / 40!r}"/></Output>
+</PeneBlast>
+"""
+
+
+def drifting(material, size, velocity, cell, steps, unit):
+    """A cube of `size` cells that crosses some of them; `velocity`: the expressions of its components."""
+    def make(method, factor):
+        low, spacing = 4.1, 0.47  # incommensurate with the cell
+        count = round(size / spacing)
+        body = (f'<Body name="b" material="m" type="Block"><Geometry dp="{spacing}" x0="{low}" y0="{low}" z0="{low}" '
+                f'lx="{count * spacing}" ly="{count * spacing}" lz="{count * spacing}"/>'
+                f'<InitialVelocity vx="{velocity[0]}" vy="{velocity[1]}" vz="{velocity[2]}"/></Body>')
+        return scene(material, body, grid((0, 0, 0), (18, 18, 18), "000000", cell, method[0]), method, steps * unit,
+                     f'specified="{factor * unit!r}"')
+    return make
+
+
+def block():
+    c = (1000 * 0.7 / (1.3 * 0.4)) ** 0.5  # of longitudinal waves
+    material = ('<Material name="m"><ReferenceDensity value="1"/>'
+                '<StrengthModel type="IsoElastic" Young="1000" Poisson="0.3"/></Material>')
+    wave = [f"{drift} + 1.2*cos(pi*({a}-4.1)/5.64)" for drift, a in zip((0.13, 0.09, 0.05), "xyz")]
+    return drifting(material, 5.64, wave, 1, 2000, 1 / (c + 2.2))
+
+
+def fluid():
+    c = 30.0
+    material = ('<Material name="m"><ReferenceDensity value="1"/><StrengthModel type="Null" mu="0"/>'
+                f'<EquationOfState type="Polynomial" c0="0" c1="{c * c}" c2="0" c3="0" c4="0" c5="0" c6="0"/></Material>')
+    wave = [f"{drift} + 1.0*cos(pi*({a}-4.1)/5.64)" for drift, a in zip((0.13, 0.09, 0.05), "xyz")]
+    return drifting(material, 5.64, wave, 1, 600, 1 / (c + 1.8))
+
+
+COPPER = ('<Material name="m"><ReferenceDensity value="8.93e-3"/>'
+          '<StrengthModel type="IsoHarden" Young="117e3" Poisson="0.35" Yield0="157" TangMod="423.461758"/>'
+          '<EquationOfState type="Gruneisen" C0="3940" S1="1.49" gamma0="1.96"/></Material>')
+
+
+def bar():
+    body = ('<Body name="b" material="m" type="Cylinder"><Geometry x0="0" y0="0" z0="0" dp_bottom="0.76" dp_top="0.76" '
+            'Bottom_Outer_Radius="3.8" Top_Outer_Radius="3.8" height="25.4"/><InitialVelocity vx="0" vy="0" vz="-190"/></Body>')
+    c = (3940.0**2 + 4 / 3 * 117e3 / 2.7 / 8.93e-3) ** 0.5
+
+    def make(method, factor):
+        cells = grid((-9.12, -9.12, 0), (9.12, 9.12, 27.36), "000020", 1.52, method[0])
+        return scene(COPPER, body, cells, method, 0.06, f'specified="{factor * 1.52 / (c + 190)!r}"')
+    return make
+
+
+def shock(method, factor):
+    body = ('<Body name="b" material="m" type="Block"><Geometry dp="0.5" x0="0" y0="0" z0="0" lx="60" ly="2" lz="2"/>'
+            '<InitialVelocity vx="-1500" vy="0" vz="0"/></Body>')
+    return scene(COPPER, body, grid((0, 0, 0), (64, 2, 2), "202222", 1, method[0]), method, 0.009,
+                 f'factor="{min(factor, 1)!r}"')
+
+
+SCENES = {"block": block(), "fluid": fluid(), "bar": bar(), "shock": shock}
+
+
+def growth(name, method, factor):
+    """Of the energy, relative to the initial one; infinity for a run that fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder, "limit.xmp")
+        path.write_text(SCENES[name](method, factor))
+        done = subprocess.run([BIN / "mpm_run", "--output-dir", folder, path], capture_output=True, text=True)
+        if done.returncode == 2:
+            raise SystemExit(done.stderr)
+        if done.returncode != 0:
+            return float("inf")
+        with open(pathlib.Path(folder, "limit.sta")) as file:
+            lines = [line.split() for line in file if line.strip()]
+        at = [line for line in lines if "relative_drift" in line][0]
+        at = [word for word in at if word != "#"].index("relative_drift")
+        drifts = [float(line[at]) for line in lines if line[0][0].isdigit()]
+        last = drifts[-len(drifts) // 4:]
+        return sum(last) / len(last)
+
+
+def limit(name, method, low=0.2, high=3.2, within=0.05):
+    """The largest stable factor, to the relative accuracy `within`; 0 if there is none above `low`."""
+    if growth(name, method, low) > GROWTH:
+        return 0.0
+    if name == "shock":
+        high = 1.0
+        if growth(name, method, high) <= GROWTH:
+            return high
+    while high / low > 1 + within:
+        middle = (low * high) ** 0.5
+        if growth(name, method, middle) > GROWTH:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--shape", action="append", choices=SHAPES)
+    parser.add_argument("--scheme", action="append", choices=SCHEMES)
+    parser.add_argument("--transfer", action="append", default=None)
+    parser.add_argument("--scene", action="append", choices=SCENES)
+    parser.add_argument("--csv", type=pathlib.Path)
+    parser.add_argument("--factor", type=float, help="report the energy growth at this factor instead")
+    options = parser.parse_args()
+    rows = []
+    for shape in options.shape or SHAPES:
+        for transfer in options.transfer or ["FLIP"]:
+            for scheme in options.scheme or SCHEMES:
+                method = shape, transfer, scheme
+                found = {n: growth(n, method, options.factor) if options.factor else limit(n, method)
+                         for n in options.scene or SCENES}
+                rows.append([*method, *(f"{v:.4g}" for v in found.values())])
+                print(*rows[-1], flush=True)
+    if options.csv:
+        with options.csv.open("w", newline="") as file:
+            csv.writer(file).writerows([["shape", "transfer", "scheme", *(options.scene or SCENES)], *rows])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
