@@ -26,7 +26,7 @@ struct Fastest {
 
   /// Lane `i` of a batch of body `number`, after its critical speed is computed. A NaN speed counts as
   /// infinite.
-  void offer(int number, const Batch& batch, int i);
+  void offer(int number, const Batch& batch, int i, double wave_weight);
 };
 
 /// Throws InputErrors for the body of the particle with the smallest identity of all ranks. `words`: text
@@ -42,10 +42,10 @@ struct Fastest {
       {Diagnostic{input.source.file, input.source.line, "Body", "name", input.name, first.substr(end + 1)}});
 }
 
-void Fastest::offer(int number, const Batch& batch, int i) {
+void Fastest::offer(int number, const Batch& batch, int i, double wave_weight) {
   const ConstParticle p(*batch.layout, batch.block[i / block_lanes] + i % block_lanes);
   const Vec3<double> v = p.vector(Column::velocity_x);
-  double sum = batch.critical_speed[i] + std::sqrt(dot(v, v));
+  double sum = wave_weight * batch.critical_speed[i] + std::sqrt(dot(v, v));
   if (std::isnan(sum)) sum = std::numeric_limits<double>::infinity();
   const double id = p[Column::identity];
   if (sum < speed || (sum == speed && id >= identity)) return;
@@ -98,6 +98,7 @@ void refuse_endless(const Model& model, const Fastest& mine, Reductions& ranks) 
 
 /// Initialises this rank's particles of the bodies that `wanted` marks; returns the fastest of them.
 Fastest initialise(Model& model, const std::vector<bool>& wanted) {
+  const double wave_weight = 1 / wave_limit(*model.scene);
   Fastest fastest;
   const GridGeometry& geometry = model.grid->geometry();
   for (Brick& brick : model.grid->bricks()) {
@@ -108,7 +109,7 @@ Fastest initialise(Model& model, const std::vector<bool>& wanted) {
         batch.cell_size = geometry.smallest_cell();
         batch.grid = &geometry;
         model.bodies[static_cast<std::size_t>(tile.body)].model->initialise(batch, model.options);
-        for (int i = 0; i < batch.particles; ++i) fastest.offer(tile.body, batch, i);
+        for (int i = 0; i < batch.particles; ++i) fastest.offer(tile.body, batch, i, wave_weight);
         batch = {};
       };
       for (const ParticleBlock& block : blocks_of(model, brick, tile.body, tile.body + 1)) {

@@ -123,6 +123,7 @@ class PassesWith final : public Passes {
   double dt = 0;           ///< of the current step
   double velocity_limit_;  ///< infinite without LimitVelocity
   double erosion_volume_;
+  double wave_weight_;                                     ///< of wave speeds in the critical step
   std::vector<Scratch> scratch_;                           ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
@@ -155,6 +156,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
   }
   velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
   erosion_volume_ = solution.volume.erode.value_or(0);
+  wave_weight_ = 1 / wave_limit(*model.scene);
 #pragma omp parallel
   flush_denormals_to_zero();
   scratch_.resize(static_cast<std::size_t>(omp_get_max_threads()));
@@ -476,7 +478,7 @@ template <bool moves, class F>
   const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
     update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
     if (velocities == Velocities::of_next_step)
-      at.statistics.fastest = fastest_particle(batch, at.statistics.fastest);
+      at.statistics.fastest = fastest_particle(batch, wave_weight_, at.statistics.fastest);
     else
       fastest = std::max(fastest, fastest_wave(batch));
     if constexpr (moves) {
@@ -489,7 +491,7 @@ template <bool moves, class F>
   };
   for_each_batch(s, frame, at, kinematics, stress);
   at.add_work_of_brick();
-  if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = fastest;
+  if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = wave_weight_ * fastest;
 }
 
 // --- the passes -------------------------------------------------------------------------------------------

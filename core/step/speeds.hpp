@@ -6,12 +6,42 @@
 
 #include "core/grid/brick_grid.hpp"
 #include "core/material/batch.hpp"
+#include "core/scene/scene.hpp"
 #include "core/simd/lanes.hpp"
 
 namespace mpm::core {
 
+/// Largest stable time step of a scheme with these shape functions, over the time in which a wave crosses the
+/// smallest cell edge. Above 1, since a particle's functions average over more than a cell; below, where the
+/// strains follow the velocities with more noise. benchmarks/stability/limits.py found by bisection the
+/// largest steps without growth of the energy (elastic block and fluid that drift across cells, copper bar
+/// and shock); these are 2 to 5 % below, and linear functions with MUSL keep the thesis' 1.
+///
+///                 MUSL                USF                 USL
+///   linear        0.91 1.0  1.3       0.95 0.91 1.2       0.67 0.64 0.70      block, fluid, bar
+///   SGMP          1.5  1.3  2.2       1.3  1.1  2.3       1.0  0.80 1.2
+///   uGIMP         1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.73 0.77
+///   cpGIMP        1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.77 0.77
+///   quadratic     1.6  1.2  1.8       1.0  1.1  1.9       1.0  0.73 1.1
+///   cubic         1.5  1.3  2.0       1.4  1.1  2.1       1.3  1.0  1.4
+/// In the shock only linear functions with USF fall short: 0.55.
+inline double wave_limit(ShapeFunction shape, Scheme scheme) {
+  const auto by_scheme = [scheme](double musl, double usf, double usl) {
+    return scheme == Scheme::musl ? musl : scheme == Scheme::usf ? usf : usl;
+  };
+  switch (shape) {
+    case ShapeFunction::sgmp: return by_scheme(1.25, 1.1, 0.75);
+    case ShapeFunction::uniform_gimp:
+    case ShapeFunction::contiguous_particle_gimp: return by_scheme(1, 0.75, 0.7);
+    case ShapeFunction::quadratic_bspline: return by_scheme(1.2, 0.95, 0.7);
+    case ShapeFunction::cubic_bspline: return by_scheme(1.25, 1.1, 0.95);
+    default: return by_scheme(1, 0.5, 0.6);
+  }
+}
+inline double wave_limit(const Scene& scene) { return wave_limit(scene.grid.shape, scene.solution.scheme); }
+
 /// Largest stable step without the scene's factor (thesis 2-51, 2-74): the smallest cell edge over the
-/// largest (Q + sqrt(Q^2 + c^2)) + |v|.
+/// largest (Q + sqrt(Q^2 + c^2))/wave_limit + |v|.
 inline double critical_step(const BrickGrid& grid, double fastest) {
   return fastest > 0 ? grid.geometry().smallest_cell() / fastest : std::numeric_limits<double>::infinity();
 }
@@ -39,11 +69,11 @@ inline double fastest_wave(const Batch& batch) {
   return most;
 }
 
-/// Maximum of `most` and of the particles' wave speed plus speed. The square root is taken only where the sum
-/// may exceed `most`, which a comparison of squares with a margin for rounding decides.
-inline double fastest_particle(const Batch& batch, double most) {
+/// Maximum of `most` and of the particles' wave speed times `weight` plus speed. The square root is taken
+/// only where the sum may exceed `most`, which a comparison of squares with a margin for rounding decides.
+inline double fastest_particle(const Batch& batch, double weight, double most) {
   for (int i = 0; i < batch.particles; i += real_width) {
-    const Real wave = load<Real>(batch.critical_speed + i), room = Real(most) - wave;
+    const Real wave = Real(weight) * load<Real>(batch.critical_speed + i), room = Real(most) - wave;
     const Real v2 = squared_speed(*batch.layout, batch.block[i / block_lanes], i % block_lanes);
     if (any((room < Real(0.0)) | (v2 > Real(1 - 1e-12) * room * room)))
       most = largest_lane(wave + sqrt(v2), batch.particles - i, most);

@@ -160,6 +160,23 @@ ReferenceStepper::ReferenceStepper(ReferenceCase setup) : case_(std::move(setup)
   for (auto& particle : case_.particles) particle.c = wave_speed(case_.material, particle);
 }
 
+namespace {
+/// By which a wave's crossing time of a cell is multiplied for the critical step; MUSL, USF, USL.
+double wave_limit(ReferenceShape shape, ReferenceScheme scheme) {
+  const std::array<double, 3> limits = [&]() -> std::array<double, 3> {
+    switch (shape) {
+      case ReferenceShape::sgmp: return {1.25, 1.1, 0.75};
+      case ReferenceShape::ugimp:
+      case ReferenceShape::cpgimp: return {1, 0.75, 0.7};
+      case ReferenceShape::quadratic_bspline: return {1.2, 0.95, 0.7};
+      case ReferenceShape::cubic_bspline: return {1.25, 1.1, 0.95};
+      default: return {1, 0.5, 0.6};
+    }
+  }();
+  return scheme == ReferenceScheme::musl ? limits[0] : scheme == ReferenceScheme::usf ? limits[1] : limits[2];
+}
+}  // namespace
+
 double ReferenceStepper::dt() const {
   double critical = std::numeric_limits<double>::infinity();
   for (const auto& particle : case_.particles) {
@@ -167,7 +184,9 @@ double ReferenceStepper::dt() const {
         particle.D < 0 ? case_.material.bq2 * particle.c - case_.material.bq1 * length_ * particle.D : 0.0;
     const auto& v = particle.v;
     const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    critical = std::min(critical, length_ / (Q + std::sqrt(Q * Q + particle.c * particle.c) + speed));
+    const double wave =
+        (Q + std::sqrt(Q * Q + particle.c * particle.c)) / wave_limit(case_.shape, case_.scheme);
+    critical = std::min(critical, length_ / (wave + speed));
   }
   return case_.dt_factor * critical;
 }

@@ -236,7 +236,8 @@ struct SmallRun {
       const core::BrickCoord to = g.brick_at({p.x[0], p.x[1], p.x[2]});
       moving.add(to, n < split ? 0 : 1, flat.data(), layout.columns());
       counts.push_back({to, 1});
-      fastest = std::max(fastest, p.c + std::sqrt(p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2]));
+      fastest = std::max(fastest, p.c / core::wave_limit(*model.scene) +
+                                      std::sqrt(p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2]));
     }
     solo.bricks.partition(*model.grid, counts, {});
     core::insert_particles(model, moving);
