@@ -78,7 +78,7 @@ void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& ba
   if (std::abs(drift) > notable_drift && std::abs(largest_drift_) <= notable_drift) {
     log.warn(
         "step {}, time {:.6g}: the energy balance is off by {:.3g} %, more than {:.3g} %: the results may be "
-        "wrong; reduce TimeStep factor, or choose a wider Grid shape (docs/methods.md)",
+        "wrong; docs/stability.md says what to try",
         clock.step, clock.time, 100 * drift, 100 * notable_drift);
   }
   largest_drift_ = drift;
