@@ -51,9 +51,9 @@ struct Ledger {
   std::int64_t eroded = 0;
   std::int64_t failed = 0;
   std::int64_t velocity_limited = 0;
-  std::int64_t wide_domains = 0;
-  MaterialEvents events;                             ///< since time zero, on this rank
-  std::vector<std::int64_t> body_eroded, body_left;  ///< per body, on this rank
+  std::int64_t wide_domains = 0, tangled_domains = 0;  ///< in particles times steps
+  MaterialEvents events;                               ///< since time zero, on this rank
+  std::vector<std::int64_t> body_eroded, body_left;    ///< per body, on this rank
 };
 
 struct Model {

@@ -338,10 +338,16 @@ class Run {
   /// Reports states that were corrected or limited, in particles times steps. Collective.
   void say_what_was_counted() {
     const core::MaterialEvents& events = model_.ledger.events;
-    std::int64_t counts[] = {
-        events.failed,     events.negative_volume,         events.volume_limited,     events.undefined_root,
-        events.unresolved, model_.ledger.velocity_limited, model_.ledger.wide_domains};
-    static constexpr const char* words[] = {
+    std::int64_t counts[] = {events.failed,
+                             events.negative_volume,
+                             events.volume_limited,
+                             events.undefined_root,
+                             events.unresolved,
+                             model_.ledger.velocity_limited,
+                             model_.ledger.wide_domains,
+                             model_.ledger.tangled_domains};
+    const bool boxes = model_.scene->grid.shape == core::ShapeFunction::contiguous_particle_gimp;
+    const char* const words[] = {
         "failed",
         "would have had no volume and kept the old one",
         "held by Volume min or max",
@@ -350,7 +356,10 @@ class Run {
         "strained too far in one step for their law to end on its yield surface: take a smaller TimeStep "
         "factor",
         "held by LimitVelocity",
-        "with a domain wider than a cell, taken as a cell wide: use CPDI or larger cells"};
+        boxes ? "with a domain wider than a cell, taken as a cell wide: use CPDI or larger cells"
+              : "with a domain that reaches more than a cell from the particle, taken as one that reaches a "
+                "cell: use larger cells",
+        "with a tangled domain, replaced by a parallelepiped or a cube: take smaller steps or CPDI"};
     communication_.reductions.sum(std::span<std::int64_t>(counts));
     for (std::size_t i = 0; i < std::size(counts); ++i) {
       if (counts[i] > 0) log_->say("counted    {} particle(s) {}", counts[i], words[i]);

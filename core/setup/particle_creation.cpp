@@ -33,6 +33,19 @@ void for_each_piece(const SeedSource& source, int rank, int ranks, F f) {
   if (!seeds.empty()) f(seeds);
 }
 
+/// A cube along the axes, as shape functions with domains of the particles store it.
+void set_first_domain(const ColumnLayout& layout, double half_edge, std::vector<double>& columns) {
+  const auto set = [&](Column c, double v) {
+    if (layout.has(c)) columns[layout.index(c)] = v;
+  };
+  for (int a = 0; a < 3; ++a) {
+    set(next(Column::half_size_x, a), half_edge);
+    set(next(Column::edge_1x, 4 * a), half_edge);
+    for (int c = 0; c < 8; ++c)
+      set(next(Column::corner_0x, 3 * c + a), (c >> a & 1) != 0 ? half_edge : -half_edge);
+  }
+}
+
 }  // namespace
 
 std::vector<BodySeeds> seeds_of(const Model& model, std::span<const std::size_t> bodies) {
@@ -146,9 +159,7 @@ void fill_columns(const ColumnLayout& layout, const BodyInput& input, StartVeloc
   set(Column::mass, seed.mass);
   set(Column::volume, seed.volume);
   set(Column::identity, identity);
-  for (int a = 0; a < 3; ++a) {
-    if (const Column c = next(Column::half_size_x, a); layout.has(c)) set(c, 0.5 * std::cbrt(seed.volume));
-  }
+  set_first_domain(layout, 0.5 * std::cbrt(seed.volume), columns);
   if (input.initial_temperature && layout.has(Column::temperature))
     set(Column::temperature, *input.initial_temperature);
 }

@@ -8,6 +8,7 @@
 // counts as one cell wide, and the run says how often that happened.
 #pragma once
 
+#include "core/shape/domain_counts.hpp"
 #include "core/shape/separable.hpp"
 
 namespace mpm::core {
@@ -43,11 +44,11 @@ static_assert(ShapePolicy<UniformGimp>);
 struct ContiguousGimp : Separable<GimpAlong> {
   static constexpr std::string_view name = "cpGIMP";
 
-  /// Stretches the boxes of a block by the velocity gradient in rows 0..8, columns `at` .. at + 7. Returns
-  /// the number of the first `used` particles that are wider than a cell.
+  /// Stretches the boxes of a block by the velocity gradient in rows 0..8, columns `at` .. at + 7. Counts
+  /// the boxes of the first `used` particles that are wider than a cell.
   template <class Rows>
-  static int deform(const BrickFrame& frame, const ColumnLayout& layout, const Rows& rows, int at, double dt,
-                    double* block, int used) {
+  static DomainCounts deform(const BrickFrame& frame, const ColumnLayout& layout, const Rows& rows, int at,
+                             double dt, double* block, int used) {
     unsigned wide = 0;
     for (int a = 0; a < 3; ++a) {
       double* half = block + layout.offset(next(Column::half_size_x, a));
@@ -56,7 +57,7 @@ struct ContiguousGimp : Separable<GimpAlong> {
         wide |= static_cast<unsigned>(half[l] * frame.inverse_cell[a] > GimpAlong::widest) << l;
       }
     }
-    return __builtin_popcount(wide & ((1u << used) - 1));
+    return {.wide = __builtin_popcount(wide & ((1u << used) - 1))};
   }
 };
 static_assert(ShapePolicy<ContiguousGimp>);

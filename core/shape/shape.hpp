@@ -13,7 +13,9 @@
 //                       at .. at + 7
 //   cell_divergence     mean of div u over the cell of each particle, times `factor` (volume update `cell`)
 //   columns             the columns that its particles need beyond the mechanics
-//   deform              optional: follows the particle's deformation
+//   deform              optional: the particles' domains follow the velocity gradient
+//   Sample              optional: strain and motion of a block's particles from one reading of the nodes
+//   settle              optional: domains that Sample has carried along become those of the next step
 //   nodes_per_axis, lowest_node   the nodes of a particle along an axis
 //   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: infrequent
 //   terms

@@ -17,6 +17,25 @@ inline void move_with_grid(const typename S::Place& place, const ColumnLayout& l
   }
 }
 
+/// What a block takes of the nodes' motion: the gradient of the strain velocity, and its displacement.
+template <ShapePolicy S>
+struct MotionOfBlock {
+  const typename S::Place& place;
+  const typename S::Field& field;
+  template <class Rows>
+  [[gnu::always_inline]] void gradient(const BrickFrame& frame, Rows& rows, int at) const {
+    S::gradient(frame, place, field, rows, at);
+  }
+  [[gnu::always_inline]] void move(const ColumnLayout& layout, double dt, double* block) const {
+    move_with_grid<S>(place, layout, field, dt, block);
+  }
+};
+template <ShapePolicy S>
+requires requires { typename S::Sample; }
+struct MotionOfBlock<S> : S::Sample {
+  using S::Sample::Sample;
+};
+
 /// Bit mask of the lanes outside the brick (a NaN counts as outside).
 inline unsigned lanes_outside(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
                               int used) {

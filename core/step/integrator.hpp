@@ -10,6 +10,7 @@
 
 #include "core/communication/communication.hpp"
 #include "core/model.hpp"
+#include "core/shape/domain_counts.hpp"
 #include "core/step/offending_particle.hpp"
 
 namespace mpm::core {
@@ -30,9 +31,9 @@ struct DepartingParticle {
 
 /// What a rank collects during a step, to be combined over the ranks at its end.
 struct StepStatistics {
-  double fastest = 0;             ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
-  std::int64_t limited = 0;       ///< velocities limited by LimitVelocity
-  std::int64_t wide_domains = 0;  ///< particle domains wider than a cell (core/shape/gimp.hpp)
+  double fastest = 0;        ///< largest (Q + sqrt(Q^2 + c^2)) + |v| of any particle, length/time
+  std::int64_t limited = 0;  ///< velocities limited by LimitVelocity
+  DomainCounts domains;      ///< of particles
   MaterialEvents events;
   OffendingParticles vanishing,
       negative;                 ///< particles of negative volume and energy, where the scene checks for them

@@ -49,6 +49,7 @@ class PassesWith final : public Passes {
   using Place = typename S::Place;
   /// Whether particles have domains that deform with them.
   static constexpr bool deforms = requires { &S::template deform<Row[9]>; };
+  static constexpr bool settles = requires { &S::settle; };
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
     typename S::Field field;
@@ -86,10 +87,10 @@ class PassesWith final : public Passes {
   // Operations on a block or a batch.
   void update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place, double* block,
                          int used, Scratch& at);
-  void move(int body, const Place& place, double* block, int used, Scratch& at);
-  void deform(const BrickFrame& frame, const ColumnLayout& layout, int b, double* block, int used,
-              Scratch& at);
-  void strain_batch_block(const BrickFrame& frame, const Place& place, int b, Scratch& at);
+  void move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at);
+  void update_domains(int body, const BrickFrame& frame, const ColumnLayout& layout, int b, double* block,
+                      int used, Scratch& at);
+  void volumetric_strain(const BrickFrame& frame, const Place& place, int b, Scratch& at);
   void update_material(const Body& body, Scratch& at);
 
   bool updates_volume_by_cell() const {
@@ -358,25 +359,28 @@ void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int bo
 /// x += dt v, with the grid's velocity or, for a body that keeps its own velocities, with those; and the work
 /// of gravity and damping.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::move(int body, const Place& place, double* block, int used, Scratch& at) {
+void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at) {
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
   const bool does_work = forces_.damping != 0 || forces_.gravity != Vec3<double>{};
   if (does_work) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.old);
   if (loads_.motion(body).kind != BodyMotion::Kind::free)
     move_at_own_velocity(layout, dt, block);
   else
-    move_with_grid<S>(place, layout, at.field, dt, block);
+    motion.move(layout, dt, block);
+  if constexpr (settles) motion.carry(layout, dt, block);
   if (does_work) add_work_of_motion(forces_, layout, block, used, at);
 }
 
-/// The particles' domains by the velocity gradient of the batch's block `b`.
+/// The particles' domains: by the velocity gradient of the batch's block `b`, or as they have been carried.
 template <ShapePolicy S, TransferPolicy T>
-[[gnu::always_inline]] inline void PassesWith<S, T>::deform(const BrickFrame& frame,
-                                                            const ColumnLayout& layout, int b, double* block,
-                                                            int used, Scratch& at) {
+[[gnu::always_inline]] inline void PassesWith<S, T>::update_domains(int body, const BrickFrame& frame,
+                                                                    const ColumnLayout& layout, int b,
+                                                                    double* block, int used, Scratch& at) {
   if constexpr (deforms)
-    at.statistics.wide_domains +=
-        S::deform(frame, layout, at.batch.gradient, block_lanes * b, dt, block, used);
+    at.statistics.domains += S::deform(frame, layout, at.batch.gradient, block_lanes * b, dt, block, used);
+  if constexpr (settles)
+    at.statistics.domains +=
+        S::settle(frame, layout, loads_.motion(body).kind == BodyMotion::Kind::free, block, used);
 }
 
 template <ShapePolicy S, TransferPolicy T>
@@ -411,9 +415,9 @@ template <ShapePolicy S, TransferPolicy T>
                    second.next();
                    const Place place(frame, layout, block);
                    update_velocities(s, frame, body, place, block, used, at);
-                   move(body, place, block, used, at);
+                   move(body, {place, at.field}, block, used, at);
                    if constexpr (deforms) S::gradient(frame, place, moving, at.batch.gradient, 0);
-                   deform(frame, layout, 0, block, used, at);
+                   update_domains(body, frame, layout, 0, block, used, at);
                    for (int l = 0; l < used; l += real_width)
                      fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
                    find_departing(c, b, frame, erosion_volume_, layout, block, used,
@@ -425,14 +429,13 @@ template <ShapePolicy S, TransferPolicy T>
 
 // --- stress -----------------------------------------------------------------------------------------------
 
-/// The kinematics of block `b` of the batch.
+/// Of the cells, for block `b` of the batch, where the volume update asks for it.
 template <ShapePolicy S, TransferPolicy T>
-[[gnu::always_inline]] inline void PassesWith<S, T>::strain_batch_block(const BrickFrame& frame,
-                                                                        const Place& place, int b,
-                                                                        Scratch& at) {
+[[gnu::always_inline]] inline void PassesWith<S, T>::volumetric_strain(const BrickFrame& frame,
+                                                                       const Place& place, int b,
+                                                                       Scratch& at) {
   if (updates_volume_by_cell())
     S::cell_divergence(frame, place, at.field, dt, at.batch.cell_volumetric_strain, block_lanes * b);
-  S::gradient(frame, place, at.field, at.batch.gradient, block_lanes * b);
 }
 
 /// For outputs only; no law reads it.
@@ -467,12 +470,15 @@ template <bool moves, class F>
   double fastest = 0;
   const auto kinematics = [&](int body, int b, int used) {
     prefetch_nodes();
-    strain_batch_block(frame, at.places[b], b, at);
-    if constexpr (!moves) {
-      refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
+    volumetric_strain(frame, at.places[b], b, at);
+    if constexpr (moves) {
+      const MotionOfBlock<S> motion{at.places[b], at.field};
+      motion.gradient(frame, batch.gradient, block_lanes * b);
+      move(body, motion, batch.block[b], used, at);
+      update_domains(body, frame, *batch.layout, b, batch.block[b], used, at);
     } else {
-      move(body, at.places[b], batch.block[b], used, at);
-      deform(frame, *batch.layout, b, batch.block[b], used, at);
+      S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
+      refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
     }
   };
   const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
@@ -585,7 +591,7 @@ StepStatistics PassesWith<S, T>::take_statistics() {
   for (Scratch& w : scratch_) {
     total.fastest = std::max(total.fastest, w.statistics.fastest);
     total.limited += w.statistics.limited;
-    total.wide_domains += w.statistics.wide_domains;
+    total.domains += w.statistics.domains;
     total.events += w.statistics.events;
     total.vanishing.merge(w.statistics.vanishing);
     total.negative.merge(w.statistics.negative);

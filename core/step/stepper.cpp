@@ -68,7 +68,8 @@ void Stepper::reduce_status() {
   const StepStatistics found = integrator_->take_statistics();
   ledger.external_work += found.work;
   ledger.velocity_limited += found.limited;
-  ledger.wide_domains += found.wide_domains;
+  ledger.wide_domains += found.domains.wide;
+  ledger.tangled_domains += found.domains.tangled;
   ledger.events += found.events;
   ledger.failed += found.events.failed;
   incidents_ = {found.events, found.vanishing, found.negative, migration_.left_now(),

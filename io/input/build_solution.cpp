@@ -114,11 +114,12 @@ void check_method(const Node& root, const core::Scene& scene, const BuildContext
   const bool affine = transfer == core::Transfer::apic || transfer == core::Transfer::tpic ||
                       transfer == core::Transfer::aflip;
   const std::optional<Node> solution = root.child("Solution"), grid = root.child("Grid");
-  if (solution && affine && (shape == linear || shape == sgmp || shape == ddmp)) {
+  if (solution && affine &&
+      (shape == linear || shape == sgmp || shape == ddmp || shape == cpdi || shape == cpdi2)) {
     solution->report(context.diagnostics, "transfer",
                      "does not go with this shape: expected QuadraticBSpline, CubicBSpline, uGIMP or cpGIMP");
   }
-  if (!grid || shape != contiguous_particle_gimp) return;
+  if (!grid || (shape != contiguous_particle_gimp && shape != cpdi && shape != cpdi2)) return;
   for (const core::ComponentInput& component : scene.components) {
     for (const core::BodyInput& body : component.bodies) {
       const auto* sphere = std::get_if<core::SphereGeometry>(&body.geometry);

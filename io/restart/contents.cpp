@@ -31,7 +31,8 @@ constexpr CountName count_names[] = {{"left_grid", &Ledger::left_grid},
                                      {"eroded", &Ledger::eroded},
                                      {"failed", &Ledger::failed},
                                      {"velocity_limited", &Ledger::velocity_limited},
-                                     {"wide_domains", &Ledger::wide_domains}};
+                                     {"wide_domains", &Ledger::wide_domains},
+                                     {"tangled_domains", &Ledger::tangled_domains}};
 
 struct EventName {
   const char* name;

@@ -109,7 +109,7 @@ class Fitting {
       report(where, record.name,
              fmt::format(
                  "the scene needs state that the restart file does not have: {}; keep the material laws, the "
-                 "expressions in X, Y, Z and the volume update of the run that wrote it",
+                 "shape functions, the expressions in X, Y, Z and the volume update of the run that wrote it",
                  missing));
     }
     if (!started.empty()) {

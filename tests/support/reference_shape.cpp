@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 namespace mpm::tests {
 namespace {
@@ -98,11 +100,126 @@ ShapeOnAxis shape_on_axis(ReferenceShape shape, double r, double half_size) {
       const double l = half_size;
       return {(area_of_hat(r + l) - area_of_hat(r - l)) / (2 * l), (hat(r + l) - hat(r - l)) / (2 * l)};
     }
+    case ReferenceShape::cpdi:
+    case ReferenceShape::cpdi2: break;  // no products
   }
-  return {0, 0};
+  throw std::logic_error("a shape that is no product over the axes");
 }
 
+DomainCorners box(const Vector& half_size) {
+  DomainCorners corner{};
+  for (std::size_t c = 0; c < 8; ++c)
+    for (std::size_t a = 0; a < 3; ++a) corner[c][a] = (c >> a & 1) != 0 ? half_size[a] : -half_size[a];
+  return corner;
+}
+
+HexahedronMeans means_over(const DomainCorners& corner) {
+  const double far = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2)),
+               near = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2));
+  const double point[4] = {-far, -near, near, far};
+  const double light = (18 - std::sqrt(30.0)) / 36, heavy = (18 + std::sqrt(30.0)) / 36;
+  const double weight[4] = {light, heavy, heavy, light};
+  HexahedronMeans sum;
+  for (std::size_t q = 0; q < 64; ++q) {
+    const std::size_t at[3] = {q % 4, q / 4 % 4, q / 16};
+    double M[8], dM[8][3], dx[3][3] = {};  // dx[i][k] = dx_i/dxi_k
+    Vector x{};
+    for (std::size_t c = 0; c < 8; ++c) {
+      double factor[3], slope[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        slope[k] = (c >> k & 1) != 0 ? 0.5 : -0.5;
+        factor[k] = 0.5 + slope[k] * point[at[k]];
+      }
+      M[c] = factor[0] * factor[1] * factor[2];
+      dM[c][0] = slope[0] * factor[1] * factor[2];
+      dM[c][1] = factor[0] * slope[1] * factor[2];
+      dM[c][2] = factor[0] * factor[1] * slope[2];
+      for (std::size_t i = 0; i < 3; ++i) {
+        x[i] += M[c] * corner[c][i];
+        for (std::size_t k = 0; k < 3; ++k) dx[i][k] += dM[c][k] * corner[c][i];
+      }
+    }
+    // Cofactors: J times the transposed inverse.
+    double cofactor[3][3], J = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+        cofactor[i][k] = dx[i1][k1] * dx[i2][k2] - dx[i1][k2] * dx[i2][k1];
+      }
+    for (std::size_t k = 0; k < 3; ++k) J += dx[0][k] * cofactor[0][k];
+    const double w = weight[at[0]] * weight[at[1]] * weight[at[2]];
+    sum.volume += w * J;
+    for (std::size_t c = 0; c < 8; ++c) {
+      sum.value[c] += w * J * M[c];
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) sum.slope[c][i] += w * cofactor[i][k] * dM[c][k];
+    }
+    for (std::size_t i = 0; i < 3; ++i) sum.centroid[i] += w * J * x[i];
+  }
+  for (double& value : sum.value) value /= sum.volume;
+  for (Vector& slope : sum.slope)
+    for (double& component : slope) component /= sum.volume;
+  for (double& component : sum.centroid) component /= sum.volume;
+  return sum;
+}
+
+double smallest_corner(const DomainCorners& corner) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < 8; ++c) {
+    double e[3][3];
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        e[k][i] = corner[c | (std::size_t{1} << k)][i] - corner[c & ~(std::size_t{1} << k)][i];
+    smallest = std::min(smallest, e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
+                                      e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+                                      e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]));
+  }
+  return smallest;
+}
+
+DomainCorners scaled_back(DomainCorners corner, const Vector& cell) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    double reach = 0;
+    for (const Vector& x : corner) reach = std::max(reach, std::abs(x[a]));
+    if (reach > cell[a])
+      for (Vector& x : corner) x[a] *= cell[a] / reach;
+  }
+  return corner;
+}
+
+namespace {
+
+WideSupport corner_support(const ReferenceGrid& grid, const Vector& x) {
+  ReferenceGrid linear = grid;
+  linear.shape = ReferenceShape::linear;
+  const HexahedronMeans means = means_over(grid.corner);
+  WideSupport result;
+  for (std::size_t c = 0; c < 8; ++c) {
+    const Vector& d = grid.corner[c];
+    const WideSupport at = wide_support(linear, {x[0] + d[0], x[1] + d[1], x[2] + d[2]});
+    for (std::size_t n = 0; n < at.count; ++n) {
+      const WideSupport::Entry& of = at.entry[n];
+      if (of.mass == 0 && of.value == Vector{}) continue;
+      const auto begin = result.entry.begin(), end = begin + static_cast<std::ptrdiff_t>(result.count);
+      auto to = std::find_if(begin, end, [&](const auto& e) { return e.node == of.node; });
+      if (to == end) {
+        result.entry.at(result.count++) = {};
+        to->node = of.node;
+      }
+      to->mass += means.value[c] * of.mass;
+      for (std::size_t a = 0; a < 3; ++a) {
+        to->value[a] += means.value[c] * of.value[a];
+        for (std::size_t b = 0; b < 3; ++b) to->slope[a][b] += means.slope[c][b] * of.value[a];
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 WideSupport wide_support(const ReferenceGrid& grid, const Vector& x) {
+  if (has_corners(grid.shape)) return corner_support(grid, x);
   const AxisSupport along[3] = {axis_support(grid, x[0], 0), axis_support(grid, x[1], 1),
                                 axis_support(grid, x[2], 2)};
   WideSupport result;

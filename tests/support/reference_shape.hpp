@@ -7,9 +7,16 @@
 //   ugimp             S = mean of hat over the particle's domain r - l .. r + l,  l <= 1/2       3
 //   cpgimp            the same; l follows the stretch along each axis
 //                     (Bardenhagen and Kober, CMES 5 (2004) 477; the domain keeps its initial size)
+//   cpdi, cpdi2       through the eight corners x_c of the particle's domain, a hexahedron x = sum M_c x_c of
+//                     volume V with the trilinear functions M_c,
+//                       S = sum_c s_c prod hat(x_c),  s_c = mean of M_c over it
+//                       grad S = sum_c w_c prod hat(x_c),  w_c = mean of grad M_c over it
+//                     cpdi: the domain deforms by the particle's F; cpdi2: the corners move with the grid
+//                     (Sadeghirad et al., IJNME 86 (2011) 1435 and 95 (2013) 928)
 //   sgmp              S = sum of hat(x - x_c)/2 over the two cell centres c beside the node,     3
 //                     G = sum of +-hat(x - x_c), + for the centre below (Liang et al., CMAME 352 (2019) 85)
-// S and G of a node are products over the axes. All S are positive, add up to 1 and reproduce linear fields.
+// S and G of a node are products over the axes, but for cpdi and cpdi2. All S are positive, add up to 1 and
+// reproduce linear fields.
 #pragma once
 
 #include <array>
@@ -21,13 +28,35 @@ using Vector = std::array<double, 3>;
 /// [row][column]; a velocity gradient has dv_row/dx_column.
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-enum class ReferenceShape { linear, sgmp, quadratic_bspline, cubic_bspline, ugimp, cpgimp };
+enum class ReferenceShape { linear, sgmp, quadratic_bspline, cubic_bspline, ugimp, cpgimp, cpdi, cpdi2 };
+constexpr bool has_corners(ReferenceShape s) {
+  return s == ReferenceShape::cpdi || s == ReferenceShape::cpdi2;
+}
 
 struct ShapeOnAxis {
   double value, slope;
 };
 /// S and G of a node r cells below the particle; `half_size` is l, in cells, of ugimp.
 ShapeOnAxis shape_on_axis(ReferenceShape shape, double r, double half_size);
+
+/// Corners of a hexahedron, i + 2 j + 4 k.
+using DomainCorners = std::array<Vector, 8>;
+/// A box of these half-sizes about the origin.
+DomainCorners box(const Vector& half_size);
+
+/// Means over a hexahedron of its trilinear functions and of their gradients, by Gauss quadrature with four
+/// points along each axis (polynomials of degree 3 in each coordinate of the reference cube: two would do).
+struct HexahedronMeans {
+  double volume = 0;
+  std::array<double, 8> value{};
+  std::array<Vector, 8> slope{};
+  Vector centroid{};
+};
+HexahedronMeans means_over(const DomainCorners& corner);
+/// The smallest determinant of three edges that meet at a corner.
+double smallest_corner(const DomainCorners& corner);
+/// Coordinates on an axis where corners are more than a cell from the origin are scaled back to a cell.
+DomainCorners scaled_back(DomainCorners corner, const Vector& cell);
 
 struct ReferenceGrid {
   ReferenceShape shape = ReferenceShape::linear;
@@ -36,6 +65,7 @@ struct ReferenceGrid {
   std::array<int, 3> cells{};
   std::array<int, 6> boundary{};  ///< as ReferenceCase's
   Vector half_size{};             ///< ugimp, length
+  DomainCorners corner{};         ///< cpdi and cpdi2, from the particle; at most a cell from it on each axis
 };
 
 /// A particle's shape functions of any width, with the walls in them. Nodes have indices -1 .. cells + 1
@@ -62,7 +92,7 @@ struct WideSupport {
   std::array<Entry, 64> entry;
   std::size_t count = 0;
 };
-/// x lies in the grid.
+/// x lies in the grid; for linear functions, at most a cell outside.
 WideSupport wide_support(const ReferenceGrid& grid, const Vector& x);
 
 }  // namespace mpm::tests

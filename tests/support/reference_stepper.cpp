@@ -65,6 +65,18 @@ Pressure gruneisen(const ReferenceMaterial& material, double mu) {
   return {k * n / (d * d), material.gamma0, k * ((1 + 2 * a * mu) / (d * d) + 2 * b * n / (d * d * d))};
 }
 
+/// The domains that follow the velocity gradient.
+void deform_domain(ReferenceShape shape, double dt, const Matrix& L, ReferenceParticle& particle) {
+  if (shape == ReferenceShape::cpgimp)
+    for (std::size_t a = 0; a < 3; ++a) particle.half_size[a] *= 1 + dt * L[a][a];
+  if (shape != ReferenceShape::cpdi) return;
+  for (Vector& corner : particle.corner) {
+    const Vector old = corner;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) corner[a] += dt * L[a][b] * old[b];
+  }
+}
+
 }  // namespace
 
 double wave_speed(const ReferenceMaterial& material, const ReferenceParticle& particle) {
@@ -147,7 +159,11 @@ ReferenceStepper::ReferenceStepper(ReferenceCase setup) : case_(std::move(setup)
                .cell = case_.cell,
                .cells = case_.cells,
                .boundary = case_.boundary};
-  for (auto& particle : case_.particles) particle.half_size = case_.gimp_half_size;
+  for (auto& particle : case_.particles) {
+    particle.half_size = case_.gimp_half_size;
+    particle.corner = box(case_.gimp_half_size);
+  }
+  next_corner_.resize(case_.particles.size());
   layer_ = case_.shape == ReferenceShape::linear ? 0 : 1;
   for (std::size_t a = 0; a < 3; ++a) {
     nodes_[a] = static_cast<std::size_t>(case_.cells[a]) + 1 + 2 * layer_;
@@ -215,6 +231,8 @@ void ReferenceStepper::step_with() {
     update_stresses<Support>(dt);
   }
   for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].x = next_x_[n];
+  if (case_.shape == ReferenceShape::cpdi2)
+    for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].corner = next_corner_[n];
   time_ += dt;
 }
 
@@ -255,18 +273,25 @@ ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& 
     if (!(position >= 0 && position <= case_.cells[a])) report_outside(x);
   }
   AnySupport result;
+  result.wide = wide_support(grid_of(particle), x);
+  result.count = result.wide.count;
+  for (std::size_t n = 0; n < result.count; ++n) result.node[n] = number(result.wide.entry[n].node);
+  return result;
+}
+
+/// With the particle's domain.
+ReferenceGrid ReferenceStepper::grid_of(const ReferenceParticle& particle) const {
   ReferenceGrid grid = geometry_;
   for (std::size_t a = 0; a < 3; ++a)  // a wider domain counts as one cell wide
     grid.half_size[a] = std::min(particle.half_size[a], 0.5 * case_.cell[a]);
-  result.wide = wide_support(grid, x);
-  result.count = result.wide.count;
-  for (std::size_t n = 0; n < result.count; ++n) {
-    std::size_t at = 0;
-    for (std::size_t a = 3; a-- > 0;)
-      at = at * nodes_[a] + static_cast<std::size_t>(result.wide.entry[n].node[a] + 1);
-    result.node[n] = at;
-  }
-  return result;
+  grid.corner = scaled_back(particle.corner, case_.cell);
+  return grid;
+}
+
+std::size_t ReferenceStepper::number(const std::array<int, 3>& node) const {
+  std::size_t at = 0;
+  for (std::size_t a = 3; a-- > 0;) at = at * nodes_[a] + static_cast<std::size_t>(node[a] + 1);
+  return at;
 }
 
 /// What the faces of the grid do to component `axis` of a velocity at node (i, j, k).
@@ -373,18 +398,45 @@ void ReferenceStepper::grid_to_particles(double dt) {
         particle.v[a] += dt * at.value(n, a) * node.a[a];
       }
     }
-    if (case_.shape == ReferenceShape::cpgimp && case_.scheme == ReferenceScheme::usf) {
-      Vector stretch{};
+    if (case_.scheme == ReferenceScheme::usf) {
+      Matrix L{};
       for (std::size_t n = 0; n < at.count; ++n)
         for (std::size_t a = 0; a < 3; ++a)
-          if (grid_[at.node[n]].active) stretch[a] += grid_[at.node[n]].v[a] * at.slope(n, a)[a];
-      for (std::size_t a = 0; a < 3; ++a) particle.half_size[a] *= 1 + dt * stretch[a];
+          for (std::size_t b = 0; b < 3; ++b)
+            if (grid_[at.node[n]].active) L[a][b] += grid_[at.node[n]].v[a] * at.slope(n, a)[b];
+      deform_domain(case_.shape, dt, L, particle);
     }
+    if (case_.shape == ReferenceShape::cpdi2) move_corners(index, dt);
     if (case_.scheme != ReferenceScheme::musl) continue;
     for (std::size_t n = 0; n < at.count; ++n)
       for (std::size_t a = 0; a < 3; ++a)
         grid_[at.node[n]].w[a] += particle.m * particle.v[a] * at.value(n, a);
   }
+}
+
+/// Each corner with the grid's velocity there; the particle to the centroid.
+void ReferenceStepper::move_corners(std::size_t index, double dt) {
+  const ReferenceParticle& particle = case_.particles[index];
+  ReferenceGrid grid = grid_of(particle);
+  grid.shape = ReferenceShape::linear;
+  DomainCorners moved = particle.corner;
+  for (std::size_t c = 0; c < 8; ++c) {
+    Vector at = particle.x;
+    for (std::size_t a = 0; a < 3; ++a) at[a] += grid.corner[c][a];
+    const WideSupport support = wide_support(grid, at);
+    for (std::size_t n = 0; n < support.count; ++n) {
+      const Node& node = grid_[number(support.entry[n].node)];
+      for (std::size_t a = 0; a < 3; ++a)
+        if (node.active) moved[c][a] += dt * support.entry[n].value[a] * node.v[a];
+    }
+  }
+  if (!(smallest_corner(moved) > 0)) throw std::runtime_error("a particle's domain is tangled");
+  const Vector centroid = means_over(moved).centroid;
+  for (std::size_t a = 0; a < 3; ++a) {
+    next_x_[index][a] = particle.x[a] + centroid[a];
+    for (Vector& corner : moved) corner[a] -= centroid[a];
+  }
+  next_corner_[index] = moved;
 }
 
 /// The rest of 2-45 for MUSL, and the boundary conditions on the velocity of the strain rate.
@@ -436,8 +488,7 @@ void ReferenceStepper::update_stresses(double dt) {
     if (case_.scheme == ReferenceScheme::usf) L = relative_to_old_positions(L, dt);
     update_stress(case_.material, length_, dt, L, particle);
     if (!(particle.V > 0)) throw std::runtime_error("a particle's volume is " + std::to_string(particle.V));
-    if (case_.shape == ReferenceShape::cpgimp && case_.scheme != ReferenceScheme::usf)
-      for (std::size_t a = 0; a < 3; ++a) particle.half_size[a] *= 1 + dt * L[a][a];
+    if (case_.scheme != ReferenceScheme::usf) deform_domain(case_.shape, dt, L, particle);
     if (case_.scheme == ReferenceScheme::usf) add_force(particle, at);
   }
 }

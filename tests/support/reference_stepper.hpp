@@ -40,15 +40,16 @@ constexpr double plastic_modulus(double young, double tangent) { return young * 
 struct ReferenceParticle {
   Vector x{}, v{};
   double m = 0;
-  double V = 0;        ///< current volume
-  Matrix s{};          ///< deviator of the Cauchy stress
-  double p = 0;        ///< pressure, positive in compression, without q
-  double q = 0;        ///< artificial viscous pressure
-  double E = 0;        ///< internal energy per unit of initial volume m/rho_0
-  double epef = 0;     ///< effective plastic strain
-  double c = 0;        ///< wave speed 2-57; set by the stepper
-  double D = 0;        ///< volumetric strain rate of the latest stress update
-  Vector half_size{};  ///< of its domain, length, for ugimp and cpgimp; set by the stepper
+  double V = 0;            ///< current volume
+  Matrix s{};              ///< deviator of the Cauchy stress
+  double p = 0;            ///< pressure, positive in compression, without q
+  double q = 0;            ///< artificial viscous pressure
+  double E = 0;            ///< internal energy per unit of initial volume m/rho_0
+  double epef = 0;         ///< effective plastic strain
+  double c = 0;            ///< wave speed 2-57; set by the stepper
+  double D = 0;            ///< volumetric strain rate of the latest stress update
+  Vector half_size{};      ///< of its domain, length, for ugimp and cpgimp; set by the stepper
+  DomainCorners corner{};  ///< of its domain, from x, for cpdi and cpdi2; set by the stepper
 };
 
 /// One stress update over dt at velocity gradient L: s, p, q, E, epef, V, c and D, thesis 2.4.
@@ -70,7 +71,7 @@ struct ReferenceCase {
   /// the one that stops the node.
   bool wall_reaction = false;
   ReferenceShape shape = ReferenceShape::linear;
-  Vector gimp_half_size{};  ///< of a particle's first domain, length, for ugimp and cpgimp
+  Vector gimp_half_size{};  ///< of a particle's first domain, length, for shapes with domains
   Vector gravity{};
   /// Gravity as an acceleration of the nodes, hence a force m_i g. Otherwise particles map m_p g as they map
   /// their momentum, so that its power is that of the particles' weight; the two differ where particles reach
@@ -140,6 +141,8 @@ class ReferenceStepper {
 
   template <class Support>
   Support support(const ReferenceParticle& particle) const;
+  ReferenceGrid grid_of(const ReferenceParticle& particle) const;
+  std::size_t number(const std::array<int, 3>& node) const;
   Stop stop(const Index& node, std::size_t axis, double velocity) const;
   template <class Operation>
   void for_active_nodes(Operation&& operation);
@@ -154,6 +157,7 @@ class ReferenceStepper {
   void integrate_momentum(double dt);
   template <class Support>
   void grid_to_particles(double dt);
+  void move_corners(std::size_t index, double dt);
   void final_velocities();
   template <class Support>
   void update_stresses(double dt);
@@ -167,6 +171,7 @@ class ReferenceStepper {
   double node_mass_unit_ = 0;  ///< rho_0 * cell volume
   std::vector<Node> grid_;
   std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
+  std::vector<DomainCorners> next_corner_;  ///< for cpdi2
   double time_ = 0;
 };
 

@@ -7,11 +7,13 @@ take turns over the pairs, so that each shape meets each scheme."""
 import _mpm
 from _mpm import INPUT_ERROR, Case
 
-NARROW, WIDE = ("linear", "SGMP"), ("uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline")
+# Those that affine transfers do not go with, and the others.
+PLAIN_SHAPES, AFFINE_SHAPES = ("linear", "SGMP", "CPDI", "CPDI2"), ("uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline")
 PLAIN = ("FLIP", "PIC", "FLIP 0.95")
 AFFINE = ("APIC", "TPIC", "AFLIP")
 SCHEMES = ("MUSL", "USF", "USL")
-PAIRS = [(shape, transfer) for shape in NARROW + WIDE for transfer in PLAIN + (AFFINE if shape in WIDE else ())]
+SHAPES = PLAIN_SHAPES + AFFINE_SHAPES
+PAIRS = [(shape, transfer) for shape in SHAPES for transfer in PLAIN + (AFFINE if shape in AFFINE_SHAPES else ())]
 END = 0.35
 HEAT = 'SpecHeat="2" CoefficientOfThermalConductivity="3" roomt="{}"'
 MATERIALS = [_mpm.material("warm", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3" ' + HEAT.format(400)),
@@ -46,8 +48,8 @@ class Methods(Case):
         """A block vibrates freely in its longest mode: FLIP keeps its energy, PIC loses it, AFLIP loses little of it."""
         bar = _mpm.block("bar", (1.3, 2.2, 2.1), (8, 3, 3), ("0.5*cos(pi*(x-1.3)/8)", 0, 0), of="warm")
         lost = {}
-        for shape in NARROW + WIDE:
-            for transfer in ("FLIP", "PIC") + (("AFLIP",) if shape in WIDE else ()):
+        for shape in SHAPES:
+            for transfer in ("FLIP", "PIC") + (("AFLIP",) if shape in AFFINE_SHAPES else ()):
                 self.run_in("out", [self.write(scene(shape, transfer, "MUSL", 0.5, [bar], 0))])
                 lost[shape, transfer] = -_mpm.summary(self.folder / "out")["energy"]["relative_drift"]
         for (shape, transfer), share in lost.items():
@@ -58,7 +60,7 @@ class Methods(Case):
         """No column that the method does not need."""
         said = {}
         for shape, transfer in (("linear", "FLIP"), ("SGMP", "FLIP"), ("QuadraticBSpline", "PIC"), ("uGIMP", "FLIP"),
-                                ("CubicBSpline", "APIC")):
+                                ("CPDI", "FLIP"), ("CPDI2", "FLIP"), ("CubicBSpline", "APIC")):
             outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL")), "--dry-run"])
             said[shape] = next(line for line in outcome.out.splitlines() if "bytes a particle" in line)
         plain = said["linear"]
@@ -66,22 +68,37 @@ class Methods(Case):
         self.assertEqual(said["QuadraticBSpline"], plain)
         bytes_of = {shape: int(line.split(" bytes")[0].split()[-1]) for shape, line in said.items()}
         self.assertEqual(bytes_of["uGIMP"], bytes_of["linear"] + 3 * 8)
+        self.assertEqual(bytes_of["CPDI"], bytes_of["linear"] + 9 * 8)
+        self.assertEqual(bytes_of["CPDI2"], bytes_of["linear"] + 24 * 8)
         self.assertEqual(bytes_of["CubicBSpline"], bytes_of["linear"] + 9 * 8)
 
     def test_pairs_that_do_not_go_together(self):
-        for shape in NARROW:
+        for shape in PLAIN_SHAPES:
             for transfer in AFFINE:
                 outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL"))], INPUT_ERROR)
                 self.assertIn(f'transfer="{transfer}">: does not go with this shape', outcome.err)
         outcome = self.run_in("out", [self.write(scene("linear", "PIC 0.5", "MUSL"))], INPUT_ERROR)
         self.assertIn("has a meaning with transfer FLIP only, not with PIC", outcome.err)
 
+    def test_domains_wider_than_their_support(self):
+        """A bar that is drawn to several times its length: the log and the restart say how often domains were too wide."""
+        bar = _mpm.block("bar", (3, 3, 3), (3, 3, 2), ("3*(x-4.5)", 0, 0), of="soft")
+        soft = [_mpm.material("soft", 1.0, 'type="IsoElastic" Young="1e-3" Poisson="0"')]
+        grid = _mpm.grid((-20, 0, 0), (50, 9, 8))
+        for shape, words in (("cpGIMP", "with a domain wider than a cell"), ("CPDI", "with a domain that reaches more than a cell"),
+                             ("CPDI2", "with a domain that reaches more than a cell")):
+            text = _mpm.scene([bar], grid.replace("<Grid>", f'<Grid shape="{shape}">'), _mpm.solution(1.5, "MUSL", 0.4), soft,
+                              '<Console print_time="0.5"/>')
+            outcome = self.run_in("out", [self.write(text)])
+            self.assertIn(words, outcome.out)
+
     def test_spherical_shells_have_no_boxes(self):
         ball = ('<Body name="ball" material="warm" type="Sphere"><Geometry dp="0.5" x0="4" y0="4" z0="4" Outer_Radius="2" '
                 'discretization="1"/></Body>')
-        text = scene("cpGIMP", "FLIP", "MUSL").replace("<Component", f"<Component name='b'>{ball}</Component><Component", 1)
-        outcome = self.run_in("out", [self.write(text)], INPUT_ERROR)
-        self.assertIn("spherical shells", outcome.err)
+        for shape in ("cpGIMP", "CPDI", "CPDI2"):
+            text = scene(shape, "FLIP", "MUSL").replace("<Component", f"<Component name='b'>{ball}</Component><Component", 1)
+            outcome = self.run_in("out", [self.write(text)], INPUT_ERROR)
+            self.assertIn("spherical shells", outcome.err)
 
 
 if __name__ == "__main__":

@@ -13,9 +13,10 @@ using namespace mpm::tests;
 
 namespace {
 
-constexpr ReferenceShape shapes[] = {ReferenceShape::linear, ReferenceShape::sgmp,
-                                     ReferenceShape::quadratic_bspline, ReferenceShape::cubic_bspline,
-                                     ReferenceShape::ugimp};
+constexpr ReferenceShape shapes[] = {
+    ReferenceShape::linear,        ReferenceShape::sgmp,  ReferenceShape::quadratic_bspline,
+    ReferenceShape::cubic_bspline, ReferenceShape::ugimp, ReferenceShape::cpdi,
+    ReferenceShape::cpdi2};
 
 double hat(double r) { return std::max(0.0, 1 - std::abs(r)); }
 
@@ -40,6 +41,15 @@ ReferenceGrid grid_of(ReferenceShape shape, int boundary) {
                      .cells = {6, 5, 7},
                      .half_size = {0.25, 0.2, 0.3125}};
   grid.boundary.fill(boundary);
+  grid.corner = box({0.4, 0.3, 0.5});
+  for (std::size_t c = 0; c < 8; ++c) {
+    Vector& x = grid.corner[c];
+    x[0] += 0.5 * x[1];  // sheared; cpdi2: no parallelepiped
+    if (shape == ReferenceShape::cpdi2) x[c % 3] += 0.03 * static_cast<double>(c);
+  }
+  const Vector centroid = means_over(grid.corner).centroid;
+  for (Vector& x : grid.corner)
+    for (std::size_t a = 0; a < 3; ++a) x[a] -= centroid[a];
   return grid;
 }
 

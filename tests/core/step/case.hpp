@@ -144,6 +144,8 @@ inline core::ShapeFunction shape_function_of(ReferenceShape s) {
     case ReferenceShape::cubic_bspline: return core::ShapeFunction::cubic_bspline;
     case ReferenceShape::ugimp: return core::ShapeFunction::uniform_gimp;
     case ReferenceShape::cpgimp: return core::ShapeFunction::contiguous_particle_gimp;
+    case ReferenceShape::cpdi: return core::ShapeFunction::cpdi;
+    case ReferenceShape::cpdi2: return core::ShapeFunction::cpdi2;
   }
   throw std::logic_error("a shape that only the oracle has");
 }
@@ -157,6 +159,8 @@ constexpr ReferenceShape reference_shape(std::type_identity<core::UniformGimp>) 
 constexpr ReferenceShape reference_shape(std::type_identity<core::ContiguousGimp>) {
   return ReferenceShape::cpgimp;
 }
+constexpr ReferenceShape reference_shape(std::type_identity<core::Cpdi>) { return ReferenceShape::cpdi; }
+constexpr ReferenceShape reference_shape(std::type_identity<core::Cpdi2>) { return ReferenceShape::cpdi2; }
 constexpr ReferenceShape reference_shape(std::type_identity<core::QuadraticBSpline>) {
   return ReferenceShape::quadratic_bspline;
 }
@@ -168,6 +172,21 @@ constexpr ReferenceShape reference_shape(std::type_identity<core::CubicBSpline>)
 inline constexpr auto reference_shapes = []<class... S>(std::type_identity<std::tuple<S...>>) {
   return std::array<ReferenceShape, sizeof...(S)>{reference_shape(std::type_identity<S>())...};
 }(std::type_identity<core::Shapes>());
+
+/// A particle's first domain, for the shapes that have columns for it.
+inline void write_box(const core::ColumnLayout& layout, const Vector& half_size, double* lane) {
+  const auto put = [&](core::Column column, double value) {
+    if (layout.has(column)) lane[layout.offset(column)] = value;
+  };
+  const DomainCorners corner = box(half_size);
+  for (int a = 0; a < 3; ++a) {
+    const auto i = static_cast<std::size_t>(a);
+    put(next(core::Column::half_size_x, a), half_size[i]);
+    for (int k = 0; k < 3; ++k) put(next(core::Column::edge_1x, 3 * k + a), k == a ? half_size[i] : 0);
+    for (int n = 0; n < 8; ++n)
+      put(next(core::Column::corner_0x, 3 * n + a), corner[static_cast<std::size_t>(n)][i]);
+  }
+}
 
 /// One run of the production stepper. Bodies: particles [0, split) of the case are the first, the rest the
 /// second.
@@ -226,12 +245,7 @@ struct SmallRun {
       block[static_cast<std::size_t>(layout.offset(core::Column::identity))] = static_cast<double>(n);
       if (layout.has(core::Column::sound_speed))
         block[static_cast<std::size_t>(layout.offset(core::Column::sound_speed))] = p.c;
-      for (int a = 0; a < 3; ++a) {
-        const core::Column half = next(core::Column::half_size_x, a);
-        if (layout.has(half))
-          block[static_cast<std::size_t>(layout.offset(half))] =
-              c.gimp_half_size[static_cast<std::size_t>(a)];
-      }
+      write_box(layout, c.gimp_half_size, block.data());
       for (std::size_t k = 0; k < flat.size(); ++k) flat[k] = block[core::block_lanes * k];
       const core::BrickCoord to = g.brick_at({p.x[0], p.x[1], p.x[2]});
       moving.add(to, n < split ? 0 : 1, flat.data(), layout.columns());

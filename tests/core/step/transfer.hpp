@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "core/particles/block_pool.hpp"
 #include "core/transfer/list.hpp"
+#include "tests/support/reference_shape.hpp"
 
 namespace mpm::tests {
 
@@ -60,6 +62,63 @@ inline AlongAxis along_axis(const core::CubicBSpline&, int, double r) {
   return {value, slope};
 }
 
+/// Shape functions through the corners of the particle's domain.
+template <class S>
+inline constexpr bool through_corners = std::is_same_v<S, core::Cpdi> || std::is_same_v<S, core::Cpdi2>;
+
+/// A sheared domain about the particle, for CPDI2 no parallelepiped; of half-sizes `half`.
+template <class S, class F>
+DomainCorners any_domain(const Vector& half, F unit) {
+  DomainCorners corner = box(half);
+  for (Vector& x : corner) {
+    const double y = x[1] / half[1];
+    x[0] += 0.4 * y * half[0];
+    x[2] -= 0.3 * y * half[2];
+    if (std::is_same_v<S, core::Cpdi2>)
+      for (std::size_t a = 0; a < 3; ++a) x[a] += 0.25 * half[a] * (2 * unit() - 1);
+  }
+  const Vector centroid = means_over(corner).centroid;
+  for (Vector& x : corner)
+    for (std::size_t a = 0; a < 3; ++a) x[a] -= centroid[a];
+  return corner;
+}
+/// In a particle's columns, `stride` doubles apart.
+template <class S>
+void write_domain(const core::ColumnLayout& layout, const DomainCorners& corner, double* columns,
+                  std::size_t stride) {
+  const auto put = [&](core::Column first, int i, double value) {
+    columns[stride * layout.index(next(first, i))] = value;
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<int>(a);
+    if constexpr (std::is_same_v<S, core::Cpdi>) {
+      for (std::size_t k = 0; k < 3; ++k)
+        put(core::Column::edge_1x, 3 * static_cast<int>(k) + axis,
+            0.5 * (corner[std::size_t{1} << k][a] - corner[0][a]));
+    } else {
+      for (std::size_t c = 0; c < 8; ++c)
+        put(core::Column::corner_0x, 3 * static_cast<int>(c) + axis, corner[c][a]);
+    }
+  }
+}
+template <class S>
+DomainCorners read_domain(const core::ColumnLayout& layout, const double* columns, std::size_t stride) {
+  const auto get = [&](core::Column first, int i) { return columns[stride * layout.index(next(first, i))]; };
+  DomainCorners corner{};
+  for (std::size_t c = 0; c < 8; ++c) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<int>(a);
+      if constexpr (std::is_same_v<S, core::Cpdi>) {
+        for (int k = 0; k < 3; ++k)
+          corner[c][a] += ((c >> k & 1) != 0 ? 1 : -1) * get(core::Column::edge_1x, 3 * k + axis);
+      } else {
+        corner[c][a] = get(core::Column::corner_0x, 3 * static_cast<int>(c) + axis);
+      }
+    }
+  }
+  return corner;
+}
+
 /// 10 x 11 x 9 oblong cells, origin negative: the last bricks are partial.
 inline core::GridGeometry transfer_geometry(core::Site site) {
   core::GridGeometry g;
@@ -107,6 +166,12 @@ struct TransferCase {
         if (pool.layout().has(half))
           p[pool.layout().index(half)] = geometry.cell[a] * (n % 7 == 3 ? 0.5 : 0.15 + 0.35 * unit(random));
       }
+      if constexpr (through_corners<S>) {
+        Vector half{};  // some reach more than a cell
+        for (std::size_t a = 0; a < 3; ++a)
+          half[a] = geometry.cell[static_cast<int>(a)] * (n % 7 == 3 ? 1.2 : 0.15 + 0.3 * unit(random));
+        write_domain<S>(pool.layout(), any_domain<S>(half, [&] { return unit(random); }), p.data(), 1);
+      }
       append(pool, tile, p.data());
     }
   }
@@ -141,6 +206,13 @@ struct TransferCase {
   /// f(node, S, gradient of S) for the nodes of a particle.
   template <class F>
   void for_each_node(const std::vector<double>& p, F f) const {
+    if constexpr (through_corners<S>)
+      for_each_node_of_corners(p, f);
+    else
+      for_each_node_of_axes(p, f);
+  }
+  template <class F>
+  void for_each_node_of_axes(const std::vector<double>& p, F f) const {
     const Place at = place(p);
     constexpr int n = S::nodes_per_axis;
     for (int i = 0; i < n * n * n; ++i) {
@@ -163,6 +235,27 @@ struct TransferCase {
       }
       f(shape.index(node[0], node[1], node[2]), w[0] * w[1] * w[2],
         core::Vec3<double>{dw[0] * w[1] * w[2], w[0] * dw[1] * w[2], w[0] * w[1] * dw[2]});
+    }
+  }
+
+  template <class F>
+  void for_each_node_of_corners(const std::vector<double>& p, F f) const {
+    const Place at = place(p);
+    const Vector cell = {geometry.cell.x, geometry.cell.y, geometry.cell.z};
+    const DomainCorners domain = scaled_back(read_domain<S>(pool.layout(), p.data(), 1), cell);
+    const HexahedronMeans means = means_over(domain);
+    for (int i = 0; i < 64; ++i) {
+      const int node[3] = {at.lowest[0] + i % 4, at.lowest[1] + i / 4 % 4, at.lowest[2] + i / 16};
+      double value = 0;
+      core::Vec3<double> slope{};
+      for (std::size_t c = 0; c < 8; ++c) {
+        double hats = 1;
+        for (std::size_t a = 0; a < 3; ++a)
+          hats *= std::max(1 - std::abs(at.position[a] + domain[c][a] / cell[a] - node[a]), 0.0);
+        value += means.value[c] * hats;
+        slope = slope + hats * core::Vec3<double>{means.slope[c][0], means.slope[c][1], means.slope[c][2]};
+      }
+      f(shape.index(node[0], node[1], node[2]), value, slope);
     }
   }
 

@@ -248,10 +248,12 @@ TEST_CASE("known, but not implemented yet") {
       {"<Grid>", "<Grid gimp=\"1\">", {"ok"}},
       {"<Grid>", "<Grid gimp=\"0\" shape=\"linear\">", {"ok"}},
       {"<Grid>",
-       "<Grid shape=\"CPDI\">",
-       {"line 17: <Grid shape=\"CPDI\">: known, but not implemented yet; remove the attribute or set it to "
+       "<Grid shape=\"DDMP\">",
+       {"line 17: <Grid shape=\"DDMP\">: known, but not implemented yet; remove the attribute or set it to "
         "its "
         "default, linear"}},
+      {"<Grid>", "<Grid shape=\"CPDI\">", {"ok"}},
+      {"<Grid>", "<Grid shape=\"CPDI2\">", {"ok"}},
       {"boundary=\"2\"", "boundary=\"3\"", {"ok"}},
       {"<DCell", "<MovingGrid enable='1'/><DCell", {"line 22: <MovingGrid enable=\"1\">: " + zero}},
       {"<DCell", "<MovingGrid enable='0' x_min='0'/><DCell", {"ok"}},
