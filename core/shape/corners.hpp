@@ -1,12 +1,14 @@
 // Shape functions through the corners x_c of a particle's domain (CPDI: Sadeghirad, Brannon and Burghardt,
 // IJNME 86 (2011) 1435): with N_i the trilinear functions,
 //   S_i = sum_c s_c N_i(x_c),   grad S_i = sum_c w_c N_i(x_c)
-// Domain supplies, in cells from the particle, the corners of a block's particles and the weights,
+// Domain supplies its columns, first_column and their number, and, in cells from the particle, the corners of
+// a block's particles and the weights,
 //   evaluate(frame, layout, block, corners[3][8], CornerWeights)
 // (cpdi.hpp). The corners are at most a cell from the particle along each axis, so a particle reaches the
 // 4 x 4 x 4 nodes around its cell.
 //
-// Particles to grid: one particle at a time, corner by corner, a node's record in the lanes. Grid to
+// Particles to grid: one particle at a time, corner by corner, a node's record in the lanes. Two sums take
+// turns: the corners of a particle share nodes, and an addition would wait for the one before. Grid to
 // particles: the records of the nodes are interpolated to the corners in the same way, all components at
 // once, and are transposed to particles in the lanes, where the weights combine them.
 #pragma once
@@ -110,8 +112,8 @@ struct CornerScatter {
 
   /// Particle `i` of the block.
   [[gnu::always_inline]] void add(const BrickFrame&, const Place& place, int i, const MappedRows& rows,
-                                  double* contributions) {
-    constexpr int width = record_doubles(what.array);
+                                  double* sums) {
+    constexpr int width = record_doubles(what.array), doubles = width * corner_nodes.nodes();
     if constexpr (maps_force(what)) {
       using R = Lanes<8>;
       using V = R::vector;
@@ -125,14 +127,14 @@ struct CornerScatter {
         R record = x_stress * R(place.slope[c][0][i]) + y_stress * R(place.slope[c][1][i]) +
                    z_stress * R(place.slope[c][2][i]);
         if constexpr (maps_momentum(what)) record += motion * R(place.value[c][i]);
-        corner::add<width>(record, place, c, i, contributions);
+        corner::add<width>(record, place, c, i, sums + c % 2 * doubles);
       }
     } else {
       using H = Lanes<4>;
       const H motion = H::vector{rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i],
                                  maps_mass(what) ? rows.mass[i] : 0.0};
       for (int c = 0; c < corners; ++c)
-        corner::add<width>(motion * H(place.value[c][i]), place, c, i, contributions);
+        corner::add<width>(motion * H(place.value[c][i]), place, c, i, sums + c % 2 * doubles);
     }
   }
 };
@@ -203,7 +205,23 @@ struct CornerSample {
   }
 };
 
-/// A policy (shape.hpp) but for its name, the columns and how the domains follow the motion.
+/// Sums over the particles for even and for odd corners.
+template <NodeFields what>
+class CornerSums {
+ public:
+  static constexpr int doubles = record_doubles(what.array) * corner_nodes.nodes();
+  explicit CornerSums(double* contributions) : records(sum_), contributions_(contributions) {}
+  void finish(const BrickFrame&) {
+    for (int i = 0; i < doubles; ++i) contributions_[i] += sum_[i] + sum_[doubles + i];
+  }
+  double* records;
+
+ private:
+  alignas(64) double sum_[2 * doubles] = {};
+  double* contributions_;
+};
+
+/// A policy (shape.hpp) but for its name and how the domains follow the motion.
 template <class Domain>
 struct CornerShape {
   static constexpr Site site = Site::cell;
@@ -215,8 +233,15 @@ struct CornerShape {
   template <NodeFields what>
   using Scatter = CornerScatter<what, Place>;
   template <NodeFields what>
-  using Sums = Linear::Sums<what>;
+  using Sums = CornerSums<what>;
   using Field = Linear::Field;
+  static constexpr Column first_of_domain = Domain::first_column;
+  static constexpr int columns_of_domain = Domain::columns;
+  static ColumnSet columns() {
+    ColumnSet set;
+    set.add_range(first_of_domain, columns_of_domain);
+    return set;
+  }
 
   template <class Rows>
   static void gradient(const BrickFrame&, const Place& place, const Field& field, Rows& rows, int at) {

@@ -38,11 +38,8 @@ inline int count(unsigned lanes, int used) { return __builtin_popcount(lanes & (
 /// r_k in the columns edge_1x ...
 struct Parallelepiped {
   using R = Lanes<8>;
-  static ColumnSet columns() {
-    ColumnSet set;
-    set.add_range(Column::edge_1x, 9);
-    return set;
-  }
+  static constexpr Column first_column = Column::edge_1x;
+  static constexpr int columns = 9;
   static void load_edges(const ColumnLayout& layout, const double* block, Vec3<R> (&r)[3]) {
     const double* edge = block + layout.offset(Column::edge_1x);
     for (int k = 0; k < 3; ++k)
@@ -70,7 +67,6 @@ struct Parallelepiped {
 
 struct Cpdi : CornerShape<Parallelepiped> {
   static constexpr std::string_view name = "CPDI";
-  static ColumnSet columns() { return Parallelepiped::columns(); }
 
   /// Deforms the domains of a block by the velocity gradient in rows 0..8, columns `at` .. at + 7.
   template <class Rows>
@@ -108,11 +104,8 @@ static_assert(ShapePolicy<Cpdi>);
 /// Corners relative to the particle in the columns corner_0x ..., so that they are as precise anywhere.
 struct HexahedronDomain {
   using R = Lanes<8>;
-  static ColumnSet columns() {
-    ColumnSet set;
-    set.add_range(Column::corner_0x, 3 * corners);
-    return set;
-  }
+  static constexpr Column first_column = Column::corner_0x;
+  static constexpr int columns = 3 * corners;
   static double* of(const ColumnLayout& layout, double* block) {
     return block + layout.offset(Column::corner_0x);
   }
@@ -140,7 +133,6 @@ struct HexahedronDomain {
 
 struct Cpdi2 : CornerShape<HexahedronDomain> {
   static constexpr std::string_view name = "CPDI2";
-  static ColumnSet columns() { return HexahedronDomain::columns(); }
 
   struct Sample : CornerSample<Place> {
     using CornerSample<Place>::CornerSample;

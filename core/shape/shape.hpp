@@ -16,6 +16,7 @@
 //   deform              optional: the particles' domains follow the velocity gradient
 //   Sample              optional: strain and motion of a block's particles from one reading of the nodes
 //   settle              optional: domains that Sample has carried along become those of the next step
+//   first_of_domain, columns_of_domain   optional: those of them that locating a particle reads
 //   nodes_per_axis, lowest_node   the nodes of a particle along an axis
 //   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: infrequent
 //   terms

@@ -196,7 +196,7 @@ template <class F>
     BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
     const BlockPrefetch prefetch(model_, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-      prefetch.request(b, columns);
+      prefetch.template request<S>(b, pool.layout(), columns);
       f(static_cast<int>(c), b, tile.body, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
     }
   }
@@ -280,7 +280,7 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
     if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       if constexpr (maps_momentum(what))
-        prefetch.request(b, maps_force(what) ? columns_to_stress : columns_to_mass);
+        prefetch.template request<S>(b, layout, maps_force(what) ? columns_to_stress : columns_to_mass);
       room.next();
       double* block = body.pool->block(tile.blocks[b]);
       const int used = tile.used_lanes(b);

@@ -64,8 +64,18 @@ class BlockPrefetch {
     const double* block = pool.block(tile->blocks[b]);
     return {block, block + pool.layout().block_doubles()};
   }
-  /// Requests the first columns of that block at once.
-  [[gnu::always_inline]] void request(std::size_t b, int columns) const { lines(b).request(columns); }
+  /// Requests the first columns of that block at once, and those in which shape functions S keep domains.
+  template <class S>
+  [[gnu::always_inline]] void request(std::size_t b, const ColumnLayout& layout, int columns) const {
+    PrefetchLines of_block = lines(b);
+    PrefetchLines domain = of_block;
+    of_block.request(columns);
+    if constexpr (requires { S::first_of_domain; }) {
+      if (domain.next == nullptr) return;
+      domain.next += layout.offset(S::first_of_domain);
+      domain.request(S::columns_of_domain);
+    }
+  }
 
  private:
   static constexpr std::size_t distance = 8;  // hides main memory latency and still fits in the cache

@@ -292,3 +292,26 @@ TEST_CASE("A state of numbers whose energy is none is told with its particle") {
                     Catch::Contains("particle " + std::to_string(identity) + " of body") &&
                         Catch::Contains("velocity_y=1e+170"));
 }
+
+TEST_CASE("The ledger counts tangled and wide domains, in particles times steps") {
+  for (const ReferenceScheme scheme : schemes) {
+    ReferenceCase c = tumbling(scheme);
+    const auto particles = static_cast<std::int64_t>(c.particles.size());
+    c.shape = ReferenceShape::cpdi2;
+    SmallRun tangled(c);
+    BlockPool& pool = *tangled.model.bodies[0].pool;
+    double* block = pool.block(tangled.model.grid->brick(0).tiles[0].blocks[0]);
+    for (int a = 0; a < 3; ++a) block[pool.layout().offset(next(Column::corner_7x, a))] = 0;
+    tangled.step(3);
+    CHECK(tangled.model.ledger.tangled_domains == 1);
+    CHECK(tangled.model.ledger.wide_domains == 0);
+    c.gimp_half_size[1] = 1.1 * c.cell[1];
+    for (const ReferenceShape shape : {ReferenceShape::cpgimp, ReferenceShape::cpdi, ReferenceShape::cpdi2}) {
+      c.shape = shape;
+      SmallRun wide(c);
+      wide.step(3);
+      CHECK(wide.model.ledger.wide_domains == 3 * particles);
+      CHECK(wide.model.ledger.tangled_domains == 0);
+    }
+  }
+}
