@@ -106,12 +106,14 @@ struct BarRun {
     }
     return bytes;
   }
-  /// Nodes of the bricks in use: both arrays, and the motion that MUSL keeps.
+  /// Nodes of the bricks in use: their arrays, and what MUSL, XPIC and FMPM keep between passes.
   double brick_bytes() const { return static_cast<double>(model.grid->owned()) * node_bytes_per_brick(); }
   double node_bytes_per_brick() const {
-    const int doubles = core::record_doubles(core::NodeArray::first) +
-                        core::record_doubles(core::NodeArray::second) +
-                        (scene->solution.scheme == core::Scheme::musl ? core::motion_width : 0);
+    int doubles = core::record_doubles(core::NodeArray::first) +
+                  core::record_doubles(core::NodeArray::second) +
+                  (scene->solution.scheme == core::Scheme::musl ? core::motion_width : 0);
+    if (model.grid->arrays().has(core::NodeArray::third))
+      doubles += core::record_doubles(core::NodeArray::third) + core::node_doubles;
     return static_cast<double>(doubles) * sizeof(double) * model.grid->shape().nodes();
   }
 

@@ -81,12 +81,17 @@ inline std::vector<Feature> features() {
       {.body = R"(<PrescribedVelocity vx="0" vy="0" vz="0"/>)", .velocity = ""},
       {.body = R"(<PrescribedVelocity vx="0" vy="0" vz='1e-9*sin(x + t)'/>)", .velocity = ""});
 
-  for (const char* transfer : {"PIC", "XPIC"})
+  for (const char* transfer : {"PIC", "XPIC", "FMPM"})
     add("transfer", transfer, "FLIP", bar,
         {.solution_attributes = fmt::format(R"(transfer="{}")", transfer)});
+  for (const int order : {1, 3, 5})
+    add("transfer", fmt::format("FMPM of order {}", order), "FLIP", bar,
+        {.solution_attributes = fmt::format(R"(transfer="FMPM" xpic_order="{}")", order)});
+  add("transfer", "FMPM every 10th step", "FLIP", bar,
+      {.solution_attributes = R"(transfer="FMPM" xpic_interval="10")"});
   add("transfer", "95 % FLIP", "FLIP", bar, {.solution_attributes = R"(flip_fraction="0.95")"});
   const std::string quadratic = R"(shape="QuadraticBSpline")";
-  for (const char* transfer : {"PIC", "APIC", "TPIC", "AFLIP"})
+  for (const char* transfer : {"PIC", "APIC", "TPIC", "AFLIP", "XPIC", "FMPM"})
     add("transfer", fmt::format("{}, quadratic", transfer), "FLIP, quadratic", {.grid_attributes = quadratic},
         {.grid_attributes = quadratic, .solution_attributes = fmt::format(R"(transfer="{}")", transfer)});
   for (const char* shape :
@@ -124,6 +129,8 @@ inline std::vector<Feature> spelled_out() {
       off("TimeStep at its defaults",
           {.time_step = R"(<TimeStep factor="0.4" const="0" specified="0" NotConsiderVisForCp="0"/>)"}),
       off("transfer FLIP", {.solution_attributes = R"(transfer="FLIP" flip_fraction="1")"}),
+      off("xpic_order and xpic_interval with FLIP",
+          {.solution_attributes = R"(xpic_order="5" xpic_interval="3")"}),
       off("initial velocity by an expression",
           {.velocity = R"(<InitialVelocity vx="0" vy="0*pi" vz='if(x &lt; 1e9, -190, y)'/>)"}),
       off("shape linear", {.grid_attributes = R"(shape="linear" gimp="0")"}),

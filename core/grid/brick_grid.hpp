@@ -112,8 +112,8 @@ class BrickGrid {
            field - 1;
   }
   void allocate_nodes(std::size_t blocks);
-  AlignedDoubles& array(NodeArray of) { return of == NodeArray::first ? first_ : second_; }
-  const AlignedDoubles& array(NodeArray of) const { return of == NodeArray::first ? first_ : second_; }
+  AlignedDoubles& array(NodeArray of) { return nodes_[static_cast<std::size_t>(of)]; }
+  const AlignedDoubles& array(NodeArray of) const { return nodes_[static_cast<std::size_t>(of)]; }
 
   GridGeometry geometry_;
   NodeBlockShape shape_;
@@ -121,7 +121,7 @@ class BrickGrid {
   std::vector<Brick> bricks_;
   std::vector<BrickCoord> ghosts_;
   std::unordered_map<BrickKey, Slot> slot_;
-  AlignedDoubles first_, second_;
+  std::array<AlignedDoubles, node_arrays.size()> nodes_;
   std::vector<Slot>
       extra_begin_;  ///< by slot: index of its first extra block; empty while all have one field
   int boundary_ = 0;

@@ -1,11 +1,12 @@
 // Nodal fields of the background grid, by name.
 //
-// Every brick stores its contributions to its nodes in one or two arrays of records. A field names
+// Every brick stores its contributions to its nodes in one to three arrays of records. A field names
 // consecutive components of an array's record; kernels, sums and the halo exchange use fields. A scheme maps
 // to the grid at most twice per step and needs the first sums again after the second map: hence two arrays.
+// Corrections of the velocities (core/transfer/corrected.hpp) are mapped between the two: the third array.
 // Fields of different phases may share memory: heat conduction uses the arrays while the mechanics does not.
 //
-// A record of the first array fills a cache line of 64 bytes, one of the second half a line.
+// A record of the first array fills a cache line of 64 bytes, one of the others half a line.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 
 namespace mpm::core {
 
-enum class NodeArray : int { first, second };
-inline constexpr std::array node_arrays{NodeArray::first, NodeArray::second};
+enum class NodeArray : int { first, second, third };
+inline constexpr std::array node_arrays{NodeArray::first, NodeArray::second, NodeArray::third};
 /// Doubles per record of summed nodes, and per record of the first array.
 inline constexpr int node_doubles = 8;
 constexpr int record_doubles(NodeArray of) {
@@ -47,6 +48,8 @@ inline constexpr NodeFields mass{NodeArray::first, 3, 1};
 inline constexpr NodeFields force{NodeArray::first, 4, 3};
 inline constexpr NodeFields second_momentum{NodeArray::second, 0, 3};
 inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
+// Momentum of an order of XPIC or FMPM.
+inline constexpr NodeFields correction{NodeArray::third, 0, 3};
 // Heat conduction (conduction.hpp).
 inline constexpr NodeFields heat_capacity{NodeArray::second, 0, 1};
 inline constexpr NodeFields heat{NodeArray::second, 1, 1};
@@ -64,6 +67,7 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"force", node_field::force},
     NamedNodeFields{"second momentum", node_field::second_momentum},
     NamedNodeFields{"second mass", node_field::second_mass},
+    NamedNodeFields{"correction", node_field::correction},
     NamedNodeFields{"heat capacity", node_field::heat_capacity},
     NamedNodeFields{"heat", node_field::heat},
     NamedNodeFields{"heat flow", node_field::heat_flow},
@@ -77,12 +81,14 @@ inline constexpr NodeFields momentum_mass_force = node_field::momentum | node_fi
 inline constexpr NodeFields force = node_field::force;  ///< momentum and mass of the records stay zero
 inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_field::second_mass;
 inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
+inline constexpr NodeFields correction = node_field::correction;
 inline constexpr NodeFields heat = node_field::heat_capacity | node_field::heat;
 inline constexpr NodeFields heat_flow = node_field::heat_flow | node_field::unresolved_heat;
 }  // namespace mapped
 
 constexpr bool maps_momentum(NodeFields f) {
-  return f.includes(node_field::momentum) || f.includes(node_field::second_momentum);
+  return f.includes(node_field::momentum) || f.includes(node_field::second_momentum) ||
+         f.includes(node_field::correction);
 }
 constexpr bool maps_mass(NodeFields f) {
   return f.includes(node_field::mass) || f.includes(node_field::second_mass);

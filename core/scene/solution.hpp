@@ -14,7 +14,7 @@ enum class Scheme { usf, usl, musl };
 
 enum class Integration { explicit_dynamics, implicit };
 
-enum class Transfer { flip, pic, apic, tpic, aflip, xpic };
+enum class Transfer { flip, pic, apic, tpic, aflip, xpic, fmpm };
 
 struct TimeStepInput {
   double factor = 0.9;            ///< of the critical step, (0, 1]
@@ -87,7 +87,8 @@ struct SolutionInput {
   Scheme scheme = Scheme::musl;
   Transfer transfer = Transfer::flip;
   double flip_fraction = 1;  ///< 1 FLIP ... 0 PIC
-  int xpic_order = 2;
+  int xpic_order = 2;        ///< of XPIC and FMPM
+  int xpic_interval = 1;     ///< steps from one correction by XPIC or FMPM to the next; FLIP in between
   Integration integration = Integration::explicit_dynamics;
   bool near_boundary_stop =
       false;            ///< write a restart file and leave when a particle nears the grid's bounds

@@ -92,8 +92,10 @@ MemoryNeed memory_need(const Model& model) {
   const BrickGrid& grid = *model.grid;
   constexpr double place = sizeof(Brick) + 64;  // and its entry in the table of coordinates
   const double arrays = array_doubles(grid);
-  const double motion =
-      model.scene->solution.scheme == Scheme::musl ? motion_width * grid.shape().nodes() : 0;
+  const SolutionInput& solution = model.scene->solution;
+  double kept = solution.scheme == Scheme::musl ? motion_width : 0;  // doubles of a node between passes
+  if (solution.transfer == Transfer::xpic || solution.transfer == Transfer::fmpm) kept += node_doubles;
+  const double motion = kept * grid.shape().nodes();
   need.bricks = (place + sizeof(double) * (arrays + motion)) * grid.owned() +
                 (place + sizeof(double) * arrays) * grid.ghosts();
   for (const Brick& b : grid.bricks()) {

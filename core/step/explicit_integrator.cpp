@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "core/step/speeds.hpp"
+#include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
 
@@ -11,8 +14,17 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   Passes& pass = *passes_;
   Conduction& heat = *heat_;
   std::vector<Phase> step;
-  const auto then = [&](const char* name, std::function<void()> run) {
-    step.push_back({name, std::move(run)});
+  const auto then = [&](std::string name, std::function<void()> run) {
+    step.push_back({std::move(name), std::move(run)});
+  };
+  // XPIC and FMPM, before the particles take velocities.
+  const int orders = orders_of(model_.scene->solution);
+  const auto correct_velocities = [&] {
+    for (int order = 2; order <= orders; ++order) {
+      then(fmt::format("correct velocities, order {}", order),
+           [&, order] { pass.correct_velocities(order); });
+      then(fmt::format("exchange, order {}", order), [&] { pass.finish_correction(); });
+    }
   };
 
   if (heat.any()) {
@@ -27,6 +39,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      correct_velocities();
       then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
       then("exchange again", [&] { pass.finish_exchange(); });
       then("stress and motion", [&] { pass.update_stress_and_move(); });
@@ -36,11 +49,13 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       then("exchange", [&] { pass.finish_exchange(); });
       then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
       then("exchange again", [&] { pass.finish_exchange(); });
+      correct_velocities();
       then("velocities and motion", [&] { pass.update_velocities_and_move(); });
       break;
     case Scheme::usl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      correct_velocities();
       then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
   }

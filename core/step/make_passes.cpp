@@ -34,6 +34,7 @@ NodeBlockShape node_block_of(const Scene& scene) {
 NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
   NodeArraySet arrays{NodeArray::first};
   if (conducts || scene.solution.scheme != Scheme::usl) arrays.add(NodeArray::second);
+  if (orders_of(scene.solution) > 1) arrays.add(NodeArray::third);
   return arrays;
 }
 

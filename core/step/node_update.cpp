@@ -62,6 +62,7 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
 }
 template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, double*);
+template void sum_contributions<NodeArray::third>(const BrickGrid&, const SharedNodes&, Slot, double*);
 
 BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape& shape, BrickCoord brick)
     : shape_(shape) {
@@ -266,6 +267,54 @@ void second_velocities(double mass_cutoff, const double* momenta, const Boundary
           m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
   }
   constrain_second_velocity(faces, record);
+}
+
+void begin_correction(bool of_start, const BoundaryFaces& faces, int nodes, const double* motion,
+                      double* sum) {
+  for (int n = 0; n < nodes; ++n) {
+    const MotionRecord<const double> from{motion + node_doubles * n};
+    const Motion to{sum + node_doubles * n};
+    for (int a = 0; a < 3; ++a) {
+      to.velocity()[a] = from.velocity()[a];
+      to.increment()[a] = from.velocity()[a] - (of_start ? from.increment()[a] : 0);
+    }
+    to.mass() = from.mass();
+    to.omitted_share() = 0;
+  }
+  faces.for_each_node(sum, [](int axis, int, Boundary boundary, double* at) {
+    if (boundary == Boundary::rigid_wall && Motion{at}.velocity()[axis] == 0)
+      Motion{at}.increment()[axis] = 0;
+  });
+  faces.fill(sum);
+}
+
+void continue_correction(const BoundaryFaces& faces, double* momenta, int nodes, double* sum) {
+  // Held components keep dv = 0, as those at rest at a rigid wall do.
+  faces.for_each_node(sum, [&](int axis, int, Boundary boundary, double* at) {
+    double* momentum = momenta + (at - sum);
+    for (int a = 0; a < 3; ++a) {
+      const bool along = a == axis && (boundary == Boundary::symmetry || Motion{at}.velocity()[a] == 0);
+      if (boundary != Boundary::fixed && !along) continue;
+      momentum[a] = 0;
+      Motion{at}.increment()[a] = 0;
+    }
+  });
+  for (int n = 0; n < nodes; ++n) {
+    const Motion at{sum + node_doubles * n};
+    const double m = at.mass();
+    if (!(m > 0)) continue;
+    for (int a = 0; a < 3; ++a) {
+      at.increment()[a] -= momenta[node_doubles * n + a] * (1 / m);
+      at.velocity()[a] += at.increment()[a];
+    }
+  }
+  faces.for_each_node(sum, [](int axis, int sign, Boundary boundary, double* at) {
+    double *v = Motion{at}.velocity(), *dv = Motion{at}.increment();
+    if (boundary != Boundary::rigid_wall || !(sign * v[axis] > 0)) return;
+    dv[axis] -= v[axis];
+    v[axis] = 0;
+  });
+  faces.fill(sum);
 }
 
 void regularised_velocities(const Vec3<double>& fall, const BoundaryFaces& faces, int nodes, double* record) {

@@ -44,8 +44,8 @@ class SharedNodes {
 };
 
 /// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
-/// node_doubles for the second array, all components for the first. A brick that does not exist contributes
-/// zeros, so every copy of a node adds the same numbers.
+/// node_doubles for the second and third array, all components for the first. A brick that does not exist
+/// contributes zeros, so every copy of a node adds the same numbers.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
 
@@ -125,6 +125,18 @@ void recall_motion(int nodes, const double* motion, double* record);
 /// the start of the step (momenta = record), or MUSL's re-mapped one.
 void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
                        double* record);
+
+/// A node's sum of velocities in a correction (core/transfer/corrected.hpp), in a Motion: velocity v(l),
+/// increment dv(l), and its mass.
+///
+/// Order 1, from its updated Motion: v(1) = v + dt a; dv(1) is that velocity too or, with `of_start`, the one
+/// at the start of the step. What a wall holds is zero in every order.
+void begin_correction(bool of_start, const BoundaryFaces& faces, int nodes, const double* motion,
+                      double* sum);
+/// The next order, from `momenta`, the sums of m S dv(l - 1) over the particles: dv(l) = dv(l - 1) -
+/// momenta/m. A rigid wall admits no sum that leads through it: there dv(l) brings the node to rest, and it
+/// stays at rest in the orders that follow. Changes `momenta`.
+void continue_correction(const BoundaryFaces& faces, double* momenta, int nodes, double* sum);
 
 /// Sets USL's strain velocity: the velocity at the end of the step less the omitted share of the increment,
 /// excluding gravity's part `fall`. Called after the particles have taken their increment.

@@ -27,6 +27,11 @@ class Passes {
   virtual void map_momentum_mass() = 0;
   virtual void finish_exchange() = 0;
 
+  /// XPIC and FMPM: momentum of order `order`, from 2, to grid, once the forces are there. Nothing happens in
+  /// steps without correction.
+  virtual void correct_velocities(int order) = 0;
+  virtual void finish_correction() = 0;
+
   /// MUSL: nodal equation of motion, v += dv, and the new momentum back to the nodes.
   virtual void update_velocities_and_map_back() = 0;
   /// MUSL: strain with the re-mapped velocity, stress, then move.

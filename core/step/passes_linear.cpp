@@ -1,10 +1,11 @@
 #include "core/shape/linear.hpp"
 #include "core/step/passes_with.hpp"
-#include "core/transfer/flip.hpp"
+#include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
 
 template std::unique_ptr<Passes> make_passes_with<Linear, Flip>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<Linear, FlipPic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Linear, Corrected>(Model&, NodeHalo&);
 
 }  // namespace mpm::core

@@ -18,6 +18,7 @@
 #include "core/step/prefetch.hpp"
 #include "core/step/speeds.hpp"
 #include "core/threads.hpp"
+#include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
 
@@ -31,11 +32,16 @@ class PassesWith final : public Passes {
     dt = length;
     transfer_step_ = {dt / model_.clock.critical_dt};
     loads_.begin_step(model_.clock.time, dt);
+    begin_corrections();
   }
 
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
   void finish_exchange() override { halo_.end(*model_.grid); }
+  void correct_velocities(int order) override;
+  void finish_correction() override {
+    if (correcting_) halo_.end(*model_.grid);
+  }
   void update_velocities_and_map_back() override;
   void update_stress_and_move() override;
   void update_stress_and_map_forces() override;
@@ -50,9 +56,13 @@ class PassesWith final : public Passes {
   /// Whether particles have domains that deform with them.
   static constexpr bool deforms = requires { &S::template deform<Row[9]>; };
   static constexpr bool settles = requires { &S::settle; };
+  /// Whether the transfer corrects velocities (core/transfer/corrected.hpp).
+  static constexpr bool corrects = corrects_velocities<T>;
+  struct Nothing {};
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
     typename S::Field field;
+    [[no_unique_address]] std::conditional_t<corrects, typename S::Field, Nothing> corrected;
   };
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
@@ -77,6 +87,7 @@ class PassesWith final : public Passes {
   template <NodeFields what>
   void fold_at_walls(Slot s, double* contributions);
   void update_nodes_of_brick(Slot s, Scratch& at);
+  void sum_and_update_nodes(Slot s, Scratch& at);
   void velocities_of_brick(Slot s, Scratch& at);
   double velocities_and_motion_of_brick(Slot s, Scratch& at);
   /// Whether the particles' velocities are already those at the start of the next step.
@@ -84,7 +95,35 @@ class PassesWith final : public Passes {
   template <bool moves, class F>
   void stress_of_brick(Slot s, Velocities velocities, Scratch& at, F prefetch_nodes);
 
+  // Corrections of the velocities (correct_velocities.hpp).
+  void begin_corrections();
+  void add_order(Slot s, int order, Scratch& at);
+  void map_increments(Slot s, Scratch& at);
+  /// The nodes' sums of velocities v(l), in MotionRecords.
+  double* corrected_nodes(Slot s) {
+    return corrected_.data() +
+           static_cast<std::size_t>(node_doubles * shared_.nodes()) * static_cast<std::size_t>(s);
+  }
+  /// Whether particles move with the corrected velocities in this step.
+  bool moves_corrected() const {
+    if constexpr (corrects) return correcting_ && transfer_.of_end;
+    return false;
+  }
+  /// The same as a field. MUSL moves particles in a later pass, by the motion kept for it.
+  const typename S::Field& moving_field(const Scratch& at) const {
+    if constexpr (corrects) {
+      if (moves_corrected() && scheme_ != Scheme::musl) return at.corrected;
+    }
+    return at.field;
+  }
+  /// The nodes' velocities and masses that move a brick's particles.
+  const double* moving_nodes(Slot s, const Scratch& at) {
+    return moves_corrected() ? corrected_nodes(s) : at.nodes.data();
+  }
+
   // Operations on a block or a batch.
+  void take_velocities(const BrickFrame& frame, const Place& place, const ColumnLayout& layout, double* block,
+                       Scratch& at) const;
   void update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place, double* block,
                          int used, Scratch& at);
   void move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at);
@@ -120,6 +159,9 @@ class PassesWith final : public Passes {
   NodeForces forces_;
   Loads loads_;
   T transfer_;
+  const Scheme scheme_;
+  const int orders_;
+  bool correcting_ = false;  ///< in this step
   TransferStep transfer_step_;
   double dt = 0;           ///< of the current step
   double velocity_limit_;  ///< infinite without LimitVelocity
@@ -129,6 +171,7 @@ class PassesWith final : public Passes {
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
+  AlignedDoubles corrected_;      ///< by slot; XPIC, FMPM: corrected_nodes()
   std::vector<double> critical_;  ///< by slot; USF: largest critical speed of the stress pass
 };
 
@@ -144,7 +187,9 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
       halo_(halo),
       shared_(model.grid->shape()),
       loads_(model),
-      transfer_(model.scene->solution) {
+      transfer_(model.scene->solution),
+      scheme_(model.scene->solution.scheme),
+      orders_(orders_of(model.scene->solution)) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = solution.gravity;
   forces_.damping = solution.damping;
@@ -320,17 +365,41 @@ void PassesWith<S, T>::map_to_grid() {
 
 // --- nodes ------------------------------------------------------------------------------------------------
 
-/// Sums the first array and updates the nodes; the result in at.nodes follows MotionRecord, and at.field
-/// holds it.
+/// Sums what the scheme has mapped and updates the nodes; the result in at.nodes follows MotionRecord.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
+void PassesWith<S, T>::sum_and_update_nodes(Slot s, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
   sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
+  // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
+  if (scheme_ == Scheme::usf) sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
   update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
+}
+
+/// The same; at.field holds the result too, and at.corrected the corrected velocities.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
+  sum_and_update_nodes(s, at);
   at.field.take_motion(at.nodes.data());
+  if constexpr (corrects) {
+    if (!correcting_) return;
+    add_order(s, orders_, at);
+    at.corrected.take_motion(corrected_nodes(s));
+  }
 }
 
 // --- particles --------------------------------------------------------------------------------------------
+
+/// What the transfer gives the particles.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::take_velocities(const BrickFrame& frame,
+                                                                     const Place& place,
+                                                                     const ColumnLayout& layout,
+                                                                     double* block, Scratch& at) const {
+  if constexpr (corrects) {
+    if (correcting_) return transfer_.template take_velocities<S>(place, layout, at.corrected, block);
+  }
+  transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
+}
 
 /// v += dv; the work of loads uses the velocities before the update.
 template <ShapePolicy S, TransferPolicy T>
@@ -342,13 +411,13 @@ void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int bo
   const BodyMotion& motion = loads_.motion(body);
   if (motion.kind == BodyMotion::Kind::rigid) {
     std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
-    transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
+    take_velocities(frame, place, layout, block, at);
     integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), dt, block, used, at);
     return;
   }
   const bool falls = forces_.gravity != Vec3<double>{};
   if (falls) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
-  transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
+  take_velocities(frame, place, layout, block, at);
   if (falls) correct_work_of_gravity(forces_.gravity, dt, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion.velocity, block, used, at);
@@ -404,8 +473,9 @@ template <ShapePolicy S, TransferPolicy T>
   // the velocity that moves the particles.
   typename S::Field moving;
   if constexpr (deforms) {
+    const double* nodes = moving_nodes(s, at);
     for (int n = 0; n < shared_.nodes(); ++n)
-      std::copy_n(at.nodes.data() + node_doubles * n + Motion::velocity_at, 3,
+      std::copy_n(nodes + node_doubles * n + Motion::velocity_at, 3,
                   at.sums.data() + node_doubles * n + Motion::strain_velocity_at);
     moving.take_strain(frame, at.sums.data());
   }
@@ -415,7 +485,7 @@ template <ShapePolicy S, TransferPolicy T>
                    second.next();
                    const Place place(frame, layout, block);
                    update_velocities(s, frame, body, place, block, used, at);
-                   move(body, {place, at.field}, block, used, at);
+                   move(body, {place, moving_field(at)}, block, used, at);
                    if constexpr (deforms) S::gradient(frame, place, moving, at.batch.gradient, 0);
                    update_domains(body, frame, layout, 0, block, used, at);
                    for (int l = 0; l < used; l += real_width)
@@ -474,7 +544,10 @@ template <bool moves, class F>
     if constexpr (moves) {
       const MotionOfBlock<S> motion{at.places[b], at.field};
       motion.gradient(frame, batch.gradient, block_lanes * b);
-      move(body, motion, batch.block[b], used, at);
+      if (&moving_field(at) == &at.field)
+        move(body, motion, batch.block[b], used, at);
+      else
+        move(body, {at.places[b], moving_field(at)}, batch.block[b], used, at);
       update_domains(body, frame, *batch.layout, b, batch.block[b], used, at);
     } else {
       S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
@@ -507,7 +580,7 @@ void PassesWith<S, T>::update_velocities_and_map_back() {
   motion_.resize(static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(model_.grid->owned()));
   map_bricks<mapped::momentum>([&](Slot s, Scratch& at) {
     update_nodes_of_brick(s, at);
-    keep_motion(shared_.nodes(), at.nodes.data(), motion(s));
+    keep_motion(shared_.nodes(), moving_nodes(s, at), motion(s));
     auto nodes = prefetch_nodes<NodeArray::first>(s);
     SpreadPrefetch room = prefetch_motion(s);
     const BrickFrame frame = this->frame(s);
@@ -559,11 +632,7 @@ void PassesWith<S, T>::update_velocities_and_move() {
   const BrickGrid& grid = *model_.grid;
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    // Sums forces; momentum and mass are zero here, the second array holds them.
-    sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
-    sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
-    update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
-    at.field.take_motion(at.nodes.data());
+    update_nodes_of_brick(s, at);
     // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
     // particles.
     at.statistics.fastest = std::max(at.statistics.fastest, critical_[static_cast<std::size_t>(s)] +
@@ -600,6 +669,12 @@ StepStatistics PassesWith<S, T>::take_statistics() {
   }
   return total;
 }
+
+}  // namespace mpm::core
+
+#include "core/step/correct_velocities.hpp"
+
+namespace mpm::core {
 
 template <class S, class T>
 std::unique_ptr<Passes> make_passes_with(Model& model, NodeHalo& halo) {

@@ -6,6 +6,7 @@
 
 #include "core/shape/list.hpp"
 #include "core/transfer/affine.hpp"
+#include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
 
@@ -32,8 +33,10 @@ auto with_transfer(const SolutionInput& solution, F f) {
     case Transfer::apic: return affine(std::type_identity<Apic>());
     case Transfer::tpic: return affine(std::type_identity<Tpic>());
     case Transfer::aflip: return affine(std::type_identity<Aflip>());
-    default: throw std::logic_error("a transfer without a policy");
+    case Transfer::xpic:
+    case Transfer::fmpm: return f(std::type_identity<Corrected>());
   }
+  throw std::logic_error("a transfer without a policy");
 }
 
 }  // namespace mpm::core

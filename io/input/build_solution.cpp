@@ -46,6 +46,7 @@ core::Transfer transfer(std::string_view word) {
   if (word == "TPIC") return core::Transfer::tpic;
   if (word == "AFLIP") return core::Transfer::aflip;
   if (word == "XPIC") return core::Transfer::xpic;
+  if (word == "FMPM") return core::Transfer::fmpm;
   return core::Transfer::flip;
 }
 
@@ -147,6 +148,7 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
     node->report(context.diagnostics, "flip_fraction",
                  fmt::format("has a meaning with transfer FLIP only, not with {}", node->word("transfer")));
   solution.xpic_order = node->small_integer("xpic_order");
+  solution.xpic_interval = node->small_integer("xpic_interval");
   const auto value_of = [&](std::string_view child, std::string_view attribute) -> std::optional<double> {
     const std::optional<Node> found = node->child(child);
     return found ? found->given_real(attribute) : std::nullopt;

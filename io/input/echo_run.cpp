@@ -43,6 +43,7 @@ std::string_view word(core::Transfer transfer) {
     case core::Transfer::tpic: return "TPIC";
     case core::Transfer::aflip: return "AFLIP";
     case core::Transfer::xpic: return "XPIC";
+    case core::Transfer::fmpm: return "FMPM";
   }
   return {};
 }
@@ -190,6 +191,7 @@ void echo_solution(XmlWriter& w, const core::SolutionInput& solution) {
   w.text("transfer", word(solution.transfer));
   w.number("flip_fraction", solution.flip_fraction);
   w.integer("xpic_order", solution.xpic_order);
+  w.integer("xpic_interval", solution.xpic_interval);
   const auto value = [&](std::string_view name, std::string_view attribute, double number) {
     const auto element = w.element(name);
     w.number(attribute, number);

@@ -225,6 +225,7 @@ void ReferenceStepper::step_with() {
     update_stresses<Support>(dt);
   }
   integrate_momentum(dt);
+  if (corrects()) add_orders<Support>();
   grid_to_particles<Support>(dt);
   if (!usf) {
     final_velocities();
@@ -234,6 +235,7 @@ void ReferenceStepper::step_with() {
   if (case_.shape == ReferenceShape::cpdi2)
     for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].corner = next_corner_[n];
   time_ += dt;
+  ++steps_;
 }
 
 template <>
@@ -368,6 +370,7 @@ void ReferenceStepper::integrate_momentum(double dt) {
     const double left_out = node.m < floor ? 1 - node.m / floor : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double p_old = node.p[a];
+      node.start[a] = p_old / node.m;
       node.p[a] += node.f[a] * dt;
       const double f_internal = node.f[a] - node.m * case_.gravity[a];
       node.w[a] = (node.p[a] - left_out * f_internal * dt) / node.m;
@@ -375,12 +378,52 @@ void ReferenceStepper::integrate_momentum(double dt) {
       if (kind != Stop::none) {
         node.f[a] = kind == Stop::wall && case_.wall_reaction ? -p_old / dt : 0.0;
         node.p[a] = node.w[a] = 0;
+        node.held[a] = true;
       }
       node.v[a] = node.p[a] / node.m;
       node.a[a] = node.f[a] / node.m;
       if (case_.scheme == ReferenceScheme::musl) node.w[a] = 0;  // a sum to come
     }
   });
+}
+
+/// XPIC and FMPM: u = sum of du(l), du(l) = (1 - S+ S) du(l - 1) on the nodes, where walls hold what they
+/// held in the equation of motion.
+template <class Support>
+void ReferenceStepper::add_orders() {
+  for_active_nodes([&](const Index&, Node& node) {
+    node.u = node.v;
+    node.du = case_.transfer == ReferenceTransfer::fmpm ? node.v : node.start;
+    for (std::size_t a = 0; a < 3; ++a)
+      if (node.held[a]) node.du[a] = 0;
+  });
+  for (int order = 2; order <= case_.order; ++order) {
+    for (Node& node : grid_) node.q = {};
+    for (const auto& particle : case_.particles) {
+      const Support at = support<Support>(particle);
+      Vector seen{};
+      for (std::size_t n = 0; n < at.count; ++n)
+        for (std::size_t a = 0; a < 3; ++a) seen[a] += at.value(n, a) * grid_[at.node[n]].du[a];
+      for (std::size_t n = 0; n < at.count; ++n)
+        for (std::size_t a = 0; a < 3; ++a) grid_[at.node[n]].q[a] += particle.m * at.value(n, a) * seen[a];
+    }
+    for_active_nodes([&](const Index& index, Node& node) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (node.held[a]) {
+          node.du[a] = 0;
+          continue;
+        }
+        node.du[a] -= node.q[a] / node.m;
+        const double before = node.u[a];
+        node.u[a] += node.du[a];
+        if (stop(index, a, node.u[a]) == Stop::wall) {
+          node.du[a] = -before;
+          node.u[a] = 0;
+          node.held[a] = true;
+        }
+      }
+    });
+  }
 }
 
 /// 2-42, 2-43, and the sum of 2-45.
@@ -390,12 +433,13 @@ void ReferenceStepper::grid_to_particles(double dt) {
     auto& particle = case_.particles[index];
     const Support at = support<Support>(particle);
     next_x_[index] = particle.x;
+    if (corrects()) particle.v = {};
     for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
       if (!node.active) continue;
       for (std::size_t a = 0; a < 3; ++a) {
-        next_x_[index][a] += dt * at.value(n, a) * node.v[a];
-        particle.v[a] += dt * at.value(n, a) * node.a[a];
+        next_x_[index][a] += dt * at.value(n, a) * moving(node)[a];
+        particle.v[a] += at.value(n, a) * (corrects() ? node.u[a] : dt * node.a[a]);
       }
     }
     if (case_.scheme == ReferenceScheme::usf) {
@@ -403,7 +447,7 @@ void ReferenceStepper::grid_to_particles(double dt) {
       for (std::size_t n = 0; n < at.count; ++n)
         for (std::size_t a = 0; a < 3; ++a)
           for (std::size_t b = 0; b < 3; ++b)
-            if (grid_[at.node[n]].active) L[a][b] += grid_[at.node[n]].v[a] * at.slope(n, a)[b];
+            if (grid_[at.node[n]].active) L[a][b] += moving(grid_[at.node[n]])[a] * at.slope(n, a)[b];
       deform_domain(case_.shape, dt, L, particle);
     }
     if (case_.shape == ReferenceShape::cpdi2) move_corners(index, dt);
@@ -427,7 +471,7 @@ void ReferenceStepper::move_corners(std::size_t index, double dt) {
     for (std::size_t n = 0; n < support.count; ++n) {
       const Node& node = grid_[number(support.entry[n].node)];
       for (std::size_t a = 0; a < 3; ++a)
-        if (node.active) moved[c][a] += dt * support.entry[n].value[a] * node.v[a];
+        if (node.active) moved[c][a] += dt * support.entry[n].value[a] * moving(node)[a];
     }
   }
   if (!(smallest_corner(moved) > 0)) throw std::runtime_error("a particle's domain is tangled");
@@ -444,7 +488,9 @@ void ReferenceStepper::final_velocities() {
   for_active_nodes([&](const Index& index, Node& node) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (case_.scheme == ReferenceScheme::musl) node.w[a] /= node.m;
-      const bool held = case_.wall_reaction && node.v[a] == 0 &&
+      // MUSL's stress update knows the nodes by the velocity with which they move.
+      const Vector& known = case_.scheme == ReferenceScheme::musl ? moving(node) : node.v;
+      const bool held = case_.wall_reaction && known[a] == 0 &&
                         (stop(index, a, 1) == Stop::wall || stop(index, a, -1) == Stop::wall);
       if (held || stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
     }

@@ -1,8 +1,8 @@
 // The oracle: a naive, textbook material point method, one struct per particle and one dense grid, in plain
-// double. Steps of thesis 2.2.2 (USF, USL, MUSL), FLIP transfer, trilinear shape functions (2-17) or those of
-// reference_shape.hpp, stress update 2.4.1, J2 return 2.4.3, Mie-Grueneisen 2-130, bulk viscosity 2-69. It
-// shares no code with the production kernels. Limits: one material, one rank, uniform grid, no contact, no
-// failure. Shown by tests/core/reference.
+// double. Steps of thesis 2.2.2 (USF, USL, MUSL), transfers FLIP, XPIC and FMPM, trilinear shape functions
+// (2-17) or those of reference_shape.hpp, stress update 2.4.1, J2 return 2.4.3, Mie-Grueneisen 2-130, bulk
+// viscosity 2-69. It shares no code with the production kernels. Limits: one material, one rank, uniform
+// grid, no contact, no failure. Shown by tests/core/reference.
 //
 // Symbols: S_ip, G_ip shape function and gradient; m_i, p_i, f_i mass, momentum, force of a node; index p a
 // particle. Units are the user's; the Taylor bar uses mm, g, ms, hence MPa.
@@ -19,6 +19,7 @@
 namespace mpm::tests {
 
 enum class ReferenceScheme { usf, usl, musl };
+enum class ReferenceTransfer { flip, xpic, fmpm };
 
 struct ReferenceMaterial {
   double density = 0;  ///< rho_0
@@ -78,6 +79,9 @@ struct ReferenceCase {
   /// beyond a fixed or symmetry face. The remedy of USL below takes m_i g for gravity's part in both.
   bool nodal_gravity = false;
   ReferenceScheme scheme = ReferenceScheme::musl;
+  ReferenceTransfer transfer = ReferenceTransfer::flip;
+  int order = 2;                                                ///< of XPIC and FMPM; 1 is PIC
+  int interval = 1;                                             ///< steps; FLIP in between
   double dt_factor = 0.5;                                       ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
   /// USL only: for the strain rate a node's internal force is divided by at least this times rho_0 * cell
@@ -114,10 +118,14 @@ class ReferenceStepper {
   enum class Stop { none, held, wall };
   struct Node {
     double m = 0;
-    Vector p{}, f{};      ///< momentum and force
-    Vector v{}, a{};      ///< p^{k+1}/m and f/m
-    Vector w{};           ///< velocity of the strain rate
-    bool active = false;  ///< heavier than the cutoff
+    Vector p{}, f{};             ///< momentum and force
+    Vector v{}, a{};             ///< p^{k+1}/m and f/m
+    Vector w{};                  ///< velocity of the strain rate
+    Vector start{};              ///< velocity at the start of the step
+    Vector u{}, du{};            ///< XPIC, FMPM: sum of the orders so far, and the latest of them
+    Vector q{};                  ///< momentum of the particles' share of du
+    std::array<bool, 3> held{};  ///< by a wall
+    bool active = false;         ///< heavier than the cutoff
   };
   /// The eight nodes of a cell.
   struct CellSupport {
@@ -155,6 +163,16 @@ class ReferenceStepper {
   void add_force(const ReferenceParticle& particle, const Support& at);
   void initial_velocities();
   void integrate_momentum(double dt);
+  /// Whether this step is one of XPIC or FMPM.
+  bool corrects() const {
+    return case_.transfer != ReferenceTransfer::flip && (steps_ + 1) % case_.interval == 0;
+  }
+  template <class Support>
+  void add_orders();
+  /// The velocity with which particles move.
+  const Vector& moving(const Node& node) const {
+    return corrects() && case_.transfer == ReferenceTransfer::fmpm ? node.u : node.v;
+  }
   template <class Support>
   void grid_to_particles(double dt);
   void move_corners(std::size_t index, double dt);
@@ -173,6 +191,7 @@ class ReferenceStepper {
   std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
   std::vector<DomainCorners> next_corner_;  ///< for cpdi2
   double time_ = 0;
+  int steps_ = 0;  ///< completed
 };
 
 /// The copper Taylor bar of thesis 3.5.1 and 5.3.3: a full cylinder, 25.4 long and 7.6 across, at 190 mm/ms

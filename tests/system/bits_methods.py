@@ -9,7 +9,7 @@ from _mpm import INPUT_ERROR, Case
 
 # Those that affine transfers do not go with, and the others.
 PLAIN_SHAPES, AFFINE_SHAPES = ("linear", "SGMP", "CPDI", "CPDI2"), ("uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline")
-PLAIN = ("FLIP", "PIC", "FLIP 0.95")
+PLAIN = ("FLIP", "PIC", 'FLIP flip_fraction="0.95"', 'XPIC xpic_order="3" xpic_interval="3"', 'FMPM xpic_order="4"')
 AFFINE = ("APIC", "TPIC", "AFLIP")
 SCHEMES = ("MUSL", "USF", "USL")
 SHAPES = PLAIN_SHAPES + AFFINE_SHAPES
@@ -24,10 +24,10 @@ BODIES = [_mpm.block("left", (0.2, 5.2, 0.4), (3, 3, 3), (-2, 3, -4), of="warm")
 GRID = _mpm.grid((0, 0, 0), (12, 9, 8), "200140")
 
 
-def scene(shape, transfer, algorithm, end=END, bodies=BODIES, gravity=-9.8):
-    word, _, fraction = transfer.partition(" ")
-    attributes = f'transfer="{word}"' + (f' flip_fraction="{fraction}"' if fraction else "")
-    return _mpm.scene(bodies, GRID.replace("<Grid>", f'<Grid shape="{shape}">'),
+def scene(shape, transfer, algorithm, end=END, bodies=BODIES, gravity=-9.8, grid=GRID):
+    word, _, more = transfer.partition(" ")
+    attributes = f'transfer="{word}" {more}'
+    return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'),
                       _mpm.solution(end, algorithm, 0.4, attributes, f'<Gravity ax="0" ay="0" az="{gravity}"/>'), MATERIALS,
                       f'<Console print_time="{END / 2}"/><Restart time_interval="{END / 2}"/>')
 
@@ -44,6 +44,47 @@ class Methods(Case):
                 halfway = _mpm.restarts(self.folder / f"other{n}")[0]
                 self.assertEqual(self.run_in(f"again{n}", [halfway]).state, alone)
 
+    def test_restarts_between_corrections(self):
+        """Wherever a run stops between two steps that correct, it goes on to the same bits."""
+        for algorithm in SCHEMES:
+            text = scene("QuadraticBSpline", 'FMPM xpic_order="3" xpic_interval="3"', algorithm)
+            alone = self.run_in(f"alone {algorithm}", [self.write(text)]).state
+            stops = {}
+            for parts in (3, 5, 7, 11, 13):
+                if len(stops) == 3:
+                    break
+                folder = f"stops {algorithm} {parts}"
+                self.run_in(folder, [self.write(text.replace(f'time_interval="{END / 2}"', f'time_interval="{END / parts}"'))])
+                for file in _mpm.restarts(self.folder / folder):
+                    stops.setdefault(int(file.stem.rpartition("_")[2]) % 3, file)
+            self.assertEqual(set(stops), {0, 1, 2})
+            for rest, file in stops.items():
+                with self.subTest(algorithm=algorithm, steps_since_the_last=rest):
+                    self.assertEqual(self.run_in(f"again {algorithm} {rest}", [file], ranks=1 + rest).state, alone)
+
+    def test_energy_of_a_collision(self):
+        """Two blocks collide and part. The energy that FMPM and XPIC lose falls from order to order; that of order 1 is
+        PIC's; every tenth step costs less than every step."""
+        blocks = [_mpm.block("left", (2, 3, 3), (3, 3, 3), (4, 0, 0), of="warm"),
+                  _mpm.block("right", (6, 3.5, 2.5), (3, 3, 3), (-2, 0, 0), of="cold")]
+        free = GRID.replace("200140", "000000")
+
+        def lost(shape, transfer):
+            self.run_in("out", [self.write(scene(shape, transfer, "MUSL", 0.5, blocks, 0, free))])
+            return -_mpm.summary(self.folder / "out")["energy"]["relative_drift"]
+
+        for shape in ("linear", "QuadraticBSpline"):
+            pic, flip = lost(shape, "PIC"), lost(shape, "FLIP")
+            for transfer in ("XPIC", "FMPM"):
+                with self.subTest(shape=shape, transfer=transfer):
+                    orders = [lost(shape, f'{transfer} xpic_order="{n}"') for n in (1, 2, 4, 8)]
+                    self.assertEqual(orders[0], pic)
+                    for lower, higher in zip(orders, orders[1:]):
+                        self.assertLess(higher, 0.9 * lower, f"{orders}")
+                    self.assertGreater(orders[-1], flip)
+                    seldom = lost(shape, f'{transfer} xpic_order="2" xpic_interval="10"')
+                    self.assertTrue(flip < seldom < 0.9 * orders[1], f"{flip} {seldom} {orders}")
+
     def test_energy(self):
         """A block vibrates freely in its longest mode: FLIP keeps its energy, PIC loses it, AFLIP loses little of it."""
         bar = _mpm.block("bar", (1.3, 2.2, 2.1), (8, 3, 3), ("0.5*cos(pi*(x-1.3)/8)", 0, 0), of="warm")
@@ -56,11 +97,24 @@ class Methods(Case):
             least, most = {"FLIP": (-0.001, 0.06), "PIC": (0.5, 1), "AFLIP": (0, 0.12)}[transfer]
             self.assertTrue(least < share < most, f"{shape} with {transfer}: {share}; all: {lost}")
 
+    def test_energy_of_rotation(self):
+        """A cube turns by a radian: what each transfer loses, in the order that docs/methods.md reports."""
+        cube = _mpm.block("cube", (3, 3, 3), (5, 5, 5), ("-(y-5.5)", "x-5.5", 0), of="warm")
+        free = _mpm.grid((0, 0, 0), (11, 11, 11))
+        transfers = ("FLIP", "AFLIP", "APIC", 'FMPM xpic_order="5"', 'FMPM xpic_order="2"', "PIC")
+        kept = []
+        for transfer in transfers:
+            self.run_in("out", [self.write(scene("QuadraticBSpline", transfer, "MUSL", 1, [cube], 0, free))])
+            kept.append(1 + _mpm.summary(self.folder / "out")["energy"]["relative_drift"])
+        for more, less in zip(kept, kept[1:]):
+            self.assertLess(less, 0.995 * more, f"{transfers}: {kept}")
+
     def test_what_a_method_carries(self):
         """No column that the method does not need."""
         said = {}
         for shape, transfer in (("linear", "FLIP"), ("SGMP", "FLIP"), ("QuadraticBSpline", "PIC"), ("uGIMP", "FLIP"),
-                                ("CPDI", "FLIP"), ("CPDI2", "FLIP"), ("CubicBSpline", "APIC")):
+                                ("CPDI", "FLIP"), ("CPDI2", "FLIP"), ("CubicBSpline", "APIC"),
+                                ("cpGIMP", 'FMPM xpic_order="5"')):
             outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL")), "--dry-run"])
             said[shape] = next(line for line in outcome.out.splitlines() if "bytes a particle" in line)
         plain = said["linear"]
@@ -70,6 +124,7 @@ class Methods(Case):
         self.assertEqual(bytes_of["uGIMP"], bytes_of["linear"] + 3 * 8)
         self.assertEqual(bytes_of["CPDI"], bytes_of["linear"] + 9 * 8)
         self.assertEqual(bytes_of["CPDI2"], bytes_of["linear"] + 24 * 8)
+        self.assertEqual(bytes_of["cpGIMP"], bytes_of["uGIMP"])
         self.assertEqual(bytes_of["CubicBSpline"], bytes_of["linear"] + 9 * 8)
 
     def test_pairs_that_do_not_go_together(self):
@@ -77,7 +132,7 @@ class Methods(Case):
             for transfer in AFFINE:
                 outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL"))], INPUT_ERROR)
                 self.assertIn(f'transfer="{transfer}">: does not go with this shape', outcome.err)
-        outcome = self.run_in("out", [self.write(scene("linear", "PIC 0.5", "MUSL"))], INPUT_ERROR)
+        outcome = self.run_in("out", [self.write(scene("linear", 'PIC flip_fraction="0.5"', "MUSL"))], INPUT_ERROR)
         self.assertIn("has a meaning with transfer FLIP only, not with PIC", outcome.err)
 
     def test_domains_wider_than_their_support(self):

@@ -136,6 +136,12 @@ inline core::Scheme scheme_of(ReferenceScheme s) {
                                      : core::Scheme::musl;
 }
 
+inline core::Transfer transfer_of(ReferenceTransfer t) {
+  return t == ReferenceTransfer::xpic   ? core::Transfer::xpic
+         : t == ReferenceTransfer::fmpm ? core::Transfer::fmpm
+                                        : core::Transfer::flip;
+}
+
 inline core::ShapeFunction shape_function_of(ReferenceShape s) {
   switch (s) {
     case ReferenceShape::linear: return core::ShapeFunction::linear;
@@ -199,6 +205,9 @@ struct SmallRun {
 
   explicit SmallRun(const ReferenceCase& c, std::size_t split = std::numeric_limits<std::size_t>::max()) {
     scene->solution.scheme = scheme_of(c.scheme);
+    scene->solution.transfer = transfer_of(c.transfer);
+    scene->solution.xpic_order = c.order;
+    scene->solution.xpic_interval = c.interval;
     scene->solution.end_time = 1e30;
     scene->solution.time_step.factor = c.dt_factor;
     scene->solution.gravity = {c.gravity[0], c.gravity[1], c.gravity[2]};
@@ -216,7 +225,8 @@ struct SmallRun {
     for (std::size_t f = 0; f < 6; ++f) g.boundary[f] = static_cast<core::Boundary>(c.boundary[f]);
     g.site = core::site_of(*scene);
     g.mass_cutoff = c.mass_cutoff * c.material.density * g.cell_volume();
-    model.grid = std::make_unique<core::BrickGrid>(g, core::node_block_of(*scene));
+    model.grid = std::make_unique<core::BrickGrid>(g, core::node_block_of(*scene),
+                                                   core::node_arrays_of(*scene, false));
     core::ColumnSet columns = core::ColumnSet::mechanics();
     columns.add(model.materials[0]->columns({}));
     columns.add(core::shape_columns(*scene));

@@ -148,6 +148,27 @@ TEST_CASE("Walls at the faces of bricks, one cell and two cells beyond them are 
   }
 }
 
+TEST_CASE("XPIC and FMPM: a block flies, hits walls and leaves them as the naive stepper lets it") {
+  int n = 0;
+  for (const ReferenceShape shape : reference_shapes) {
+    for (const ReferenceScheme scheme : schemes) {
+      for (const int boundary : {0, 1, 2, 4}) {
+        ReferenceCase c = shrinking_block(shape, scheme, boundary);
+        // In turns, so that each transfer and order meets each scheme and boundary with some of the shapes.
+        c.transfer = (n + n / 4 + n / 12) % 2 == 0 ? ReferenceTransfer::fmpm : ReferenceTransfer::xpic;
+        c.order = 1 + (n + n / 8) % 4;
+        c.interval = n % 5 == 2 ? 3 : 1;
+        ++n;
+        INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", boundary "
+                      << boundary << ", order " << c.order << " of every " << c.interval << " steps");
+        if (boundary != 0)
+          for (ReferenceParticle& p : c.particles) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
+        run_both(c, 30, 1e-9);
+      }
+    }
+  }
+}
+
 TEST_CASE("A plate one cell thick between two walls moves as the naive stepper moves it") {
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {

@@ -53,7 +53,7 @@ TEST_CASE("names and occurrences") {
       {"<Solution>",
        "<Solution colour=\"red\">",
        {"line 25: <Solution colour=\"red\">: no such attribute; expected algorithm, near_boundary_stop, "
-        "Integration, transfer, flip_fraction, xpic_order"}},
+        "Integration, transfer, flip_fraction, xpic_order, xpic_interval"}},
       {"dp=\"0.38\"",
        "Dp=\"0.38\"",
        {"line 13: <Geometry Dp=\"0.38\">: no such attribute; expected dp, x0, y0, z0, lx, ly, lz; did you "
@@ -268,11 +268,18 @@ TEST_CASE("known, but not implemented yet") {
         "set it "
         "to its default, expl"}},
       {"<Solution>", "<Solution flip_fraction=\"1.0\" xpic_order=\"2\">", {"ok"}},
+      {"<Solution>", "<Solution transfer=\"XPIC\">", {"ok"}},
+      {"<Solution>", "<Solution transfer=\"FMPM\" xpic_order=\"20\" xpic_interval=\"5\">", {"ok"}},
       {"<Solution>",
-       "<Solution transfer=\"XPIC\">",
-       {"line 25: <Solution transfer=\"XPIC\">: known, but not implemented yet; remove the attribute or set "
-        "it "
-        "to its default, FLIP"}},
+       "<Solution transfer=\"FMPM\" xpic_order=\"21\" xpic_interval=\"0\">",
+       {"line 25: <Solution xpic_order=\"21\">: expected a whole number in [1, 20]",
+        "line 25: <Solution xpic_interval=\"0\">: expected a whole number greater than 0"}},
+      {"<Solution>",
+       "<Solution transfer=\"XPIC\" xpic_order=\"0\">",
+       {"line 25: <Solution xpic_order=\"0\">: expected a whole number in [1, 20]"}},
+      {"<Solution>",
+       "<Solution transfer=\"FMPM\" flip_fraction=\"0.9\">",
+       {"line 25: <Solution flip_fraction=\"0.9\">: has a meaning with transfer FLIP only, not with FMPM"}},
       {"<Solution>", "<Solution flip_fraction=\"0.9\">", {"ok"}},
       {"<Solution>",
        "<Solution transfer=\"PIC\" flip_fraction=\"0.9\">",
@@ -468,7 +475,7 @@ TEST_CASE("all faults come at once, in the order of the lines") {
             "line 12: <Body material=\"ag\">: there is no material of this name",
             "line 22: <DCell dz=\"-1\">: expected a number greater than 0",
             "line 25: <Solution speed=\"high\">: no such attribute; expected algorithm, near_boundary_stop, "
-            "Integration, transfer, flip_fraction, xpic_order"});
+            "Integration, transfer, flip_fraction, xpic_order, xpic_interval"});
 }
 
 TEST_CASE("the text of a fault") {

@@ -179,6 +179,11 @@ TEST_CASE("settings of the run without effect") {
             "grid with boundary=\"0\" only, and there is none"});
   check_table({
       {"<Solution>", "<Solution near_boundary_stop='1'>", ""},
+      {"<Solution>", "<Solution xpic_order='3' xpic_interval='2'>",
+       "line 25: <Solution>: xpic_order, xpic_interval have no effect: acts with transfer XPIC and FMPM "
+       "only"},
+      {"<Solution>", "<Solution transfer='FMPM' xpic_order='3' xpic_interval='2'>", ""},
+      {"<Solution>", "<Solution transfer='XPIC' xpic_order='1'>", ""},
       {"<EndTime", "<TimeStep specified='1e-4' factor='0.5' const='1'/><EndTime",
        "line 25: <TimeStep>: factor, const have no effect: the specified step takes its place"},
       {"<EndTime", "<TimeStep specified='0' factor='0.5'/><EndTime", ""},
