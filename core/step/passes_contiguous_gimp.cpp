@@ -6,7 +6,6 @@ namespace mpm::core {
 
 template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Flip>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Apic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Tpic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Aflip>(Model&, NodeHalo&);

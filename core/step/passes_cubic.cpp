@@ -6,7 +6,6 @@ namespace mpm::core {
 
 template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Flip>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<CubicBSpline, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Apic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Tpic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Aflip>(Model&, NodeHalo&);

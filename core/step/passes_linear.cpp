@@ -1,11 +1,10 @@
 #include "core/shape/linear.hpp"
 #include "core/step/passes_with.hpp"
-#include "core/transfer/corrected.hpp"
+#include "core/transfer/flip.hpp"
 
 namespace mpm::core {
 
 template std::unique_ptr<Passes> make_passes_with<Linear, Flip>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<Linear, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<Linear, Corrected>(Model&, NodeHalo&);
 
 }  // namespace mpm::core

@@ -6,7 +6,6 @@ namespace mpm::core {
 
 template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Flip>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Apic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Tpic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Aflip>(Model&, NodeHalo&);

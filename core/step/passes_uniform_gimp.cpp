@@ -6,7 +6,6 @@ namespace mpm::core {
 
 template std::unique_ptr<Passes> make_passes_with<UniformGimp, Flip>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<UniformGimp, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<UniformGimp, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<UniformGimp, Apic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<UniformGimp, Tpic>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<UniformGimp, Aflip>(Model&, NodeHalo&);
