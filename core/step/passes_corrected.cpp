@@ -10,6 +10,8 @@ template std::unique_ptr<Passes> make_passes_with<Linear, Corrected>(Model&, Nod
 template std::unique_ptr<Passes> make_passes_with<Sgmp, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<UniformGimp, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Corrected>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Cpdi, Corrected>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Cpdi2, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Corrected>(Model&, NodeHalo&);
 
