@@ -1,0 +1,217 @@
+"""Error against run time: cases with exact or converged solutions, over shapes, transfers, schemes and resolutions.
+
+  accuracy.py run                     every case; about an hour on two cores
+  accuracy.py run --case riemann      this case only; --shape, --transfer, --scheme, --study choose alike
+  accuracy.py run --quick             a minute: the coarse grids of some studies
+  accuracy.py list                    cases, studies and methods
+  accuracy.py point KEY               measures one point again; KEY as `list --points` prints it
+  accuracy.py tables                  tables and plots from the CSV files alone
+
+For each case OUT/CASE.csv and CASE.png, and all tables in OUT/accuracy.md. Measured rows replace those of the same point
+and leave the others. --docs: the CSV files are those of docs/accuracy, and the tables of docs/accuracy.md are renewed."""
+
+import argparse
+import concurrent.futures
+import datetime
+import os
+import pathlib
+import platform
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+import methods  # noqa: E402: from this folder
+import runner  # noqa: E402
+import tables  # noqa: E402
+from cases import CASES  # noqa: E402
+from common import results  # noqa: E402: from benchmarks
+
+DOCS = results.ROOT / "docs/accuracy"
+PAGE = results.ROOT / "docs/accuracy.md"
+
+
+def machine():
+    try:
+        processor = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text()).group(1)
+    except (OSError, AttributeError):
+        processor = platform.processor()
+    return f"{processor}, {os.cpu_count()} cores, {datetime.date.today()}"
+
+
+# Choice ----------------------------------------------------------------------------------------------------------
+
+
+def refuse(kind, name, there_is):
+    raise SystemExit(f"{kind} '{name}' does not exist; there is: {', '.join(there_is)}")
+
+
+def chosen(kind, names, there_is):
+    for name in names or ():
+        if name not in there_is:
+            refuse(kind, name, there_is)
+    return list(names or there_is)
+
+
+def selected(options):
+    """{case: its points} that the options choose."""
+    cases = chosen("case", options.case, list(CASES))
+    shapes = chosen("shape", options.shape, methods.shapes())
+    transfers = chosen("transfer", options.transfer, methods.transfers())
+    schemes = chosen("scheme", options.scheme, methods.schemes())
+    studies = chosen("study", options.study, list(dict.fromkeys(s for name in cases for s in CASES[name].studies)))
+    found = {}
+    for name in cases:
+        points = [p for p in CASES[name].points(options.quick) if p.study in studies and p.method.shape in shapes
+                  and p.method.transfer in transfers and p.method.scheme in schemes]
+        if points:
+            found[name] = points
+    if not found:
+        raise SystemExit("no point of the benchmark is left; `accuracy.py list` says what there is")
+    return found
+
+
+PARTS = "case", "study", "shape", "transfer", "scheme", "cells", "particles along a cell", "factor"
+
+
+def find(key):
+    """The case and the point of this key; refuses what does not exist by its name."""
+    words = key.split("/")
+    if len(words) != len(PARTS):
+        raise SystemExit(f"point '{key}': expected {'/'.join(PARTS)}")
+    if words[0] not in CASES:
+        refuse("case", words[0], CASES)
+    case = CASES[words[0]]
+    if words[1] not in case.studies:
+        refuse("study", words[1], case.studies)
+    for kind, word, there_is in zip(PARTS[2:5], words[2:5], (methods.shapes(), methods.transfers(), methods.schemes())):
+        if word not in there_is:
+            refuse(kind, word, there_is)
+    method = methods.Method(*words[2:5])
+    there_are = sorted({str(m) for m in case.methods_of(words[1])})
+    if case.excluded(method):
+        raise SystemExit(f"{case.name} leaves out {method}: {case.excluded(method)}; there is: {', '.join(there_are)}")
+    if method not in case.methods_of(words[1]):
+        refuse(f"{case.name}, {words[1]}: method", str(method), there_are)
+    points = [p for p in [*case.points(), *case.points(quick=True)] if p.study == words[1] and p.method == method]
+    for point in points:
+        if point.key == key:
+            return case, point
+    refuse("point", key, dict.fromkeys(p.key for p in points))
+
+
+# Runs ------------------------------------------------------------------------------------------------------------
+
+
+def row_text(case, point, row):
+    if row["status"] != runner.DONE:
+        return f"{point.key}: {row['status']}: {row['note']}"
+    errors = ", ".join(f"{name} {row[name]:.3g}" for name in case.errors)
+    return f"{point.key}: {errors}; {row['steps']} steps, {row['seconds']:.3g} s"
+
+
+def measure(case, points, options):
+    """Rows of the points. What the program refuses once for a shape and transfer is not tried at every resolution."""
+    refused = {}
+
+    def one(point):
+        pair = point.method.shape, point.method.transfer
+        if pair in refused:
+            return None
+        row = runner.run(case, point, options.plots, options.keep)
+        if row["status"] == runner.REFUSED:
+            refused.setdefault(pair, row)
+        print(row_text(case, point, row), file=sys.stderr, flush=True)
+        return row
+
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        return [row for row in pool.map(one, points) if row is not None]
+
+
+def run(options):
+    for name, points in selected(options).items():
+        case = CASES[name]
+        rows = measure(case, points, options)
+        tables.write(case, options.out / f"{name}.csv", rows, [machine(), f"jobs at a time {options.jobs}"])
+    render(options)
+
+
+def render(options):
+    """Tables and plots of every CSV file in the folder."""
+    rows_of, blocks = {}, {}
+    for name, case in CASES.items():
+        path = options.out / f"{name}.csv"
+        if path.exists():
+            head, rows_of[name] = tables.read(path)
+            blocks[name] = tables.case_block(case, rows_of[name]) + f"\n\nMeasured on {'; '.join(head)}."
+            if options.plots:
+                tables.plot(case, rows_of[name], options.plots / f"{name}.png")
+    blocks["refused"] = tables.refusal_block(rows_of)
+    if options.docs:
+        results.refresh(PAGE, {name: block for name, block in blocks.items()})
+        print(PAGE)
+        return
+    text = "# Accuracy\n"
+    for name, block in blocks.items():
+        text += f"\n## {CASES[name].title if name in CASES else 'Refused'}\n\n{block}\n"
+        if options.plots and (options.plots / f"{name}.png").exists():
+            text += f"\n![]({name}.png)\n"
+    (options.out / "accuracy.md").write_text(text)
+    print(options.out / "accuracy.md")
+
+
+def one_point(options):
+    case, point = find(options.key)
+    row = runner.run(case, point, options.plots, options.keep)
+    for name, value in row.items():
+        if value != "":
+            print(f"{name:<12} {value:.6g}" if isinstance(value, float) else f"{name:<12} {value}")
+    if options.keep:
+        print(f"{'files':<12} {options.plots / 'runs' / point.key.replace('/', '-')}")
+
+
+def show(options):
+    if options.points:
+        for points in selected(options).values():
+            print("\n".join(p.key for p in points))
+        return
+    for name, points in selected(options).items():
+        print(f"{name}: {CASES[name].title}; {len(points)} points")
+        for study in CASES[name].studies:
+            print(f"  {study}")
+    for kind, there_is in (("shape", methods.shapes()), ("transfer", methods.transfers()), ("scheme", methods.schemes())):
+        print(f"{kind}: {' '.join(there_is)}")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command", choices=("run", "list", "point", "tables"))
+    parser.add_argument("key", nargs="?", help="with point: CASE/STUDY/SHAPE/TRANSFER/SCHEME/CELLS/SPLIT/FACTOR")
+    for word in ("case", "study", "shape", "transfer", "scheme"):
+        parser.add_argument(f"--{word}", nargs="+", metavar=word.upper())
+    parser.add_argument("--quick", action="store_true", help="coarse grids of some studies; a minute")
+    parser.add_argument("--points", action="store_true", help="with list: the key of every point")
+    parser.add_argument("--keep", action="store_true", help="leave the files of the runs in OUT/runs")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at a time; above 1 they disturb each other's times a little")
+    parser.add_argument("--out", type=pathlib.Path, help="default: build/accuracy; with --docs: docs/accuracy")
+    parser.add_argument("--docs", action="store_true", help="refresh docs/accuracy and docs/accuracy.md")
+    options = parser.parse_args()
+    if (options.command == "point") != (options.key is not None):
+        parser.error("the command point needs a key, the others take none")
+    if options.docs and options.out:
+        parser.error("--docs says where the results go; leave --out away")
+    pictures = results.ROOT / "build/accuracy"
+    options.out = options.out or (DOCS if options.docs else pictures)
+    options.plots = pictures if options.docs else options.out
+    for folder in (options.out, options.plots):
+        folder.mkdir(parents=True, exist_ok=True)
+    return options
+
+
+def main():
+    options = arguments()
+    {"run": run, "list": show, "point": one_point, "tables": render}[options.command](options)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,47 @@
+"""An elastic cube that turns a hundred times: angular momentum and energy."""
+
+import numpy as np
+
+import derive
+import methods
+from case import Case, Error, Study
+from cases import support
+
+SOLID = derive.Solid(1.0, 0.3, 1.0)
+TURNS, HALF, ROOM = 100, 0.5, 1.0
+RATE = 0.2 / HALF  # the middles of the faces move at a fifth of the speed of waves in a bar
+
+
+class SpinningCube(Case):
+    name = "spinning_cube"
+    title = "Spinning cube"
+    about = """A neo-Hookean cube (E = 1, Poisson's ratio 0.3, density 1, edge 1) spins freely about z, its faces at a fifth of sqrt(E/rho), for a
+hundred turns: every particle crosses cells all the time, and nothing ought to change. Error: the angular momentum lost, over
+the first. *Energy drift*, and *kinetic*: what is left of the kinetic energy."""
+    errors = {"momentum": Error("angular momentum lost, %", ".2e", 100, order=False),
+              "drift": Error("energy drift, %", "+.2f", 100, order=False),
+              "kinetic": Error("kinetic energy left, %", ".1f", 100, order=False)}
+    studies = {"cells": Study("cells along an edge, factor 0.5.", (2, 4), 0.5, fine=(6,), fine_methods=tuple(methods.flip()))}
+
+    def methods(self):
+        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+
+    def scene(self, point):
+        h = 2 * HALF / point.cells
+        cube = support.block("cube", (-HALF,) * 3, (2 * HALF,) * 3, h / point.split, "solid",
+                             f'<InitialVelocity vx="{-RATE!r}*y" vy="{RATE!r}*x" vz="0"/>')
+        room = h * np.ceil(ROOM / h)
+        return support.scene([cube], support.grid((-room,) * 3, (room,) * 3, "000000", h),
+                             support.solution(TURNS * 2 * np.pi / RATE, point.factor),
+                             [support.material("solid", SOLID.density, SOLID.law)], "")
+
+    def measure(self, point, folder):
+        summary = support.summary(folder)
+        layer = (np.arange(point.cells * point.split) + 0.5) / (point.cells * point.split) - HALF
+        inertia = 2 * (layer**2).mean() * SOLID.density
+        energy = summary["energy"]
+        return {"momentum": abs(summary["angular_momentum"][2] / (inertia * RATE) - 1), "drift": energy["relative_drift"],
+                "kinetic": energy["kinetic"] / energy["initial_total"]}
+
+
+CASE = SpinningCube()

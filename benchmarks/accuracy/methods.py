@@ -1,0 +1,65 @@
+"""Shapes, transfers and schemes, as the program's own specification of its input lists them: a new one is measured without
+a change here. What is listed there and not implemented yet is refused by the program, and recorded as refused."""
+
+import dataclasses
+import functools
+import xml.etree.ElementTree as ElementTree
+
+from common import results
+
+
+@functools.cache
+def choices(element, attribute):
+    """Values that Specification.xml allows for an attribute of an element of the root."""
+    root = ElementTree.parse(results.ROOT / "io/input/Specification.xml").getroot()
+    for key, text in root.find(f".//{element}").attrib.items():
+        words = [word.strip() for word in text.split(",")]
+        if key.startswith("attribute") and words[0] == attribute:
+            return tuple(words[3].split("|"))
+    raise SystemExit(f"Specification.xml: no attribute {attribute} of {element}")
+
+
+def shapes():
+    return choices("Grid", "shape")
+
+
+def transfers():
+    return choices("Solution", "transfer")
+
+
+def schemes():
+    return choices("Solution", "algorithm")
+
+
+@dataclasses.dataclass(frozen=True, order=True)
+class Method:
+    shape: str
+    transfer: str = "FLIP"
+    scheme: str = "MUSL"
+
+    def __str__(self):
+        return f"{self.shape} {self.transfer} {self.scheme}"
+
+
+def product(some_shapes=None, some_transfers=("FLIP",), some_schemes=("MUSL",)):
+    return [Method(s, t, a) for s in some_shapes or shapes() for t in some_transfers for a in some_schemes]
+
+
+def flip():
+    """Every shape with FLIP and MUSL."""
+    return product()
+
+
+def every_scheme():
+    return product(some_schemes=schemes())
+
+
+def every_transfer(some_shapes=None, some_schemes=("MUSL",)):
+    return product(some_shapes, transfers(), some_schemes)
+
+
+def choose(root, method):
+    """Puts the method into a scene, the root of an input file."""
+    root.find("Grid").set("shape", method.shape)
+    root.find("Solution").set("transfer", method.transfer)
+    root.find("Solution").set("algorithm", method.scheme)

@@ -1,0 +1,85 @@
+"""Runs one point with mpm_run, on one rank and one thread, and measures it."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import threading
+import time
+import xml.etree.ElementTree as ElementTree
+
+from common import results
+
+import methods
+
+LIMIT = 900  # seconds of a run; none takes as long that does not hang
+DONE, REFUSED, FAILED = "done", "refused", "failed"
+COLUMNS = ("study", "shape", "transfer", "scheme", "cells", "split", "factor", "status", "particles", "steps", "seconds")
+
+
+def scene_of(case, point):
+    root = ElementTree.fromstring(case.scene(point).encode())
+    methods.choose(root, point.method)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def execute(file, folder):
+    """Exit code, standard error, processor seconds and seconds by the clock."""
+    command = [str(results.BIN / "mpm_run"), str(file), "--output-dir", str(folder)]
+    environment = results.environment(OMP_NUM_THREADS="1", OMPI_MCA_ess_singleton_isolated="1")
+    start = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
+                               env=environment)
+    guard = threading.Timer(LIMIT, process.kill)
+    guard.start()
+    with process.stderr as stream:
+        said = stream.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    guard.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, said, usage.ru_utime + usage.ru_stime, time.perf_counter() - start
+
+
+def loop_seconds(summary, processor, wall):
+    """The loop without output, in seconds of the processor: seconds by the clock, less the share of the run in which
+    other programs had the processor."""
+    spent = summary["wall_seconds"]
+    return (spent["loop"] - spent["output"]) * min(1.0, processor / wall)
+
+
+def reason(said):
+    """What the program complained about, in one line without the folder of the file."""
+    lines = [line.strip() for line in said.splitlines() if line.strip()]
+    return (lines[0].split("case.xmp:")[-1] if lines else "no message")[:160]
+
+
+def run(case, point, out, keep=False):
+    """The row of the point: its columns, its errors where it was done, `note` where it was not."""
+    folder = out / "runs" / point.key.replace("/", "-")
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    file = folder / "case.xmp"
+    file.write_text(scene_of(case, point))
+    code, said, processor, wall = execute(file, folder)
+    method = point.method
+    row = {"study": point.study, "shape": method.shape, "transfer": method.transfer, "scheme": method.scheme,
+           "cells": point.cells, "split": point.split, "factor": point.factor, "status": DONE, "particles": "",
+           "steps": "", "seconds": "", **dict.fromkeys(case.errors, ""), "note": ""}
+    try:
+        if code == 0:
+            summary = json.loads((folder / "case.summary.json").read_text())
+            row.update(particles=summary["particles"], steps=summary["steps"],
+                       seconds=loop_seconds(summary, processor, wall))
+            row.update({name: float(value) for name, value in case.measure(point, folder).items()})
+        elif code in (2, 3):
+            row.update(status=REFUSED if code == 2 else FAILED, note=reason(said))
+        elif code == -signal.SIGKILL:
+            row.update(status=FAILED, note=f"killed after {LIMIT} s")
+        else:
+            raise SystemExit(f"{point.key}: mpm_run ended with exit code {code}\n{said}\nThe input is {file}")
+    finally:
+        if not keep and code in (0, 2, 3):
+            shutil.rmtree(folder, ignore_errors=True)
+    return row

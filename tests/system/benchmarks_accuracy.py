@@ -1,0 +1,178 @@
+"""benchmarks/accuracy: manufactured loads against differences of the motion, exact solutions against what they must keep,
+orders of convergence that hold on coarse grids, and refusals by name."""
+
+import csv
+import math
+import re
+import subprocess
+import sys
+import unittest
+
+import _mpm
+import numpy as np
+
+FOLDER = _mpm.SOURCE / "benchmarks/accuracy"
+sys.path[:0] = [str(FOLDER), str(_mpm.SOURCE / "benchmarks")]
+
+import accuracy  # noqa: E402: found by the line above
+import methods  # noqa: E402
+from cases import CASES, column, crossing, manufactured_cube, sedov, vortex  # noqa: E402
+
+STEP = 1e-4  # of differences: their error is about the square, 1e-8, and 1e-16/1e-8 of round-off in second ones
+
+
+def evaluate(text, **values):
+    """An expression of the input language, by other means."""
+    names = {name: getattr(np, name) for name in ("sin", "cos", "sqrt")} | {"ln": np.log, "pi": np.pi} | values
+    return eval(text.replace("^", "**").replace("&lt;", "<"), {"__builtins__": {}}, names)
+
+
+def attribute(text, name):
+    return re.search(rf'{name}="([^"]*)"', text).group(1)
+
+
+def piola(place, first, time, solid):
+    """First Piola-Kirchhoff stress of the motion, its gradient by differences."""
+    f = np.stack([(place(first + STEP * e, time) - place(first - STEP * e, time)) / (2 * STEP) for e in np.eye(3)], axis=1)
+    inverse = np.linalg.inv(f).T
+    return solid.shear * (f - inverse) + solid.lame * math.log(np.linalg.det(f)) * inverse
+
+
+def needed_force(place, first, time, solid):
+    """b = d2x/dt2 - Div P/rho0, all by differences."""
+    wide = 2 * STEP  # of the stress, whose own round-off is 1e-12
+    acceleration = (place(first, time + STEP) - 2 * place(first, time) + place(first, time - STEP)) / STEP**2
+    divergence = sum((piola(place, first + wide * e, time, solid) - piola(place, first - wide * e, time, solid))[:, j] / (2 * wide)
+                     for j, e in enumerate(np.eye(3)))
+    return acceleration - divergence / solid.density
+
+
+def along(function):
+    """A motion of one point from one of arrays."""
+    return lambda first, time: function(first[None], time)[0]
+
+
+class Solutions(unittest.TestCase):
+    """Nothing is run: the loads and the exact solutions themselves."""
+
+    def compare(self, case, place, solid, places, components):
+        scene = CASES[case].scene(CASES[case].points()[0])
+        for first, time in places:
+            first = np.array(first)
+            wanted = needed_force(place, first, time, solid)
+            for axis in components:
+                text = attribute(scene, "b" + "xyz"[axis])
+                found = evaluate(text, **dict(zip("XYZxyz", [*first, *place(first, time)])), t=time)
+                self.assertAlmostEqual(found, wanted[axis], delta=2e-5 * np.abs(wanted).max(), msg=f"{case} b{'xyz'[axis]}")
+        start = needed_velocity(place, places[0][0])
+        for axis in components:
+            found = evaluate(attribute(scene, "v" + "xyz"[axis]), **dict(zip("XYZxyz", [*places[0][0]] * 2)))
+            self.assertAlmostEqual(found, start[axis], delta=1e-6)
+
+    def test_cube(self):
+        def place(first, time):
+            return first + manufactured_cube.displacement("cube", first, time)
+
+        self.compare("manufactured_cube", along(place), manufactured_cube.SOLID,
+                     [((0.13, 0.71, 0.37), 0.3), ((0.9, 0.05, 0.5), 0.8)], range(3))
+
+    def test_vortex(self):
+        def place(first, time):
+            return np.column_stack([vortex.exact_places(first, time), first[:, 2]])
+
+        self.compare("vortex", along(place), vortex.SOLID, [((0.6, 0.75, 0.0), 0.4), ((-1.1, 0.2, 0.0), 0.7)], range(2))
+        first = np.array([[0.6, 0.75, 0.0]])
+        by_difference = np.stack([(place(first + STEP * e, 0.4) - place(first - STEP * e, 0.4))[0] / (2 * STEP)
+                                  for e in np.eye(3)], axis=1)
+        np.testing.assert_allclose(vortex.exact_gradients(first, 0.4)[0], by_difference, atol=1e-6)
+
+    def test_column(self):
+        # The bottom carries the whole weight, and the layers make up half of the height.
+        f = column.stretches(column.gravity(), column.DEPTHS)
+        solid = column.SOLID
+        stress = solid.shear * (f - 1 / f) + solid.lame * np.log(f) / f
+        np.testing.assert_allclose(stress, -solid.density * column.gravity() * column.DEPTHS, atol=1e-12)
+        self.assertAlmostEqual(column.mean(f), column.SHARE, delta=1e-12)
+
+    def test_sedov(self):
+        # The mass within the shock is that of the gas that it has run through, and the energy factor is the published one
+        # of gamma = 1.4, 0.851 (J. R. Kamm, LA-UR-00-6055, 2000).
+        r, density, _, _ = sedov.similarity()
+        shells = 6 * density * r * r
+        mass = (0.5 * (shells[1:] + shells[:-1]) * np.diff(r)).sum()
+        self.assertAlmostEqual(mass, 1 / 3, delta=1e-4)
+        self.assertAlmostEqual(sedov.energy_factor(), 0.8511, delta=5e-4)
+
+    def test_pressure_of_the_blocks(self):
+        # Small compressions: the bulk modulus, E/(3 (1 - 2 nu)).
+        self.assertAlmostEqual(crossing.pressure(1 + 1e-6) / (1e-6 / 1.2), 1, delta=1e-5)
+
+
+def needed_velocity(place, first):
+    first = np.array(first)
+    return (place(first, STEP) - place(first, -STEP)) / (2 * STEP)
+
+
+class Quick(_mpm.Case):
+    """The coarse grids."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = _mpm.pathlib.Path(_mpm.tempfile.mkdtemp(prefix="mpm-accuracy-"))
+        cls.addClassCleanup(_mpm.shutil.rmtree, cls.out, ignore_errors=True)
+        cls.outcome = program("run", "--quick", "--jobs", "2", "--out", cls.out)
+
+    def setUp(self):
+        super().setUp()
+        self.assertEqual(self.outcome.returncode, 0, self.outcome.stdout + self.outcome.stderr)
+
+    def rows(self, case, study, **where):
+        lines = (line for line in (self.out / f"{case}.csv").read_text().splitlines() if not line.startswith("#"))
+        found = [r for r in csv.DictReader(lines) if r["study"] == study and all(r[k] == v for k, v in where.items())]
+        self.assertTrue(found, (case, study, where))
+        return found
+
+    def errors(self, case, study, column, shape, transfer="FLIP", scheme="MUSL"):
+        rows = self.rows(case, study, shape=shape, transfer=transfer, scheme=scheme)
+        self.assertEqual({r["status"] for r in rows}, {"done"}, rows)
+        return [abs(float(r[column])) for r in rows]
+
+    def orders(self, *where):
+        errors = self.errors(*where)
+        return [math.log2(a / b) for a, b in zip(errors, errors[1:])]
+
+
+def program(*words):
+    environment = {**_mpm.ENVIRONMENT, "MPM_BIN": str(_mpm.BIN), "MPM_SOURCE": str(_mpm.SOURCE)}
+    return subprocess.run([sys.executable, FOLDER / "accuracy.py", *map(str, words)], capture_output=True, text=True,
+                          env=environment)
+
+
+class Refusals(unittest.TestCase):
+    def refused(self, *words):
+        outcome = program(*words)
+        self.assertNotEqual(outcome.returncode, 0)
+        return outcome.stderr
+
+    def test_names_that_do_not_exist(self):
+        self.assertIn("case 'vortexx' does not exist; there is: manufactured_cube, vortex,", self.refused("run", "--case", "vortexx"))
+        self.assertIn("shape 'Linear' does not exist; there is: linear, uGIMP,", self.refused("run", "--shape", "Linear"))
+        self.assertIn("transfer 'flip' does not exist; there is: FLIP,", self.refused("list", "--transfer", "flip"))
+        self.assertIn("scheme 'MUS' does not exist; there is: MUSL,", self.refused("list", "--scheme", "MUS"))
+        self.assertIn("study 'Sod' does not exist; there is: sod,", self.refused("list", "--case", "riemann", "--study", "Sod"))
+
+    def test_points_that_do_not_exist(self):
+        self.assertIn("expected case/study/shape/transfer/scheme/cells/", self.refused("point", "vortex"))
+        self.assertIn("study 'nothing' does not exist", self.refused("point", "riemann/nothing/linear/FLIP/MUSL/50/2/0.4"))
+        self.assertIn("point 'riemann/sod/linear/FLIP/MUSL/51/2/0.4' does not exist; there is: riemann/sod/linear/FLIP/MUSL/50/2/0.4,",
+                      self.refused("point", "riemann/sod/linear/FLIP/MUSL/51/2/0.4"))
+        self.assertIn("method 'linear APIC USL' does not exist; there is: ", self.refused("point", "riemann/sod/linear/APIC/USL/50/2/0.4"))
+
+    def test_every_listed_point_is_found(self):
+        for case in CASES.values():
+            for point in case.points():
+                self.assertEqual(accuracy.find(point.key), (case, point))
+
+
+_mpm.main()
