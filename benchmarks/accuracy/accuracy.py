@@ -136,25 +136,32 @@ def run(options):
     render(options)
 
 
-def render(options):
-    """Tables and plots of every CSV file in the folder."""
+def blocks_of(folder):
+    """{name: Markdown} of every CSV file in the folder, and what the program refused; and the rows by case."""
     rows_of, blocks = {}, {}
     for name, case in CASES.items():
-        path = options.out / f"{name}.csv"
+        path = folder / f"{name}.csv"
         if path.exists():
             head, rows_of[name] = tables.read(path)
             blocks[name] = tables.case_block(case, rows_of[name]) + f"\n\nMeasured on {'; '.join(head)}."
-            if options.plots:
-                tables.plot(case, rows_of[name], options.plots / f"{name}.png")
     blocks["refused"] = tables.refusal_block(rows_of)
+    return blocks, rows_of
+
+
+def render(options):
+    """Tables and plots of every CSV file in the folder."""
+    blocks, rows_of = blocks_of(options.out)
+    options.plots.mkdir(parents=True, exist_ok=True)
+    for name, rows in rows_of.items():
+        tables.plot(CASES[name], rows, options.plots / f"{name}.png")
     if options.docs:
-        results.refresh(PAGE, {name: block for name, block in blocks.items()})
+        results.refresh(PAGE, blocks)
         print(PAGE)
         return
     text = "# Accuracy\n"
     for name, block in blocks.items():
         text += f"\n## {CASES[name].title if name in CASES else 'Refused'}\n\n{block}\n"
-        if options.plots and (options.plots / f"{name}.png").exists():
+        if (options.plots / f"{name}.png").exists():
             text += f"\n![]({name}.png)\n"
     (options.out / "accuracy.md").write_text(text)
     print(options.out / "accuracy.md")
@@ -183,7 +190,7 @@ def show(options):
         print(f"{kind}: {' '.join(there_is)}")
 
 
-def arguments():
+def arguments(words=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command", choices=("run", "list", "point", "tables"))
     parser.add_argument("key", nargs="?", help="with point: CASE/STUDY/SHAPE/TRANSFER/SCHEME/CELLS/SPLIT/FACTOR")
@@ -195,7 +202,7 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time; above 1 they disturb each other's times a little")
     parser.add_argument("--out", type=pathlib.Path, help="default: build/accuracy; with --docs: docs/accuracy")
     parser.add_argument("--docs", action="store_true", help="refresh docs/accuracy and docs/accuracy.md")
-    options = parser.parse_args()
+    options = parser.parse_args(words)
     if (options.command == "point") != (options.key is not None):
         parser.error("the command point needs a key, the others take none")
     if options.docs and options.out:
@@ -203,13 +210,11 @@ def arguments():
     pictures = results.ROOT / "build/accuracy"
     options.out = options.out or (DOCS if options.docs else pictures)
     options.plots = pictures if options.docs else options.out
-    for folder in (options.out, options.plots):
-        folder.mkdir(parents=True, exist_ok=True)
     return options
 
 
-def main():
-    options = arguments()
+def main(words=None):
+    options = arguments(words)
     {"run": run, "list": show, "point": one_point, "tables": render}[options.command](options)
 
 

@@ -39,7 +39,7 @@ class Study:
     factors: object = 0.5
     splits: tuple = (2,)
     axis: str = "cells"
-    quick: bool = False  # part of --quick too
+    quick: bool = False  # its coarsest grids are part of --quick, with few methods
     methods: object = None  # a function that gives the study's methods; those of the case where None
     fine: tuple = ()  # cells for `fine_methods` alone
     fine_methods: tuple = ()
@@ -93,6 +93,8 @@ class Case:
             if quick and not study.quick:
                 continue
             for method in self.methods_of(name):
+                if quick and method not in methods.quick():
+                    continue
                 cells = study.cells + (study.fine if method in study.fine_methods else ())
                 found += [Point(self.name, name, method, n, split, factor)
                           for split in study.splits for n in (cells[:3] if quick else cells)

@@ -58,6 +58,17 @@ def every_transfer(some_shapes=None, some_schemes=("MUSL",)):
     return product(some_shapes, transfers(), some_schemes)
 
 
+def quick():
+    """Every shape with FLIP, and one affine transfer."""
+    return [*flip(), Method("QuadraticBSpline", "APIC")]
+
+
+def short():
+    """Every shape with FLIP and MUSL; the other schemes and transfers with few shapes."""
+    return list(dict.fromkeys([*flip(), *product(("linear", "QuadraticBSpline"), some_schemes=schemes()),
+                               *product(("QuadraticBSpline",), transfers()), *product(("cpGIMP",), ("APIC", "AFLIP"))]))
+
+
 def choose(root, method):
     """Puts the method into a scene, the root of an input file."""
     root.find("Grid").set("shape", method.shape)

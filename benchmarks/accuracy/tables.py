@@ -175,9 +175,11 @@ def case_block(case, rows):
         if name in plotted(case):
             text.append(f"The front of {name}: no run has both a smaller error and less time.\n\n"
                         f"{front_table(case, rows, name)}")
-    left_out = {str(m): case.excluded(m) for m in case.methods() if case.excluded(m)}
-    if left_out:
-        text.append("Left out: " + "; ".join(f"{m}: {why}" for m, why in left_out.items()) + ".")
+    left_out = {}
+    for method in case.methods():
+        if case.excluded(method):
+            left_out.setdefault(case.excluded(method), []).append(method.transfer)
+    text += [f"Left out: {', '.join(dict.fromkeys(names))}: {why}." for why, names in left_out.items()]
     return "\n\n".join(text)
 
 

@@ -20,7 +20,7 @@ relative velocity of the centres after and before, which converges to the share 
     studies = {"cells": Study("cells along the box of length 1, factor 0.5.", (10, 20, 40, 80), 0.5, quick=False)}
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+        return methods.short()
 
     def scene(self, point):
         h = ROOM / point.cells

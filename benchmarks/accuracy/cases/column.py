@@ -48,7 +48,7 @@ that is left, over the speed of waves: what particles that rest ought not to hav
     studies = {"cells": Study("cells along the first height, factor 0.4.", (8, 16, 32, 64), 0.4)}
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+        return methods.short()
 
     def scene(self, point):
         h = HEIGHT / point.cells

@@ -48,7 +48,7 @@ but for the files' single precision."""
     plotted = ("carried 10 %", "stretched 10 %", "stretched 30 %")
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer(("cpGIMP", "QuadraticBSpline", "CubicBSpline"))]))
 
     def scene(self, point):
         return self.at_rest(point) if point.study.startswith("force") else self.moving(point)

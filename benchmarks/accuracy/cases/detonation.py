@@ -28,8 +28,8 @@ pressure."""
     plotted = ("two particles",)
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer(),
-                                   *methods.product(("QuadraticBSpline", "CubicBSpline"), ("APIC", "AFLIP"), ("USF",))]))
+        return list(dict.fromkeys([*methods.every_scheme(), *methods.product(("QuadraticBSpline", "CubicBSpline", "cpGIMP"),
+                                                                             ("APIC", "AFLIP"), ("MUSL", "USF"))]))
 
     def scene(self, point):
         h = LENGTH / point.cells

@@ -48,11 +48,11 @@ that Kirsch's solution of the infinite plate has there for a tension of 1e-4. Th
 stairs, and the load on the surface is spread over about a cell: first order is to be expected. Error: root mean square of the
 stress over its largest value; *inside*: of the particles more than 0.25 from an edge."""
     errors = {"stress": Error("error of stress"), "inside": Error("inside", ".2e", order=False)}
-    studies = {"cylinder": Study("cells per unit of length, factor 0.4.", (4, 8, 16, 32), 0.4),
-               "plate": Study("cells per unit of length, factor 0.4.", (4, 8, 16), 0.4, methods=methods.flip)}
+    studies = {"cylinder": Study("cells per unit of length, factor 0.4.", (4, 8, 16), 0.4),
+               "plate": Study("cells per unit of length, factor 0.4.", (4, 8), 0.4, methods=methods.flip)}
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer(("QuadraticBSpline",))]))
+        return methods.short()
 
     def scene(self, point):
         h = 1 / point.cells
@@ -70,16 +70,16 @@ stress over its largest value; *inside*: of the particles more than 0.25 from an
                 f'Top_Outer_Radius="{outer}" height="{h!r}" angle="90"/>{more[1]}</Body>')
 
     def cylinder(self, h, split):
-        inside = f"if(x*x+y*y&lt;{(0.5 * (INNER + OUTER)) ** 2},{LOAD},0)"
-        return [self.round_body("cylinder", INNER, OUTER, h, split, ("", f'<Traction pressure="{inside}"/>'))]
+        # A smooth function of the radius that is LOAD at the inner and 0 at the outer surface.
+        load = f"{LOAD / (OUTER - INNER)!r}*({OUTER}-sqrt(x*x+y*y))"
+        return [self.round_body("cylinder", INNER, OUTER, h, split, ("", f'<Traction pressure="{load}"/>'))]
 
     def plate(self, h, split):
         whole = support.block("whole", (0, 0, 0), (WIDTH, WIDTH, h), h / split, "solid", attributes='ForBoolBody="1"')
         hole = self.round_body("hole", 0, HOLE, h, split, ('ForBoolBody="1"', ""))
         xx, yy, xy = kirsch_written()
-        edge = WIDTH - 2 * h
-        loads = (f'<Traction tx="{xx}" ty="{xy}" normal="0" xmin="{edge!r}" ramp="{h / 10!r}"/>'
-                 f'<Traction tx="{xy}" ty="{yy}" normal="1" ymin="{edge!r}" ramp="{h / 10!r}"/>')
+        loads = (f'<Traction tx="{xx}" ty="{xy}" normal="0" xmin="{WIDTH - 0.5}" ramp="0.9"/>'
+                 f'<Traction tx="{xy}" ty="{yy}" normal="1" ymin="{WIDTH - 0.5}" ramp="0.9"/>')
         return [whole, hole, '<Body name="plate" material="solid" type="Bool" BoolType="subtract" BoolBodyA="whole" '
                              f'BoolBodyB="hole">{loads}</Body>']
 

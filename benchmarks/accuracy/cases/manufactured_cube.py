@@ -50,17 +50,19 @@ loop's time here: look at other cases for what separates the methods in time."""
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {
         "cube, steps as cells": Study("time step proportional to the cells (factor 0.4), as a user would refine.", (4, 8, 16), 0.4,
-                                      fine=(32,), fine_methods=tuple(methods.flip())),
+                                      fine=(32,), fine_methods=tuple(methods.product(("linear", "cpGIMP", "QuadraticBSpline")))),
         "slab, fine steps": Study("time step proportional to the square of the cells (factor 3.2/cells), so that the error in time, of "
                                   "first order, does not hide the order in space.", (4, 8, 16, 32), lambda n: 3.2 / n, quick=True,
-                                  methods=lambda: [*methods.flip(), *methods.every_transfer(("QuadraticBSpline", "CubicBSpline"))],
-                                  fine=(64,), fine_methods=tuple(methods.product(("QuadraticBSpline", "CubicBSpline")))),
+                                  methods=lambda: [*methods.flip(), *methods.every_transfer(("QuadraticBSpline", "CubicBSpline"))]),
+        "slab, four particles": Study("the same with four particles along a cell.", (4, 8, 16), lambda n: 3.2 / n, splits=(4,),
+                                      methods=methods.flip, fine=(32,),
+                                      fine_methods=tuple(methods.product(("QuadraticBSpline", "CubicBSpline")))),
         "slab, time": Study("16 cells, time step falling.", (16,), (0.8, 0.4, 0.2, 0.1, 0.05), axis="factor",
                             methods=lambda: methods.product(("QuadraticBSpline", "CubicBSpline"), some_schemes=methods.schemes())),
     }
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+        return methods.short()
 
     def scene(self, point):
         h = 1 / point.cells

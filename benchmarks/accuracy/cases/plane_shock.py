@@ -22,8 +22,7 @@ that of [validation.md](validation.md), with two particles along a cell. Error: 
     studies = {"cells": Study("cells along the bar, factor 0.4.", (50, 100, 200, 400), 0.4)}
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer(),
-                                   *methods.product(("QuadraticBSpline",), ("APIC", "AFLIP"), ("USF",))]))
+        return methods.short()
 
     @staticmethod
     def shock(point):

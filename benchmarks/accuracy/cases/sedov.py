@@ -48,7 +48,7 @@ shells, over the density behind the shock. *Radius*: where the density, averaged
                               fine=(36,), fine_methods=tuple(methods.product(("linear", "QuadraticBSpline", "CubicBSpline", "SGMP"))))}
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer(("QuadraticBSpline",), ("MUSL", "USF"))]))
+        return methods.short()
 
     def scene(self, point):
         h, g = ROOM / point.cells, GAMMA - 1

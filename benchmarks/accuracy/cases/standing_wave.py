@@ -27,7 +27,10 @@ over a period."""
                              methods=lambda: methods.product(("linear", "QuadraticBSpline"), ("FLIP", "APIC"), methods.schemes()))}
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+        return methods.short()
+
+    def excluded(self, method):
+        return "nothing is left of the wave after a few periods" if method.transfer == "PIC" else None
 
     def scene(self, point):
         h = LENGTH / point.cells

@@ -28,7 +28,7 @@ below half a per cent mean little."""
                               fine=(46,), fine_methods=tuple(methods.flip()))}
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+        return methods.short()
 
     def scene(self, point):
         root = ElementTree.parse(FOLDER / "taylor_bar.xmp").getroot()

@@ -79,15 +79,15 @@ of particles cuts the ring's edges into stairs."""
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {
         "steps as cells": Study("time step proportional to the cells (factor 0.4); cells across the ring's width.", (4, 8, 16),
-                                0.4, fine=(32,), fine_methods=tuple(methods.flip())),
+                                0.4, fine=(32,), fine_methods=tuple(methods.product(("cpGIMP", "QuadraticBSpline", "CubicBSpline")))),
         "fine steps": Study("time step proportional to the cells squared (factor 3.2/cells).", (4, 8, 16), lambda n: 3.2 / n,
-                            quick=True, fine=(32,), fine_methods=tuple(methods.product(("QuadraticBSpline", "CubicBSpline"))),
+                            fine=(32,), fine_methods=tuple(methods.product(("QuadraticBSpline",))),
                             methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline", "CubicBSpline"),
                                                                                ("APIC", "AFLIP"))]),
     }
 
     def methods(self):
-        return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer()]))
+        return methods.short()
 
     def scene(self, point):
         h = (OUTER - INNER) / point.cells
