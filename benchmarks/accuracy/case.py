@@ -1,6 +1,7 @@
 """What a case of the accuracy benchmark states: its studies, its methods, its scene and its errors."""
 
 import dataclasses
+import math
 import sys
 
 from common import results
@@ -59,6 +60,10 @@ class Error:
     order: bool = True  # falls with refinement by a power of the cell size
 
 
+class Unmeasurable(Exception):
+    """A run that ended well, but left nothing that the error can be taken from; the row then says why."""
+
+
 class Case:
     """A case: `name`, `title`, `about` (text for the page), `errors` ({column: Error}, the first is the one plotted),
     `studies` ({name: Study}). Scenes leave shape, transfer and scheme out: the driver puts them in."""
@@ -104,8 +109,6 @@ class Case:
 
 def order(coarse, fine, ratio):
     """Observed order between two errors whose cell or step sizes have this ratio; None where there is none."""
-    import math
-
     if not (coarse and fine and coarse > 0 and fine > 0 and math.isfinite(coarse) and math.isfinite(fine)):
         return None
     return math.log(coarse / fine) / math.log(ratio)

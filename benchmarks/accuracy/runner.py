@@ -12,6 +12,7 @@ import xml.etree.ElementTree as ElementTree
 from common import results
 
 import methods
+from case import Unmeasurable
 
 LIMIT = 900  # seconds of a run; none takes as long that does not hang
 DONE, REFUSED, FAILED = "done", "refused", "failed"
@@ -79,6 +80,8 @@ def run(case, point, out, keep=False):
             row.update(status=FAILED, note=f"killed after {LIMIT} s")
         else:
             raise SystemExit(f"{point.key}: mpm_run ended with exit code {code}\n{said}\nThe input is {file}")
+    except Unmeasurable as why:
+        row.update(status=FAILED, note=str(why))
     finally:
         if not keep and code in (0, 2, 3):
             shutil.rmtree(folder, ignore_errors=True)

@@ -12,10 +12,11 @@ RADIUS, SPEED, END, ROOM = 0.2, 0.1, 3.0, 1.0
 class CollidingDiscs(Case):
     name = "colliding_discs"
     title = "Colliding discs"
-    about = """Two elastic discs (E = 1000, Poisson's ratio 0.3, density 1000, radius 0.2; plane strain) with centres at (0.3, 0.3) and
-(0.7, 0.7) run into each other at 0.1 (1, 1), after D. Sulsky, Z. Chen and H. L. Schreyer (1994), here with the law `NeoHookean`
-and without artificial viscosity. They touch through the shared grid. Error: energy lost at t = 3, over the first. *Rebound*: the
-relative velocity of the centres after and before, which converges to the share that is not left in vibrations."""
+    about = """Two elastic discs (E = 1000, Poisson's ratio 0.3, density 1000, radius 0.2; plane strain) with centres at
+(0.3, 0.3) and (0.7, 0.7) run into each other at 0.1 (1, 1), after D. Sulsky, Z. Chen and H. L. Schreyer (1994), here with
+the law `NeoHookean` and without artificial viscosity. They touch through the shared grid. Error: energy lost at t = 3, over
+the first. *Rebound*: the relative velocity of the centres after and before, which converges to the share that is not left in
+vibrations."""
     errors = {"loss": Error("energy lost or gained, %", ".2f", 100, order=False), "rebound": Error("rebound", ".3f", order=False)}
     studies = {"cells": Study("cells along the box of length 1, factor 0.5.", (10, 20, 40, 80), 0.5, quick=False)}
 

@@ -8,7 +8,7 @@ from case import Case, Error, Study
 from cases import support
 
 SOLID = derive.Solid(1.0, 0.3, 1.0)
-HEIGHT, SHARE, DAMPING, END = 1.0, 0.5, 3.0, 12.0
+HEIGHT, SHARE, DAMPING, RAMP, END = 1.0, 0.5, 3.0, 8.0, 16.0
 DEPTHS = np.linspace(0, HEIGHT, 4001)  # of layers, below the top
 
 
@@ -39,10 +39,11 @@ def gravity():
 class Column(Case):
     name = "column"
     title = "Column under its weight"
-    about = """A neo-Hookean column (E = 1, Poisson's ratio 0.3, density 1, height 1) between symmetry planes, which its weight compacts to half
-its height; damped (`DynamicRelax`) until it rests. The exact solution integrates the law in uniaxial strain. Error: root mean
-square of the particles' place, over the height; *stress*: of the vertical stress, over its largest value; *velocity*: the largest
-that is left, over the speed of waves: what particles that rest ought not to have."""
+    about = """A neo-Hookean column (E = 1, Poisson's ratio 0.3, density 1, height 1) between symmetry planes, which its
+weight compacts to half its height: gravity grows smoothly to t = 8, damped (`DynamicRelax`), to t = 16, when the column
+rests. The exact solution integrates the law in uniaxial strain. Error: root mean square of the particles' place, over the
+height; *stress*: of the vertical stress, over its largest value; *velocity*: the largest that is left, over the speed of
+waves: what particles that rest ought not to have."""
     errors = {"place": Error("error of place"), "stress": Error("error of stress"),
               "velocity": Error("velocity left", ".1e", order=False)}
     studies = {"cells": Study("cells along the first height, factor 0.4.", (8, 16, 32, 64), 0.4)}
@@ -52,8 +53,9 @@ that is left, over the speed of waves: what particles that rest ought not to hav
 
     def scene(self, point):
         h = HEIGHT / point.cells
-        column = support.block("column", (0, 0, 0), (h, h, HEIGHT), h / point.split, "solid")
-        more = f'<DynamicRelax damping="{DAMPING}"/><Gravity ax="0" ay="0" az="{-gravity()!r}"/>'
+        weight = f'<BodyForce bz="-{gravity()!r}*if(t&lt;{RAMP},(t/{RAMP})^2*(3-2*t/{RAMP}),1)"/>'
+        column = support.block("column", (0, 0, 0), (h, h, HEIGHT), h / point.split, "solid", weight)
+        more = f'<DynamicRelax damping="{DAMPING}"/>'
         return support.scene([column], support.grid((0, 0, 0), (h, h, HEIGHT), "222220", h),
                              support.solution(END, point.factor, more), [support.material("solid", SOLID.density, SOLID.law)],
                              support.pictures(END, ["SigmaZ"]))

@@ -2,6 +2,8 @@
 
 import random
 
+import numpy as np
+
 import derive
 import methods
 from case import Case, Error, Study
@@ -16,9 +18,7 @@ LARGE, WAY, FAR = 36, 5.0, 14.0  # moving block: cells along an edge, cells that
 
 
 def pressure(compression):
-    """Of the solid when it is compressed equally in all directions, and its energy's sign left out."""
-    import numpy as np
-
+    """Of the solid when it is compressed equally in all directions."""
     stretch = compression ** (-1 / 3)
     return -float(support.neo_hookean(stretch * np.eye(3)[None], SOLID)[0, 0, 0])
 
@@ -34,8 +34,8 @@ and thus under a pressure, those of *stretched* are stretched by their velocitie
 Noise: root mean square of the particles' velocity error, over sigma/(rho c); for *force*, after a single short step, as an
 acceleration over sigma/(rho h). Particles of *force* and *carried* are 0.51, 0.55 and 0.65 cells apart; the boxes of uGIMP
 and cpGIMP are cubes of the particle's volume and fit there without a gap. In *stretched* the particles start 0.5 cells apart
-and are 2, 10 and 30 % further apart at the end: there the boxes of uGIMP do not follow. *free*: carried without stress, exact
-but for the files' single precision."""
+and are 2, 10 and 30 % further apart at the end: there the boxes of uGIMP do not follow. *free*: carried without stress,
+exact but for the files' single precision."""
     errors = {"noise": Error("noise", ".1e", order=False), "stress": Error("stress noise", ".1e", order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {f"force {name}": Study(f"16 blocks at random places, spacing 0.5 (1 + {s:g}), one step.", (1,), 0.5, quick=True,
@@ -85,8 +85,6 @@ but for the files' single precision."""
                              [support.material("solid", SOLID.density, SOLID.law)], support.pictures(end, support.STRESSES))
 
     def measure(self, point, folder):
-        import numpy as np
-
         states = support.States(folder)
         first, v, kind = support.places(states, 0), support.velocities(states), point.study.split()[0]
         stretch = 1 + stretch_of(point) if kind == "stretched" else 1.0

@@ -15,10 +15,10 @@ TNT = _blast.TNT
 class Detonation(Case):
     name = "detonation"
     title = "Plane detonation"
-    about = """TNT (JWL, programmed burn) lit along a wall, 100 mm long, until the front has run through 90 mm: the set-up and the exact
-solution, CJ state and Taylor wave, of [validation.md](validation.md), in a column of one cell with the usual two particles along
-each axis of a cell. Error: mean over the matter of the pressure's error (means over the layers of a cell), over the mean exact
-pressure."""
+    about = """TNT (JWL, programmed burn) lit along a wall, 100 mm long, until the front has run through 90 mm: the set-up
+and the exact solution, CJ state and Taylor wave, of [validation.md](validation.md), in a column of one cell with the usual
+two particles along each axis of a cell. Error: mean over the matter of the pressure's error (means over the layers of a
+cell), over the mean exact pressure."""
     errors = {"pressure": Error("L1 error of pressure, %", ".1f", 100), "velocity": Error("L1 error of velocity, %", ".1f", 100, order=False),
               "peak": Error("peak pressure, %", "+.1f", 100, order=False), "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {"two particles": Study("two particles along a cell, factor 0.4.", (50, 100, 200, 400), 0.4),

@@ -42,11 +42,12 @@ def kirsch_written():
 class ElasticStatics(Case):
     name = "elastic_statics"
     title = "Lamé's cylinder and a plate with a hole"
-    about = """Quarters of bodies in plane strain (one cell between symmetry planes; E = 1, Poisson's ratio 0.3), damped until they rest.
-*cylinder*: radii 1 and 2 under an inner pressure of 1e-4. *plate*: a hole of radius 1 in a square of half width 3, under the tractions
-that Kirsch's solution of the infinite plate has there for a tension of 1e-4. The lattice of particles cuts the round edges into
-stairs, and the load on the surface is spread over about a cell: first order is to be expected. Error: root mean square of the
-stress over its largest value; *inside*: of the particles more than 0.25 from an edge."""
+    about = """Quarters of bodies in plane strain (one cell between symmetry planes; E = 1, Poisson's ratio 0.3), damped
+until they rest. *cylinder*: radii 1 and 2 under an inner pressure of 1e-4. *plate*: a hole of radius 1 in a square of half
+width 3, under the tractions that Kirsch's solution of the infinite plate has there for a tension of 1e-4. The lattice of
+particles cuts the round edges into stairs, and the load on the surface is spread over about a cell: first order is to be
+expected. Error: root mean square of the stress over its largest value; *inside*: of the particles more than 0.25 from an
+edge."""
     errors = {"stress": Error("error of stress"), "inside": Error("inside", ".2e", order=False)}
     studies = {"cylinder": Study("cells per unit of length, factor 0.4.", (4, 8, 16), 0.4),
                "plate": Study("cells per unit of length, factor 0.4.", (4, 8), 0.4, methods=methods.flip)}

@@ -12,9 +12,10 @@ LENGTH = 100.0
 class PlaneShock(Case):
     name = "plane_shock"
     title = "Plane shock in copper"
-    about = """A copper bar (`Null`, Mie-Grueneisen about a linear Hugoniot) in uniaxial strain hits a wall at 1000 m/s; the set-up is
-that of [validation.md](validation.md), with two particles along a cell. Error: of the plateau's energy, from the jump conditions.
-*Ripple*: scatter of the pressure on the plateau, over the pressure; *overshoot*: of the stress at the front."""
+    about = """A copper bar (`Null`, Mie-Grueneisen about a linear Hugoniot) in uniaxial strain hits a wall at 1000 m/s; the
+set-up is that of [validation.md](validation.md), with two particles along a cell. Error: of the plateau's energy, from the
+jump conditions. *Ripple*: scatter of the pressure on the plateau, over the pressure; *overshoot*: of the stress at the
+front."""
     errors = {"energy": Error("error of energy, %", ".2f", 100, order=False), "pressure": Error("error of pressure, %", ".2f", 100, order=False),
               "speed": Error("error of shock speed, %", ".2f", 100, order=False), "ripple": Error("ripple, %", ".2f", 100, order=False),
               "overshoot": Error("overshoot, %", ".1f", 100, order=False), "width": Error("front, cells", ".1f", order=False),

@@ -34,10 +34,10 @@ TUBES = {
 class Riemann(Case):
     name = "riemann"
     title = "Riemann problems"
-    about = """An ideal gas (gamma 1.4; `Null` with `Polynomial`, c4 = c5 = 0.4, default viscosity) in a tube of length 1, a column
-of one cell between symmetry planes. Error: the mean over the tube of the absolute error of the density (means over the matter
-of a first cell), over its largest exact value; the exact solution is Riemann's. *Overshoot*: by how much the largest velocity of a
-layer of particles exceeds that between the waves."""
+    about = """An ideal gas (gamma 1.4; `Null` with `Polynomial`, c4 = c5 = 0.4, default viscosity) in a tube of length 1, a
+column of one cell between symmetry planes. Error: the mean over the tube of the absolute error of the density (means over
+the matter of a first cell), over its largest exact value; the exact solution is Riemann's. *Overshoot*: by how much the
+largest velocity of a layer of particles exceeds that between the waves."""
     errors = {"density": Error("L1 error of density, %", ".2f", 100), "overshoot": Error("overshoot of velocity, %", ".1f", 100, order=False),
               "pressure": Error("L1 error of pressure, %", ".2f", 100, order=False),
               "velocity": Error("L1 error of velocity, %", ".2f", 100, order=False),
