@@ -74,7 +74,7 @@ void Watch::warn(Kind& kind, std::int64_t count, const core::OffendingParticles&
 
 void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log) {
   const double drift = balance.relative_drift;
-  if (!(std::abs(drift) > std::abs(largest_drift_))) return;
+  if (clock.step < first_judged_step || !(std::abs(drift) > std::abs(largest_drift_))) return;
   if (std::abs(drift) > notable_drift && std::abs(largest_drift_) <= notable_drift) {
     log.warn(
         "step {}, time {:.6g}: the energy balance is off by {:.3g} %, more than {:.3g} %: the results may be "

@@ -17,6 +17,9 @@ namespace mpm::apps {
 /// Energy drift, relative to the largest energy of the balance, above which a run says so without being
 /// asked.
 inline constexpr double notable_drift = 0.01;
+/// Steps after which the balance is judged: before, all energy may be the little that a body gained since it
+/// began to fall, of which the error of one step is a notable part.
+inline constexpr std::int64_t first_judged_step = 50;
 
 class Watch {
  public:
@@ -27,7 +30,7 @@ class Watch {
   /// exceeds EnergyFraction, on every rank. Collective.
   void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Reductions& ranks,
                   io::Log& log);
-  /// The energy balance at a row of the status file; warns at the first notable drift.
+  /// The energy balance at a row of the status file or at the end; warns at the first notable drift.
   void note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log);
   /// The energy drift that was largest in magnitude since this run's start or continuation.
   double largest_drift() const { return largest_drift_; }

@@ -220,8 +220,12 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   // grid, and its reaction acts on the particles too: only then do particles come to rest at the wall, can
   // leave it again, and gain no energy when it releases them. With USF an error proportional to the step
   // remains: its strain uses the node's velocity before the wall has stopped it.
+  //
+  // A full node on a face has half the mass of one inside, and so has its floor: 1 - 2 m / floor.
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
     double *v = Motion{at}.velocity(), *dv = Motion{at}.increment();
+    double& omitted = Motion{at}.omitted_share();
+    omitted = std::max(0.0, 2 * omitted - 1);
     if (boundary == Boundary::fixed) {
       for (int a = 0; a < 3; ++a) v[a] = dv[a] = 0;
     } else if (boundary == Boundary::symmetry) {

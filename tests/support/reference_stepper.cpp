@@ -367,7 +367,12 @@ void ReferenceStepper::initial_velocities() {
 void ReferenceStepper::integrate_momentum(double dt) {
   const double floor = case_.scheme == ReferenceScheme::usl ? case_.usl_mass_floor * node_mass_unit_ : 0.0;
   for_active_nodes([&](const Index& index, Node& node) {
-    const double left_out = node.m < floor ? 1 - node.m / floor : 0.0;
+    double full = 1;  // share of the node's surroundings inside the walls
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t side = 0; side < 2; ++side)
+        if (case_.boundary[2 * a + side] != 0 && index[a] == (side == 0 ? layer_ : nodes_[a] - 1 - layer_))
+          full /= 2;
+    const double left_out = node.m < full * floor ? 1 - node.m / (full * floor) : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double p_old = node.p[a];
       node.start[a] = p_old / node.m;
