@@ -380,8 +380,7 @@ class Run {
     report.particle_steps =
         communication_.reductions.spread(particle_steps_).mean * communication_.reductions.size();
     const core::Totals totals = core::compute_totals(model_, communication_);
-    note_balance(totals);
-    report.largest_drift = watch_->largest_drift();
+    if (report.reason.empty()) report.reason = watch_->words_of_drift();
     log_->say("\n{}", io::timing_table(report));
     log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads",
               io::state_hash(model_, communication_));

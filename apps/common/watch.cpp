@@ -72,21 +72,37 @@ void Watch::warn(Kind& kind, std::int64_t count, const core::OffendingParticles&
   log.warn("{}", text);
 }
 
+double Watch::mean_drift() const {
+  double sum = 0;
+  for (const double drift : drifts_) sum += drift;
+  return drifts_.empty() ? 0 : sum / static_cast<double>(drifts_.size());
+}
+
 void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log) {
-  const double drift = balance.relative_drift;
-  if (clock.step < first_judged_step || !(std::abs(drift) > std::abs(largest_drift_))) return;
-  if (std::abs(drift) > notable_drift && std::abs(largest_drift_) <= notable_drift) {
+  if (clock.step < first_judged_step) return;
+  drifts_.push_back(balance.relative_drift);
+  if (drifts_.size() > judged_rows) drifts_.pop_front();
+  const double mean = mean_drift();
+  if (drifts_.size() < judged_rows || !(std::abs(mean) > std::abs(largest_mean_drift_))) return;
+  if (std::abs(mean) > notable_drift && std::abs(largest_mean_drift_) <= notable_drift) {
     log.warn(
-        "step {}, time {:.6g}: the energy balance is off by {:.3g} %, more than {:.3g} %: the results may be "
-        "wrong; docs/stability.md says what to try",
-        clock.step, clock.time, 100 * drift, 100 * notable_drift);
+        "step {}, time {:.6g}: the energy balance has been off by {:.3g} % in the mean of {} rows, more than "
+        "{:.3g} %: the results may be wrong; docs/stability.md says what to try",
+        clock.step, clock.time, 100 * mean, judged_rows, 100 * notable_drift);
   }
-  largest_drift_ = drift;
+  largest_mean_drift_ = mean;
+}
+
+std::string Watch::words_of_drift() const {
+  const double last = mean_drift();
+  const double worst = std::abs(last) > std::abs(largest_mean_drift_) ? last : largest_mean_drift_;
+  if (!(std::abs(worst) > notable_drift)) return {};
+  return fmt::format("the energy balance was off by up to {:.3g} %", 100 * worst);
 }
 
 void Watch::conclude(io::Log& log) const {
-  if (std::abs(largest_drift_) > notable_drift)
-    log.warn("the energy balance was off by up to {:.3g} %", 100 * largest_drift_);
+  const std::string drift = words_of_drift();
+  if (!drift.empty()) log.warn("{}", drift);
   if (warn_.level != core::WarnInput::Level::per_particle) return;
   for (const Kind& kind : kinds_) {
     if (kind.incidents > 0)

@@ -3,6 +3,7 @@
 // on any ranks and threads.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <set>
 #include <string>
@@ -15,10 +16,12 @@
 namespace mpm::apps {
 
 /// Energy drift, relative to the largest energy of the balance, above which a run says so without being
-/// asked.
+/// asked: in the mean over some rows of the status file, since kinetic and internal energy belong to times
+/// half a step apart, so that their sum oscillates with the waves.
 inline constexpr double notable_drift = 0.01;
-/// Steps after which the balance is judged: before, all energy may be the little that a body gained since it
-/// began to fall, of which the error of one step is a notable part.
+inline constexpr std::size_t judged_rows = 10;
+/// The first step that is judged: before, all energy may be the little that a body gained since it began to
+/// fall, of which the error of one step is a notable part.
 inline constexpr std::int64_t first_judged_step = 50;
 
 class Watch {
@@ -30,10 +33,10 @@ class Watch {
   /// exceeds EnergyFraction, on every rank. Collective.
   void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Reductions& ranks,
                   io::Log& log);
-  /// The energy balance at a row of the status file or at the end; warns at the first notable drift.
+  /// The energy balance at a row of the status file; warns at the first notable drift.
   void note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log);
-  /// The energy drift that was largest in magnitude since this run's start or continuation.
-  double largest_drift() const { return largest_drift_; }
+  /// Of a notable drift since this run's start or continuation; empty without.
+  std::string words_of_drift() const;
   /// Reports a notable drift, and what level 1 has counted beyond the particles that it named.
   void conclude(io::Log& log) const;
   /// True, on all ranks, if the scene requests a stop near the boundary and a particle is in the outermost
@@ -56,7 +59,9 @@ class Watch {
   Kind kinds_[3] = {{"with internal energy below zero", {}, 0},
                     {"whose volume would have vanished", {}, 0},
                     {"left the grid", {}, 0}};
-  double largest_drift_ = 0;
+  double mean_drift() const;
+  std::deque<double> drifts_;  ///< of the last judged_rows
+  double largest_mean_drift_ = 0;
   std::multimap<double, std::string> load_ends_;  ///< end time of each load table, and its owner
 };
 

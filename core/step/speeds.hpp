@@ -22,23 +22,42 @@ namespace mpm::core {
 ///   SGMP          1.5  1.3  2.2       1.3  1.1  2.3       1.0  0.80 1.2
 ///   uGIMP         1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.73 0.77
 ///   cpGIMP        1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.77 0.77
+///   CPDI, CPDI2   1.6  1.0  1.6       0.80 1.2  1.7       0.80 0.77 0.77
 ///   quadratic     1.6  1.2  1.8       1.0  1.1  1.9       1.0  0.73 1.1
 ///   cubic         1.5  1.3  2.0       1.4  1.1  2.1       1.3  1.0  1.4
-/// In the shock only linear functions with USF fall short: 0.55.
-inline double wave_limit(ShapeFunction shape, Scheme scheme) {
+/// In the shock only linear functions with USF fall short: 0.55. XPIC and FMPM allow longer steps than FLIP,
+/// affine transfers shorter ones; fluid, APIC and TPIC | AFLIP:
+///   uGIMP, cpGIMP 0.73 | 0.64         0.64 | 0.67         0.23 | 0.2
+///   quadratic     0.87 | 0.59         0.87 | 0.59         0.42 | below 0.2
+///   cubic         1.1  | 0.77         1.1  | 0.80         0.44 | below 0.2
+inline double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) {
   const auto by_scheme = [scheme](double musl, double usf, double usl) {
     return scheme == Scheme::musl ? musl : scheme == Scheme::usf ? usf : usl;
   };
+  const bool aflip = transfer == Transfer::aflip;
+  if (aflip || transfer == Transfer::apic || transfer == Transfer::tpic) {
+    switch (shape) {
+      case ShapeFunction::quadratic_bspline:
+        return aflip ? by_scheme(0.57, 0.57, 0.15) : by_scheme(0.85, 0.85, 0.4);
+      case ShapeFunction::cubic_bspline:
+        return aflip ? by_scheme(0.75, 0.75, 0.15) : by_scheme(1.1, 1.1, 0.42);
+      default: return aflip ? by_scheme(0.62, 0.62, 0.15) : by_scheme(0.7, 0.62, 0.22);
+    }
+  }
   switch (shape) {
     case ShapeFunction::sgmp: return by_scheme(1.25, 1.1, 0.75);
     case ShapeFunction::uniform_gimp:
-    case ShapeFunction::contiguous_particle_gimp: return by_scheme(1, 0.75, 0.7);
+    case ShapeFunction::contiguous_particle_gimp:
+    case ShapeFunction::cpdi:
+    case ShapeFunction::cpdi2: return by_scheme(1, 0.75, 0.7);
     case ShapeFunction::quadratic_bspline: return by_scheme(1.2, 0.95, 0.7);
     case ShapeFunction::cubic_bspline: return by_scheme(1.25, 1.1, 0.95);
     default: return by_scheme(1, 0.5, 0.6);
   }
 }
-inline double wave_limit(const Scene& scene) { return wave_limit(scene.grid.shape, scene.solution.scheme); }
+inline double wave_limit(const Scene& scene) {
+  return wave_limit(scene.grid.shape, scene.solution.scheme, scene.solution.transfer);
+}
 
 /// Largest stable step without the scene's factor (thesis 2-51, 2-74): the smallest cell edge over the
 /// largest (Q + sqrt(Q^2 + c^2))/wave_limit + |v|.

@@ -25,8 +25,7 @@ Json energy_json(const core::Model& model, const core::Totals& totals, const Run
           {"dissipated_by_contact", report.dissipated_by_contact},
           {"total", balance.total},
           {"initial_total", model.initial_energy},
-          {"relative_drift", balance.relative_drift},
-          {"largest_relative_drift", report.largest_drift}};
+          {"relative_drift", balance.relative_drift}};
 }
 
 Json body_json(const core::Model& model, const core::Body& body, const core::BodyTotals& totals) {

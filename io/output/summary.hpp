@@ -26,7 +26,6 @@ struct RunReport {
   /// Sum over the steps of this run of the particles in each.
   double particle_steps = 0;
   double dissipated_by_contact = 0;  ///< energy
-  double largest_drift = 0;          ///< relative, of the energy balance at the rows of the status file
 };
 
 /// The text of the file; phase times are means over the ranks. Undefined numbers are null.

@@ -183,7 +183,9 @@ double wave_limit(ReferenceShape shape, ReferenceScheme scheme) {
     switch (shape) {
       case ReferenceShape::sgmp: return {1.25, 1.1, 0.75};
       case ReferenceShape::ugimp:
-      case ReferenceShape::cpgimp: return {1, 0.75, 0.7};
+      case ReferenceShape::cpgimp:
+      case ReferenceShape::cpdi:
+      case ReferenceShape::cpdi2: return {1, 0.75, 0.7};
       case ReferenceShape::quadratic_bspline: return {1.2, 0.95, 0.7};
       case ReferenceShape::cubic_bspline: return {1.25, 1.1, 0.95};
       default: return {1, 0.5, 0.6};

@@ -8,6 +8,7 @@ import pathlib
 import h5py
 import numpy as np
 
+from _line import WAVE_LIMIT
 import _mpm
 
 COPPER = {"density": 8.93e-3, "c0": 3940.0, "s1": 1.49, "gamma0": 1.96}
@@ -160,13 +161,14 @@ class ElasticBar:
         return 4 * self.length / self.wave_speed
 
     def dispersion(self):
-        """Relative error of the period to second order in k h and omega dt, k = pi/(2 L), omega dt = factor k h.
+        """Relative error of the period to second order in k h and omega dt, k = pi/(2 L), omega dt = factor
+        times the scheme's limit times k h.
 
         Along the bar nodes see u'' through linear elements, 1 - (k h)^2/12 of it, and their velocities come back from
         particles at h/4 and 3h/4 with 1 - 3 (k h)^2/16: omega^2 falls by both. The leapfrog raises omega by
         (omega dt)^2/24."""
         kh = np.pi / (2 * self.cells)
-        return (13 / 96 - self.factor**2 / 24) * kh**2
+        return (13 / 96 - (self.factor * WAVE_LIMIT[self.algorithm]) ** 2 / 24) * kh**2
 
     def text(self):
         h = self.length / self.cells

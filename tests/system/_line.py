@@ -6,9 +6,11 @@ and 2-82 to 2-92 (energy and pressure together), in the form that physics/materi
 
 import numpy as np
 
-# Share of a cell's mass below which USL's strain leaves out part of a node's increment: 0.2 in core/step/passes.cpp. A
-# column one cell wide between symmetry planes has its nodes on the four edges, each with a quarter of the line's mass.
-USL_MASS_FLOOR = 4 * 0.2
+# Share of a full node's mass below which USL's strain leaves out part of its increment: usl_mass_floor of
+# core/step/passes_with.hpp. A full node has the mass of a cell, on the wall half of it.
+USL_MASS_FLOOR = 0.2
+# wave_limit of core/step/speeds.hpp for linear functions.
+WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.6}
 
 
 class Line:
@@ -24,7 +26,8 @@ class Line:
         self.volume = self.first_volume.copy()
         self.p, self.q, self.energy = np.zeros(count), np.zeros(count), np.zeros(count)
         self.nodes = round(length / cell) + 4
-        self.critical = cell / (c0 + abs(speed))
+        self.wave_limit = WAVE_LIMIT[algorithm]
+        self.critical = cell / (c0 / self.wave_limit + abs(speed))
         self.steps = 0
 
     def run(self, end):
@@ -55,12 +58,15 @@ class Line:
 
         mass, momentum = to_nodes(share * self.mass), to_nodes(share * self.mass * self.v)
         if self.algorithm == "USF":
-            wave = self.stress(rate(velocity_of(momentum)), dt)
+            at_new_places = rate(velocity_of(momentum))
+            wave = self.stress(at_new_places / (1 - dt * at_new_places), dt)
         dv = dt * velocity_of(to_nodes(slope * self.volume * (self.p + self.q)))
         velocity = at_wall(velocity_of(momentum) + dv)
         self.v += (share * dv[node]).sum(axis=0)
         if self.algorithm == "USL":
-            left_out = np.maximum(0, 1 - mass / (USL_MASS_FLOOR * self.density * self.cell))
+            full = np.full(self.nodes, self.density * self.cell)
+            full[0] /= 2
+            left_out = np.maximum(0, 1 - mass / (USL_MASS_FLOOR * full))
             wave = self.stress(rate(at_wall(velocity - left_out * dv)), dt)
         if self.algorithm == "MUSL":
             wave = self.stress(rate(velocity_of(to_nodes(share * self.mass * self.v))), dt)
@@ -90,7 +96,7 @@ class Line:
         self.energy = star - h * self.p
         self.q, self.volume = q, volume
         damping = np.where(squeeze > 0, self.bq2 * c + self.bq1 * self.cell * squeeze, 0)
-        return damping + np.sqrt(damping**2 + sound(self.p) ** 2)
+        return (damping + np.sqrt(damping**2 + sound(self.p) ** 2)) / self.wave_limit
 
     def cold(self, mu):
         """p = a + gamma0 E: a and da/dmu. In tension a is linear."""
