@@ -18,7 +18,7 @@ namespace mpm::apps {
 /// Energy drift, relative to the largest energy of the balance, above which a run says so without being
 /// asked: in the mean over some rows of the status file, since kinetic and internal energy belong to times
 /// half a step apart, so that their sum oscillates with the waves.
-inline constexpr double notable_drift = 0.01;
+inline constexpr double notable_drift = 0.02;
 inline constexpr std::size_t judged_rows = 10;
 /// The first step that is judged: before, all energy may be the little that a body gained since it began to
 /// fall, of which the error of one step is a notable part.

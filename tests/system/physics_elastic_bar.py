@@ -1,6 +1,7 @@
 """Period, energy and order of convergence of a fixed-free elastic bar in its first mode."""
 
 import _cases
+import _line
 import _mpm
 
 
@@ -11,7 +12,7 @@ class ElasticBar(_mpm.Case):
             with self.subTest(algorithm=algorithm):
                 errors = []
                 for count in cells:
-                    bar = _cases.ElasticBar(count, algorithm, rows=100)
+                    bar = _cases.ElasticBar(count, algorithm, 0.4 / _line.WAVE_LIMIT[algorithm], rows=100)
                     folder = f"{algorithm}{count}"
                     self.run_in(folder, [self.write(bar.text())])
                     found = bar.measure(self.folder / folder)
