@@ -30,7 +30,7 @@ class PassesWith final : public Passes {
   const Loads& loads() const override { return loads_; }
   void begin_step(double length) override {
     dt = length;
-    transfer_step_ = {dt / model_.clock.critical_dt};
+    transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
     loads_.begin_step(model_.clock.time, dt);
     begin_corrections();
   }

@@ -14,7 +14,7 @@
 
 namespace mpm::core {
 
-/// Share of PIC in AFLIP's velocity in a step of critical length.
+/// Share of PIC in AFLIP's velocity in a step in which a wave crosses a cell.
 inline constexpr double aflip_damping = 0.01;
 
 template <Transfer kind>

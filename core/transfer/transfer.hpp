@@ -21,7 +21,7 @@ struct AffineRows : MappedRows {
 
 /// What a transfer knows of the step.
 struct TransferStep {
-  double courant = 0;  ///< the step over the critical one
+  double courant = 0;  ///< the step over the time in which a wave crosses a cell
 };
 
 template <class T>
