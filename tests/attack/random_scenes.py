@@ -58,8 +58,9 @@ def scene(number, seed):
     factor = rng.choice((0.3, 0.6, 0.9, 0.9, 1.0))
     grid = _mpm.grid((0, 0, 0), [rng.choice((10, 11, 13)) * CELL for _ in range(3)], faces, CELL)
     lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-1"/></Detonation>' if "TNT" in laws else ""
-    return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'),
-                      _mpm.solution(1.0, scheme, factor, transfer, more), [bits_laws.material(name) for name in laws], OUTPUT, lit)
+    solution = _mpm.solution(1.0, scheme, factor, transfer, more)
+    materials = [bits_laws.material(name) for name in laws]
+    return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'), solution, materials, OUTPUT, lit)
 
 
 def judge(number, seed, folder):
