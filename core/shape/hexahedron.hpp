@@ -13,6 +13,8 @@
 // tests/core/shape.
 #pragma once
 
+#include <initializer_list>
+
 #include "core/simd/lanes.hpp"
 #include "core/tensor/vec3.hpp"
 
