@@ -91,8 +91,9 @@ T part_fragments(core::Batch& batch, double* block, int row, const T& old_volume
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   double* const gap = block + layout.offset(Column::void_volume);
-  const core::MaskOf<T> loose = (core::load<T>(block + layout.offset(Column::failed)) > 0.5) &
-                                (core::load<T>(block + layout.offset(Column::pressure)) == 0.0);
+  const T failed = core::load<T>(block + layout.offset(Column::failed));
+  const T pressure = core::load<T>(block + layout.offset(Column::pressure));
+  const core::MaskOf<T> loose = (failed > 0.5) & (pressure == 0.0);
   if (!core::any(loose)) return stretched;
   const T whole = (old_volume + core::load<T>(gap)) * core::select(ratio > 0.0, ratio, T(1.0));
   const T fragments = core::min(whole, old_volume);
