@@ -10,6 +10,8 @@ namespace mpm::physics {
 struct FailedRules {
   int type = 0;
   double tensile_cutoff = 0;  ///< stress, <= 0
+  /// Bears pressure and no tension at all.
+  bool no_tension() const { return type == 0 || (type == 2 && tensile_cutoff == 0); }
 };
 
 template <class T>

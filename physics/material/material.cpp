@@ -64,7 +64,7 @@ core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
   set.add(laws_.eos->traits().columns);
   for (const Failure& failure : laws_.failures) set.add(failure.model->columns());
   if (fails_) set.add(Column::failed);
-  if (fails_ && laws_.common.failed_type != 1) set.add(Column::void_volume);
+  if (fails_ && pressure_rules({}).failed.no_tension()) set.add(Column::void_volume);
   if (heats_) set.add(Column::temperature);
   if (expands_) set.add({Column::temperature, Column::thermal_strain});
   if (laws_.common.conductivity > 0) set.add(Column::temperature);
