@@ -4,8 +4,8 @@
 // A volume that would become zero, negative or NaN keeps its old value and is counted; one outside the bounds
 // of Volume min/max is set to the bound and counted.
 //
-// What has failed and bears no tension does not stretch: once its pressure is zero, its fragments keep their volume V and part,
-// which opens a void v between them. Compression closes the void first:
+// What has failed and bears no tension does not stretch: once its pressure is zero, its fragments keep their
+// volume V and part, which opens a void v between them. Compression closes the void first:
 //   V + v <- (V + v) ratio,   V <- min(V, V + v)
 // Stretched instead, its density would leave the range of any equation of state. At p = a + gamma0 E, with E
 // per unit initial volume, compression from V to V0 multiplies an energy by exp(gamma0 (V/V0 - 1)).
