@@ -15,6 +15,12 @@ enum class Scheme { usf, usl, musl };
 enum class Integration { explicit_dynamics, implicit };
 
 enum class Transfer { flip, pic, apic, tpic, aflip, xpic, fmpm };
+/// Particles carry an affine velocity (core/transfer/affine.hpp).
+constexpr bool is_affine(Transfer t) {
+  return t == Transfer::apic || t == Transfer::tpic || t == Transfer::aflip;
+}
+/// What PIC loses is mapped again (core/transfer/corrected.hpp).
+constexpr bool is_corrected(Transfer t) { return t == Transfer::xpic || t == Transfer::fmpm; }
 
 struct TimeStepInput {
   double factor = 0.9;            ///< of the critical step, (0, 1]

@@ -94,7 +94,7 @@ MemoryNeed memory_need(const Model& model) {
   const double arrays = array_doubles(grid);
   const SolutionInput& solution = model.scene->solution;
   double kept = solution.scheme == Scheme::musl ? motion_width : 0;  // doubles of a node between passes
-  if (solution.transfer == Transfer::xpic || solution.transfer == Transfer::fmpm) kept += node_doubles;
+  if (is_corrected(solution.transfer)) kept += node_doubles;
   const double motion = kept * grid.shape().nodes();
   need.bricks = (place + sizeof(double) * (arrays + motion)) * grid.owned() +
                 (place + sizeof(double) * arrays) * grid.ghosts();

@@ -22,29 +22,31 @@ namespace mpm::core {
 
 inline constexpr int corners = 8;
 
-/// Sums over the corners with the signs of each mode: 1, xi_1, xi_2, xi_1 xi_2, xi_3, ... (bit k: xi_k).
-template <class T>
-inline void corners_to_modes(T (&x)[corners]) {
+/// Replaces x[c] and x[c | bit] by `lower` and `upper` of the two, axis by axis.
+template <class T, class Lower, class Upper>
+inline void combine_along_axes(T (&x)[corners], Lower lower, Upper upper) {
   for (const int bit : {1, 2, 4}) {
     for (int c = 0; c < corners; ++c) {
       if ((c & bit) != 0) continue;
       const T low = x[c], high = x[c | bit];
-      x[c] = low + high;
-      x[c | bit] = high - low;
+      x[c] = lower(low, high);
+      x[c | bit] = upper(low, high);
     }
   }
+}
+/// Sums over the corners with the signs of each mode: 1, xi_1, xi_2, xi_1 xi_2, xi_3, ... (bit k: xi_k).
+template <class T>
+inline void corners_to_modes(T (&x)[corners]) {
+  combine_along_axes(
+      x, [](const T& low, const T& high) { return low + high; },
+      [](const T& low, const T& high) { return high - low; });
 }
 /// Sums over the modes with their signs at each corner.
 template <class T>
 inline void modes_to_corners(T (&x)[corners]) {
-  for (const int bit : {1, 2, 4}) {
-    for (int c = 0; c < corners; ++c) {
-      if ((c & bit) != 0) continue;
-      const T even = x[c], odd = x[c | bit];
-      x[c] = even - odd;
-      x[c | bit] = even + odd;
-    }
-  }
+  combine_along_axes(
+      x, [](const T& even, const T& odd) { return even - odd; },
+      [](const T& even, const T& odd) { return even + odd; });
 }
 
 /// The corners +-a +-b +-c, a component of them.

@@ -34,8 +34,8 @@ inline double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) 
   const auto by_scheme = [scheme](double musl, double usf, double usl) {
     return scheme == Scheme::musl ? musl : scheme == Scheme::usf ? usf : usl;
   };
-  const bool aflip = transfer == Transfer::aflip;
-  if (aflip || transfer == Transfer::apic || transfer == Transfer::tpic) {
+  if (is_affine(transfer)) {
+    const bool aflip = transfer == Transfer::aflip;
     switch (shape) {
       case ShapeFunction::quadratic_bspline:
         return aflip ? by_scheme(0.57, 0.57, 0.15) : by_scheme(0.85, 0.85, 0.4);

@@ -67,8 +67,7 @@ inline constexpr bool corrects_velocities = requires(const T& transfer) {
 
 /// The orders of the scene's transfer: 1 without corrections.
 inline int orders_of(const SolutionInput& solution) {
-  const bool corrects = solution.transfer == Transfer::xpic || solution.transfer == Transfer::fmpm;
-  return corrects ? solution.xpic_order : 1;
+  return is_corrected(solution.transfer) ? solution.xpic_order : 1;
 }
 
 }  // namespace mpm::core

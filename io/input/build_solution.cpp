@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/step/passes.hpp"
 #include "io/input/build.hpp"
 
 namespace mpm::io {
@@ -112,11 +113,8 @@ void check_method(const Node& root, const core::Scene& scene, const BuildContext
   using enum core::ShapeFunction;
   const core::ShapeFunction shape = scene.grid.shape;
   const core::Transfer transfer = scene.solution.transfer;
-  const bool affine = transfer == core::Transfer::apic || transfer == core::Transfer::tpic ||
-                      transfer == core::Transfer::aflip;
   const std::optional<Node> solution = root.child("Solution"), grid = root.child("Grid");
-  if (solution && affine &&
-      (shape == linear || shape == sgmp || shape == ddmp || shape == cpdi || shape == cpdi2)) {
+  if (solution && core::is_affine(transfer) && !core::affine_transfers_go_with(shape)) {
     solution->report(context.diagnostics, "transfer",
                      "does not go with this shape: expected QuadraticBSpline, CubicBSpline, uGIMP or cpGIMP");
   }

@@ -107,10 +107,6 @@ bool no_pictures(const Place& at) {
   return !post || (!post->h5part && post->vtk == core::PostProcessingInput::Vtk::none);
 }
 
-bool corrects(core::Transfer transfer) {
-  return transfer == core::Transfer::xpic || transfer == core::Transfer::fmpm;
-}
-
 using Random = core::RandomFailureInput;
 const Random& random(const Place& at) { return at.material->random_failure; }
 
@@ -263,7 +259,7 @@ const std::vector<Rule>& rules() {
        "acts at faces of the grid with boundary=\"0\" only, and there is none"},
       {"Solution",
        {"xpic_order", "xpic_interval"},
-       [](const Place& at) { return !corrects(at.scene.solution.transfer); },
+       [](const Place& at) { return !core::is_corrected(at.scene.solution.transfer); },
        "acts with transfer XPIC and FMPM only"},
       {"Solution/TimeStep",
        {"factor", "const", "NotConsiderVisForCp"},

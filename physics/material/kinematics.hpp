@@ -103,16 +103,16 @@ T part_fragments(core::Batch& batch, double* block, int row, const T& old_volume
   return core::select(loose, fragments, stretched);
 }
 
-/// Fills volumetric_strain (of the material, without voids) and old_volume of the batch; updates the volume
-/// and, where the layout has them, the void and the accumulated strains.
+/// Fills volumetric_strain (of the material, without voids) and old_volume of the batch; updates the volume,
+/// the accumulated strains where the layout has them, and the voids where `parts`: failed material bears no
+/// tension.
 template <class T>
 [[gnu::noinline, gnu::flatten]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
-                                                       double reference_density) {
+                                                       double reference_density, bool parts = false) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);
   const int strain_at = layout.offset(Column::strain_xx);
-  const bool parts = layout.has(Column::void_volume);
   const bool limits = options.volume_min > 0 || options.volume_max > 0;
   const double dt = batch.dt;
   const int type = options.volume_update;

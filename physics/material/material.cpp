@@ -64,7 +64,7 @@ core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
   set.add(laws_.eos->traits().columns);
   for (const Failure& failure : laws_.failures) set.add(failure.model->columns());
   if (fails_) set.add(Column::failed);
-  if (fails_ && pressure_rules({}).failed.no_tension()) set.add(Column::void_volume);
+  if (fails_ && pressure_rules(options).failed.no_tension()) set.add(Column::void_volume);
   if (heats_) set.add(Column::temperature);
   if (expands_) set.add({Column::temperature, Column::thermal_strain});
   if (laws_.common.conductivity > 0) set.add(Column::temperature);
@@ -104,7 +104,7 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options,
   }
   alignas(64) core::Row verdict;
   const PressureRules rules = pressure_rules(options);
-  update_kinematics<T>(batch, options, laws_.reference_density);
+  update_kinematics<T>(batch, options, laws_.reference_density, fails_ && rules.failed.no_tension());
   if (follows_deformation_) update_deformation_gradient<T>(batch);
   laws_.strength->update(batch, strength_rules(), instance);
   laws_.eos->update(batch, rules, fails_ ? verdict : nullptr, instance);

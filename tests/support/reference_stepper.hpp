@@ -14,52 +14,12 @@
 #include <span>
 #include <vector>
 
-#include "tests/support/reference_shape.hpp"
+#include "tests/support/reference_material.hpp"
 
 namespace mpm::tests {
 
 enum class ReferenceScheme { usf, usl, musl };
 enum class ReferenceTransfer { flip, xpic, fmpm };
-
-struct ReferenceMaterial {
-  double density = 0;  ///< rho_0
-  double young = 0;
-  double poisson = 0;
-  double yield = std::numeric_limits<double>::infinity();  ///< initial yield stress
-  double plastic_modulus = 0;                              ///< E_p, slope of yield stress over plastic strain
-  bool gruneisen = false;                                  ///< otherwise dp = -K tr(d eps), 2-96
-  double c0 = 0, s = 0, gamma0 = 0;                        ///< Mie-Grueneisen: U_s = c0 + s U_p
-  double bq1 = 0, bq2 = 0;                                 ///< quadratic and linear bulk viscosity
-
-  double shear() const { return young / (2 * (1 + poisson)); }
-  double bulk() const { return young / (3 * (1 - 2 * poisson)); }
-};
-
-/// E_p of a tangent modulus.
-constexpr double plastic_modulus(double young, double tangent) { return young * tangent / (young - tangent); }
-
-struct ReferenceParticle {
-  Vector x{}, v{};
-  double m = 0;
-  double V = 0;            ///< current volume
-  Matrix s{};              ///< deviator of the Cauchy stress
-  double p = 0;            ///< pressure, positive in compression, without q
-  double q = 0;            ///< artificial viscous pressure
-  double E = 0;            ///< internal energy per unit of initial volume m/rho_0
-  double epef = 0;         ///< effective plastic strain
-  double c = 0;            ///< wave speed 2-57; set by the stepper
-  double D = 0;            ///< volumetric strain rate of the latest stress update
-  Vector half_size{};      ///< of its domain, length, for ugimp and cpgimp; set by the stepper
-  DomainCorners corner{};  ///< of its domain, from x, for cpdi and cpdi2; set by the stepper
-};
-
-/// One stress update over dt at velocity gradient L: s, p, q, E, epef, V, c and D, thesis 2.4.
-/// `length` is the grid's smallest cell edge, l_e of the viscosity.
-void update_stress(const ReferenceMaterial& material, double length, double dt, const Matrix& L,
-                   ReferenceParticle& particle);
-
-/// Wave speed 2-57 of the particle's present state.
-double wave_speed(const ReferenceMaterial& material, const ReferenceParticle& particle);
 
 struct ReferenceCase {
   Vector origin{};
@@ -80,8 +40,10 @@ struct ReferenceCase {
   bool nodal_gravity = false;
   ReferenceScheme scheme = ReferenceScheme::musl;
   ReferenceTransfer transfer = ReferenceTransfer::flip;
-  int order = 2;                                                ///< of XPIC and FMPM; 1 is PIC
-  int interval = 1;                                             ///< steps; FLIP in between
+  int order = 2;     ///< of XPIC and FMPM; 1 is PIC
+  int interval = 1;  ///< steps; FLIP in between
+  /// The critical step, in units of a wave's crossing time of a cell.
+  double wave_limit = 1;
   double dt_factor = 0.5;                                       ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
   /// USL only: for the strain rate a node's internal force is divided by at least this times rho_0 * cell

@@ -355,11 +355,11 @@ TEST_CASE("A free body keeps its momentum with every shape, and its energy with 
       ReferenceStepper stepper(c);
       const Vector before = stepper.momentum();
       for (int n = 0; n < 20; ++n) stepper.step();
-      const double size = std::hypot(before[0], before[1], before[2]);
-      for (std::size_t a = 0; a < 3; ++a) CHECK(std::abs(stepper.momentum()[a] - before[a]) < 1e-12 * size);
+      for (std::size_t a = 0; a < 3; ++a)
+        CHECK(std::abs(stepper.momentum()[a] - before[a]) < 1e-12 * std::abs(before[a]));
       const auto internal = [](const ReferenceEnergy& e) { return e.internal; };
-      const double coarse = energy_error(c, 0.08, 0.05, internal),
-                   fine = energy_error(c, 0.02, 0.05, internal);
+      const double coarse = energy_error(c, 0.1, 0.05, internal),
+                   fine = energy_error(c, 0.025, 0.05, internal);
       CAPTURE(coarse, fine);
       CHECK(fine < 0.012);
       CHECK(coarse / fine > 3.5);  // first order

@@ -62,8 +62,9 @@ void compare(const SmallRun& run, const ReferenceStepper& oracle, double toleran
 /// particles' speeds of before the step only, which is off by the share of dv in c + |v|.
 void run_both(ReferenceCase c, int steps, double tolerance) {
   c.usl_mass_floor = usl_floor;
-  ReferenceStepper oracle(c);
   SmallRun run(c);
+  c.wave_limit = wave_limit(*run.scene);
+  ReferenceStepper oracle(c);
   double worst_dt = 0;
   for (int n = 0; n < steps; ++n) {
     const double dt = oracle.dt();

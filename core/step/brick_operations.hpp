@@ -1,0 +1,285 @@
+// Operations on a brick, a block or a batch, of the passes (passes_with.hpp, of which this is a part):
+// particles to grid, the nodes' equation of motion, velocities and motion of particles, strain and stress.
+#pragma once
+
+#include "core/step/passes_with.hpp"
+
+namespace mpm::core {
+
+// --- particles to grid ------------------------------------------------------------------------------------
+
+/// before(body, place, block, used) for every block, then its contribution to the nodes.
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what, class F>
+void PassesWith<S, T>::map_brick(Slot s, F before) {
+  BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
+  const BrickFrame frame = this->frame(s);
+  constexpr int width = record_doubles(what.array);
+  double* contributions = grid.contributions(what.array, s);
+  std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  SpreadPrefetch room(s + 1 < grid.owned() ? grid.contributions(what.array, s + 1) : nullptr,
+                      width * grid.shape().nodes(), block_count(brick));
+  typename S::template Sums<what> sums(contributions);
+  typename S::template Scatter<what> cell;
+  cell.clear();
+  for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+    const ParticleTile& tile = brick.tiles[c];
+    const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
+    const BlockPrefetch prefetch(model_, s, c);
+    const ColumnLayout& layout = body.pool->layout();
+    const bool loaded = maps_force(what) && loads_.act(grid, s, tile.body);
+    // Locates the next block before this one is processed, so that its stores complete before they are read.
+    Place places[2];
+    if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
+    for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+      if constexpr (maps_momentum(what))
+        prefetch.template request<S>(b, layout, maps_force(what) ? columns_to_stress : columns_to_mass);
+      room.next();
+      double* block = body.pool->block(tile.blocks[b]);
+      const int used = tile.used_lanes(b);
+      if (b + 1 < tile.blocks.size())
+        places[(b + 1) % 2].find(frame, layout, body.pool->block(tile.blocks[b + 1]));
+      const Place& place = places[b % 2];
+      before(tile.body, place, block, used);
+      add_block<S, T, what>(frame, place, layout, block, used, cell, sums.records);
+      if constexpr (maps_force(what)) {
+        if (loaded) add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
+      }
+    }
+  }
+  cell.flush(frame, sums.records);
+  sums.finish(frame);
+  if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, contributions);
+}
+
+/// Adds to the inner nodes what has been mapped beyond the grid's constrained faces.
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what>
+void PassesWith<S, T>::fold_at_walls(Slot s, double* contributions) {
+  const BoundaryFaces walls = faces(s);
+  if (walls.none()) return;
+  walls.fold(what, contributions);
+  if constexpr (maps_force(what)) {
+    constexpr NodeArray masses = maps_mass(what) ? what.array : NodeArray::second;
+    walls.reverse_weights(forces_.gravity, masses, model_.grid->contributions(masses, s), contributions);
+  }
+}
+
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what>
+void PassesWith<S, T>::map_to_grid() {
+  map_bricks<what>([this](Slot s, Scratch&) { map_brick<what>(s, [](int, const Place&, double*, int) {}); });
+}
+
+// --- nodes ------------------------------------------------------------------------------------------------
+
+/// Sums what the scheme has mapped and updates the nodes; the result in at.nodes follows MotionRecord.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::sum_and_update_nodes(Slot s, Scratch& at) {
+  const BrickGrid& grid = *model_.grid;
+  sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
+  // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
+  if (scheme_ == Scheme::usf) sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
+  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
+}
+
+/// The same; at.field holds the result too, and at.corrected the corrected velocities.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
+  sum_and_update_nodes(s, at);
+  at.field.take_motion(at.nodes.data());
+  if constexpr (corrects) {
+    if (!correcting_) return;
+    add_order(s, orders_, at);
+    at.corrected.take_motion(corrected_nodes(s));
+  }
+}
+
+// --- particles --------------------------------------------------------------------------------------------
+
+/// What the transfer gives the particles.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::take_velocities(const BrickFrame& frame,
+                                                                     const Place& place,
+                                                                     const ColumnLayout& layout,
+                                                                     double* block, Scratch& at) const {
+  if constexpr (corrects) {
+    if (correcting_) return transfer_.template take_velocities<S>(place, layout, at.corrected, block);
+  }
+  transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
+}
+
+/// v += dv; the work of loads uses the velocities before the update.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place,
+                                         double* block, int used, Scratch& at) {
+  if (loads_.act(*model_.grid, s, body))
+    at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data());
+  const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
+  const BodyMotion& motion = loads_.motion(body);
+  if (motion.kind == BodyMotion::Kind::rigid) {
+    std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
+    take_velocities(frame, place, layout, block, at);
+    integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), dt, block, used, at);
+    return;
+  }
+  const bool falls = forces_.gravity != Vec3<double>{};
+  if (falls) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
+  take_velocities(frame, place, layout, block, at);
+  if (falls) correct_work_of_gravity(forces_.gravity, dt, layout, block, used, at);
+  if (motion.kind == BodyMotion::Kind::prescribed)
+    prescribe_velocities(layout, motion.velocity, block, used, at);
+  else if (velocity_limit_ < std::numeric_limits<double>::infinity())
+    limit_velocities(layout, velocity_limit_, block, used, at);
+}
+
+/// x += dt v, with the grid's velocity or, for a body that keeps its own velocities, with those; and the work
+/// of gravity and damping.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at) {
+  const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
+  const bool does_work = forces_.damping != 0 || forces_.gravity != Vec3<double>{};
+  if (does_work) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.old);
+  if (loads_.motion(body).kind != BodyMotion::Kind::free)
+    move_at_own_velocity(layout, dt, block);
+  else
+    motion.move(layout, dt, block);
+  if constexpr (settles) motion.carry(layout, dt, block);
+  if (does_work) add_work_of_motion(forces_, layout, block, used, at);
+}
+
+/// The particles' domains: by the velocity gradient of the batch's block `b`, or as they have been carried.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::update_domains(int body, const BrickFrame& frame,
+                                                                    const ColumnLayout& layout, int b,
+                                                                    double* block, int used, Scratch& at) {
+  if constexpr (deforms)
+    at.statistics.domains += S::deform(frame, layout, at.batch.gradient, block_lanes * b, dt, block, used);
+  if constexpr (settles)
+    at.statistics.domains +=
+        S::settle(frame, layout, loads_.motion(body).kind == BodyMotion::Kind::free, block, used);
+}
+
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::noinline]] void PassesWith<S, T>::velocities_of_brick(Slot s, Scratch& at) {
+  const BrickFrame frame = this->frame(s);
+  for_each_block(s, columns_to_mass,
+                 [&](int, std::size_t, int body, const ColumnLayout& layout, double* block, int used) {
+                   update_velocities(s, frame, body, Place(frame, layout, block), block, used, at);
+                 });
+  at.add_work_of_brick();
+}
+
+/// Returns the largest speed of the brick's particles.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::noinline]] double PassesWith<S, T>::velocities_and_motion_of_brick(Slot s, Scratch& at) {
+  const BrickFrame frame = this->frame(s);
+  auto first = prefetch_nodes<NodeArray::first>(s);
+  auto second = prefetch_nodes<NodeArray::second>(s);
+  double fastest_square = 0;
+  // The forces of this step were mapped with the domains of its start; those follow now, by the gradient of
+  // the velocity that moves the particles.
+  typename S::Field moving;
+  if constexpr (deforms) {
+    const double* nodes = moving_nodes(s, at);
+    for (int n = 0; n < shared_.nodes(); ++n)
+      std::copy_n(nodes + node_doubles * n + Motion::velocity_at, 3,
+                  at.sums.data() + node_doubles * n + Motion::strain_velocity_at);
+    moving.take_strain(frame, at.sums.data());
+  }
+  for_each_block(s, columns_to_mass,
+                 [&](int c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
+                   first.next();
+                   second.next();
+                   const Place place(frame, layout, block);
+                   update_velocities(s, frame, body, place, block, used, at);
+                   move(body, {place, moving_field(at)}, block, used, at);
+                   if constexpr (deforms) S::gradient(frame, place, moving, at.batch.gradient, 0);
+                   update_domains(body, frame, layout, 0, block, used, at);
+                   for (int l = 0; l < used; l += real_width)
+                     fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
+                   find_departing(c, b, frame, erosion_volume_, layout, block, used,
+                                  departing_[static_cast<std::size_t>(s)]);
+                 });
+  at.add_work_of_brick();
+  return std::sqrt(fastest_square);
+}
+
+// --- stress -----------------------------------------------------------------------------------------------
+
+/// Of the cells, for block `b` of the batch, where the volume update asks for it.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::volumetric_strain(const BrickFrame& frame,
+                                                                       const Place& place, int b,
+                                                                       Scratch& at) {
+  if (updates_volume_by_cell())
+    S::cell_divergence(frame, place, at.field, dt, at.batch.cell_volumetric_strain, block_lanes * b);
+}
+
+/// For outputs only; no law reads it.
+inline void store_sound_speed(Batch& batch) {
+  if (!batch.layout->has(Column::sound_speed)) return;
+  for (int b = 0; b < batch.blocks; ++b) {
+    std::copy_n(batch.sound_speed + block_lanes * b, block_lanes, batch.column(Column::sound_speed, b));
+  }
+}
+
+/// Updates the material of a batch with known kinematics and records the events.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::always_inline]] inline void PassesWith<S, T>::update_material(const Body& body, Scratch& at) {
+  Batch& batch = at.batch;
+  batch.events = {};
+  batch.vanishing = batch.negative = 0;
+  body.model->update(batch, model_.options);
+  at.statistics.events += batch.events;
+  if ((batch.vanishing | batch.negative) != 0)
+    name_unphysical(model_.scene->solution.warn, body, batch, at.statistics);
+  store_sound_speed(batch);
+}
+
+/// Velocity gradient, with `moves` the motion, then the material update, batch by batch. prefetch_nodes() is
+/// called once per block.
+template <ShapePolicy S, TransferPolicy T>
+template <bool moves, class F>
+[[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, Velocities velocities, Scratch& at,
+                                                         F prefetch_nodes) {
+  const BrickFrame frame = this->frame(s);
+  Batch& batch = at.batch;
+  double fastest = 0;
+  const auto kinematics = [&](int body, int b, int used) {
+    prefetch_nodes();
+    volumetric_strain(frame, at.places[b], b, at);
+    if constexpr (moves) {
+      const MotionOfBlock<S> motion{at.places[b], at.field};
+      motion.gradient(frame, batch.gradient, block_lanes * b);
+      if (&moving_field(at) == &at.field)
+        move(body, motion, batch.block[b], used, at);
+      else
+        move(body, {at.places[b], moving_field(at)}, batch.block[b], used, at);
+      update_domains(body, frame, *batch.layout, b, batch.block[b], used, at);
+    } else {
+      S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
+      refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
+    }
+  };
+  const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
+    update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
+    if (velocities == Velocities::of_next_step)
+      at.statistics.fastest = fastest_particle(batch, wave_weight_, at.statistics.fastest);
+    else
+      fastest = std::max(fastest, fastest_wave(batch));
+    if constexpr (moves) {
+      for (int b = 0; b < batch.blocks; ++b) {
+        const std::size_t at_block = first + static_cast<std::size_t>(b);
+        find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, *batch.layout, batch.block[b],
+                       tile.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
+      }
+    }
+  };
+  for_each_batch(s, frame, at, kinematics, stress);
+  at.add_work_of_brick();
+  if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = wave_weight_ * fastest;
+}
+
+}  // namespace mpm::core
