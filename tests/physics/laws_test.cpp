@@ -44,10 +44,10 @@ TEST_CASE("plastic laws end each step on or below their yield surface", "[physic
 TEST_CASE("plastic flow and viscous flow never give energy back", "[physics][laws]") {
   holds_for_every_law("dissipation");
 }
-TEST_CASE("every law converges with first order or better as the step is refined", "[physics][laws]") {
+TEST_CASE("every law converges with first order or better as the step is refined", "[physics][laws][numbers]") {
   holds_for_every_law("convergence");
 }
-TEST_CASE("every law is objective under ten superposed turns", "[physics][objectivity]") {
+TEST_CASE("every law is objective under ten superposed turns", "[physics][objectivity][numbers]") {
   holds_for_every_law("objectivity");
 }
 TEST_CASE("internal energy is the work of all stresses, viscous ones included once", "[physics][energy]") {
