@@ -78,6 +78,8 @@ if(MPM_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # g++ spends four fifths of the compile time of the inlined kernels on this check.
+    add_compile_options(-fno-sanitize-address-use-after-scope)
     # Instrumented code hides initialisations from g++.
     list(APPEND mpm_private_options -Wno-maybe-uninitialized)
   endif()
