@@ -5,7 +5,7 @@ set(MPM_SIMD_LANES auto CACHE STRING "Doubles per SIMD vector: 1, 2, 4, 8, or au
 set_property(CACHE MPM_SIMD_LANES PROPERTY STRINGS auto 1 2 4 8)
 option(MPM_ASSERTIONS "Check invariants at run time" OFF)
 option(MPM_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
-set(MPM_TEST_FILTER "" CACHE STRING "Unit tests to run, as Catch2 selects them; all of them if empty")
+option(MPM_BRIEF_TESTS "Unit tests: few steps, and none that judge accuracy alone" OFF)
 option(MPM_RACE "Build with the thread sanitizer, for the target race (clang with libomp)" OFF)
 option(MPM_WERROR "Treat warnings as errors" OFF)
 option(MPM_PRECOMPILE "Read the standard library's headers once for all sources (g++)" ON)

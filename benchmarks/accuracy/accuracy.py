@@ -8,7 +8,8 @@
   accuracy.py tables                  tables and plots from the CSV files alone
 
 For each case OUT/CASE.csv and CASE.png, and all tables in OUT/accuracy.md. Measured rows replace those of the same point
-and leave the others. --docs: the CSV files are those of docs/accuracy, and the tables of docs/accuracy.md are renewed."""
+and leave the others. --docs: the CSV files are those of docs/accuracy, and the tables of docs/accuracy.md and
+docs/choosing.md are renewed."""
 
 import argparse
 import concurrent.futures
@@ -21,7 +22,8 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
-import methods  # noqa: E402: from this folder
+import choosing  # noqa: E402: from this folder
+import methods  # noqa: E402
 import runner  # noqa: E402
 import tables  # noqa: E402
 from cases import CASES  # noqa: E402
@@ -29,6 +31,7 @@ from common import results  # noqa: E402: from benchmarks
 
 DOCS = results.ROOT / "docs/accuracy"
 PAGE = results.ROOT / "docs/accuracy.md"
+CHOICE = results.ROOT / "docs/choosing.md"
 
 
 def machine():
@@ -157,7 +160,8 @@ def render(options):
         tables.plot(CASES[name], rows, options.plots / f"{name}.png")
     if options.docs:
         results.refresh(PAGE, blocks)
-        print(PAGE)
+        results.refresh(CHOICE, choosing.blocks(CASES, rows_of))
+        print(PAGE, CHOICE, sep="\n")
         return
     text = "# Accuracy\n"
     for name, block in blocks.items():

@@ -5,10 +5,9 @@
 
 namespace mpm::tests {
 
-/// `steps`, or four under the address sanitizer: it makes a step 20 times slower, and what it looks for shows
-/// in the first ones.
+/// `steps`, or at most four in a build whose tests are brief (MPM_BRIEF_TESTS).
 constexpr int brief(int steps) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef MPM_BRIEF_TESTS
   return std::min(steps, 4);
 #else
   return steps;
