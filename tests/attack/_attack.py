@@ -1,6 +1,10 @@
-"""What the attacks share: a case that writes every kind of file, and the comparison of what two runs have left."""
+"""Common parts of the attacks: command lines, folders, the loop over numbered cases, and the comparison of the files of
+two runs."""
 
+import argparse
+import concurrent.futures
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -38,6 +42,51 @@ class Ground:
             shutil.rmtree(self.folder)
         print(f"{self.faults} fault(s)")
         sys.exit(self.faults > 0)
+
+
+def numbered(kind, judge, count, description, prepare=lambda top: ""):
+    """The main program of an attack by numbered cases, which a number and a seed determine; returns the exit code.
+
+    `judge(number, seed, folder)` makes and runs a case, and returns its kind of end, for the table at the end, and what
+    is wrong with it, or an empty text. `prepare(top)` is called before, with the folder of all cases, and returns a
+    reason to stop, or an empty text."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=count)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0, help=f"number of the first {kind}")
+    parser.add_argument("--only", type=int, help=f"run only this {kind}")
+    parser.add_argument("--keep", help="folder in which inputs and results are kept")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    options = parser.parse_args()
+    top = pathlib.Path(options.keep or tempfile.mkdtemp(prefix=f"mpm-{kind}s-"))
+    numbers = [options.only] if options.only is not None else range(options.first, options.first + options.count)
+    reason = prepare(top)
+    if reason:
+        print(reason)
+        return 1
+    ends, failures = {}, []
+
+    def one(number):
+        folder = top / f"{number}"
+        try:
+            return number, *judge(number, options.seed, folder)
+        finally:
+            if not options.keep:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for number, end, wrong in pool.map(one, numbers):
+            ends[end] = ends.get(end, 0) + 1
+            if wrong:
+                failures.append(number)
+                print(f"--- {kind} {number} of seed {options.seed}: {wrong}", flush=True)
+    if not options.keep:
+        shutil.rmtree(top, ignore_errors=True)
+    print(", ".join(f"{cases} {end}" for end, cases in sorted(ends.items())))
+    if failures:
+        print(f"{len(failures)} of {len(numbers)} failed; repeat one with: {pathlib.Path(sys.argv[0]).name} "
+              f"--seed {options.seed} --only {failures[0]} --keep FOLDER")
+    return 1 if failures else 0
 
 
 # What a run leaves -------------------------------------------------------------------------------------------------

@@ -8,22 +8,16 @@ what does not goes through `mpm_run --dry-run`. A failure is
   - a NaN or an infinity in a file of the run.
 Mutants are numbered, and number and seed make a mutant: `--only N --keep FOLDER` makes one again."""
 
-import argparse
-import concurrent.futures
 import json
-import os
-import pathlib
 import random
 import re
 import resource
-import shutil
 import subprocess
 import sys
-import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "system"))
-import _mpm  # noqa: E402
-import bits_laws  # noqa: E402
+import _attack  # first: it adds the folder of the next ones to the path
+import _mpm
+import bits_laws
 
 STEPS = 20
 PATIENCE = 120  # seconds: some hundred times what any of these needs
@@ -265,21 +259,11 @@ def judge(number, seed, folder):
     return f"ran, exit code {code}", f"{name}: exit code {code}, {nonsense}" if nonsense else ""
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=2000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first mutant")
-    parser.add_argument("--only", type=int, help="this mutant alone")
-    parser.add_argument("--keep", help="folder in which inputs and results stay")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    options = parser.parse_args()
+def prepare(top):
+    """Makes the scenes; why they cannot be used, if they do not run themselves."""
     global SCENES
     SCENES = scenes()
-    top = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="mpm-mutants-"))
-    numbers = [options.only] if options.only is not None else range(options.first, options.first + options.count)
-
-    for name, text in SCENES.items():  # the scenes themselves are right
+    for name, text in SCENES.items():
         folder = top / f"scene {name}"
         folder.mkdir(parents=True)
         (folder / "case.xmp").write_text(text)
@@ -287,33 +271,9 @@ def main():
         if code == 0:
             code, said = call("mpm_run", ["case.xmp", "-nsteps", STEPS + 1, "--output-dir", "out"], folder)
         if code != 0 or not_finite(folder / "out"):
-            print(f"the scene '{name}' itself ends with {code}: {said} {not_finite(folder / 'out')}")
-            return 1
-
-    ends, failures = {}, []
-
-    def one(number):
-        folder = top / f"{number}"
-        try:
-            return number, *judge(number, options.seed, folder)
-        finally:
-            if not options.keep:
-                shutil.rmtree(folder, ignore_errors=True)
-
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for number, end, wrong in pool.map(one, numbers):
-            ends[end] = ends.get(end, 0) + 1
-            if wrong:
-                failures.append(number)
-                print(f"--- mutant {number} of seed {options.seed}, {wrong}", flush=True)
-    if not options.keep:
-        shutil.rmtree(top, ignore_errors=True)
-    print(", ".join(f"{count} {end}" for end, count in sorted(ends.items())))
-    if failures:
-        print(f"{len(failures)} of {len(numbers)} failed; again: mutants.py --seed {options.seed} --only "
-              f"{failures[0]} --keep FOLDER")
-    return 1 if failures else 0
+            return f"the scene '{name}' itself ends with {code}: {said} {not_finite(folder / 'out')}"
+    return ""
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(_attack.numbered("mutant", judge, 2000, __doc__, prepare))

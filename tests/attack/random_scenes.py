@@ -5,17 +5,12 @@ together have to be refused. A failure is any other exit code, a hang, a NaN or 
 grows more than tenfold without a word in the log. Scenes are numbered, and number and seed make a scene:
 `--only N --keep FOLDER` makes one again."""
 
-import argparse
-import concurrent.futures
-import os
-import pathlib
 import random
 import re
-import shutil
 import sys
-import tempfile
 
-import mutants  # first: it says where the next ones are
+import _attack  # first: it adds the folder of the next ones to the path
+import mutants
 import _mpm
 import bits_laws
 
@@ -84,38 +79,5 @@ def judge(number, seed, folder):
     return "completed" if code == 0 else "exit code 3", ""
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=10000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first scene")
-    parser.add_argument("--only", type=int, help="this scene alone")
-    parser.add_argument("--keep", help="folder in which inputs and results stay")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    options = parser.parse_args()
-    top = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="mpm-scenes-"))
-    numbers = [options.only] if options.only is not None else range(options.first, options.first + options.count)
-    ends, failures = {}, []
-
-    def one(number):
-        folder = top / f"{number}"
-        try:
-            return number, *judge(number, options.seed, folder)
-        finally:
-            if not options.keep:
-                shutil.rmtree(folder, ignore_errors=True)
-
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for number, end, wrong in pool.map(one, numbers):
-            ends[end] = ends.get(end, 0) + 1
-            if wrong:
-                failures.append(number)
-                print(f"--- scene {number} of seed {options.seed}: {wrong}", flush=True)
-    if not options.keep:
-        shutil.rmtree(top, ignore_errors=True)
-    print(", ".join(f"{count} {end}" for end, count in sorted(ends.items())))
-    return 1 if failures else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(_attack.numbered("scene", judge, 10000, __doc__))

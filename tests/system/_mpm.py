@@ -10,6 +10,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -223,6 +224,31 @@ class Case(unittest.TestCase):
         outcome = run([*arguments, "--output-dir", self.folder / folder], **more)
         self.assertEqual(outcome.code, code, outcome)
         return outcome
+
+
+def script(path, *arguments):
+    """Runs a Python script of the source tree with the programs under test."""
+    environment = {**ENVIRONMENT, "MPM_BIN": str(BIN), "MPM_SOURCE": str(SOURCE)}
+    return subprocess.run([sys.executable, SOURCE / path, *map(str, arguments)], capture_output=True, text=True,
+                          env=environment)
+
+
+class RunOnce(Case):
+    """Tests of the results of one run of a script, made once for the class in the folder `out`: `command` is the script
+    and its arguments."""
+
+    command = ()
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = pathlib.Path(tempfile.mkdtemp(prefix="mpm-once-"))
+        cls.addClassCleanup(shutil.rmtree, cls.out, ignore_errors=True)
+        cls.outcome = script(*cls.command, "--out", cls.out)
+
+    def setUp(self):
+        super().setUp()
+        self.assertEqual(self.outcome.returncode, 0, self.outcome.stdout + self.outcome.stderr)
 
 
 def main():

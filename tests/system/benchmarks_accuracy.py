@@ -4,7 +4,6 @@ orders of convergence that hold on coarse grids, and refusals by name."""
 import csv
 import math
 import re
-import subprocess
 import sys
 import unittest
 
@@ -12,8 +11,8 @@ import _cases
 import _mpm
 import numpy as np
 
-FOLDER = _mpm.SOURCE / "benchmarks/accuracy"
-sys.path[:0] = [str(FOLDER), str(_mpm.SOURCE / "benchmarks")]
+SCRIPT = "benchmarks/accuracy/accuracy.py"
+sys.path[:0] = [str(_mpm.SOURCE / "benchmarks/accuracy"), str(_mpm.SOURCE / "benchmarks")]
 
 import accuracy  # noqa: E402: found by the line above
 import methods  # noqa: E402
@@ -115,19 +114,10 @@ def needed_velocity(place, first):
     return (place(first, STEP) - place(first, -STEP)) / (2 * STEP)
 
 
-class Quick(_mpm.Case):
+class Quick(_mpm.RunOnce):
     """The coarse grids."""
 
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.out = _mpm.pathlib.Path(_mpm.tempfile.mkdtemp(prefix="mpm-accuracy-"))
-        cls.addClassCleanup(_mpm.shutil.rmtree, cls.out, ignore_errors=True)
-        cls.outcome = program("run", "--quick", "--jobs", "2", "--out", cls.out)
-
-    def setUp(self):
-        super().setUp()
-        self.assertEqual(self.outcome.returncode, 0, self.outcome.stdout + self.outcome.stderr)
+    command = (SCRIPT, "run", "--quick", "--jobs", "2")
 
     def rows(self, case, study, **where):
         lines = (line for line in (self.out / f"{case}.csv").read_text().splitlines() if not line.startswith("#"))
@@ -213,7 +203,7 @@ class Quick(_mpm.Case):
 
     def test_one_point(self):
         key = "riemann/sod/QuadraticBSpline/APIC/MUSL/50/2/0.4"
-        outcome = program("point", key, "--out", self.folder)
+        outcome = _mpm.script(SCRIPT, "point", key, "--out", self.folder)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         density = float(re.search(r"^density +(\S+)$", outcome.stdout, re.MULTILINE).group(1))
         self.assertAlmostEqual(density / self.errors("riemann", "sod", "density", "QuadraticBSpline", "APIC")[0], 1, delta=1e-3)
@@ -227,12 +217,6 @@ class Document(_mpm.Case):
         path = self.write(document, "accuracy.md")
         results.refresh(path, blocks)
         self.assertEqual(path.read_text(), document, "run accuracy.py tables --docs")
-
-
-def program(*words):
-    environment = {**_mpm.ENVIRONMENT, "MPM_BIN": str(_mpm.BIN), "MPM_SOURCE": str(_mpm.SOURCE)}
-    return subprocess.run([sys.executable, FOLDER / "accuracy.py", *map(str, words)], capture_output=True, text=True,
-                          env=environment)
 
 
 class Refusals(unittest.TestCase):

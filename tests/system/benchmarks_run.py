@@ -18,21 +18,8 @@ from common import results  # noqa: E402: found by the line above
 
 
 @unittest.skipUnless(all((_mpm.BIN / p).exists() for p in PROGRAMS), "built without MPM_BENCHMARKS")
-class Benchmarks(_mpm.Case):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.out = _mpm.pathlib.Path(_mpm.tempfile.mkdtemp(prefix="mpm-benchmarks-"))
-        cls.addClassCleanup(_mpm.shutil.rmtree, cls.out, ignore_errors=True)
-        script = _mpm.SOURCE / "benchmarks/run_all.py"
-        environment = {**_mpm.ENVIRONMENT, "MPM_BIN": str(_mpm.BIN), "MPM_SOURCE": str(_mpm.SOURCE)}
-        cls.outcome = subprocess.run([sys.executable, script, "--tiny", "--out", cls.out, "--ranks", "1", "2",
-                                      "--threads", "1", "2", "--parts", *PROGRAMS],
-                                     capture_output=True, text=True, env=environment)
-
-    def setUp(self):
-        super().setUp()
-        self.assertEqual(self.outcome.returncode, 0, self.outcome.stdout + self.outcome.stderr)
+class Benchmarks(_mpm.RunOnce):
+    command = ("benchmarks/run_all.py", "--tiny", "--ranks", "1", "2", "--threads", "1", "2", "--parts", *PROGRAMS)
 
     def rows(self, name, words=()):
         """Rows of a table; whatever is not among `words` is a number."""
