@@ -89,7 +89,6 @@ double imbalance(std::span<const BrickCount> bricks, std::span<const std::int32_
 }
 
 /// The graph of bricks in METIS's format: neighbours of i are adjacent[begin[i]] to adjacent[begin[i+1]-1].
-/// adjacent[begin[i+1]-1].
 struct Graph {
   std::vector<idx_t> begin, adjacent, shared, weight;
 };

@@ -86,7 +86,7 @@ auto on_root_then_all(const Communicator& comm, F f) -> std::invoke_result_t<F&>
     } catch (const core::InputErrors& e) {
       message = detail::is_input_errors + detail::to_bytes(e);
     } catch (const std::bad_alloc&) {
-      throw;  // memory may not suffice for a message either: the program ends every rank
+      throw;  // a message may not fit into memory either: the program ends every rank
     } catch (const std::exception& e) { message = detail::letter_of<Kept...>(e) + std::string(e.what()); }
   }
   message = broadcast(comm, std::move(message));

@@ -124,7 +124,7 @@ class Requests {
  public:
   void send(const Communicator& comm, const void* data, std::size_t bytes, int rank, int tag);
   void receive(const Communicator& comm, void* data, std::size_t bytes, int rank, int tag);
-  /// To a rank that does not know the length: pieces of `longest` bytes and a shorter last one.
+  /// To a rank to which the length was not sent: pieces of `longest` bytes and a shorter last one.
   void send_unannounced(const Communicator& comm, const void* data, std::size_t bytes, int rank, int tag,
                         std::size_t longest = longest_piece);
   void wait_all();

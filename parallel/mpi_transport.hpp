@@ -10,7 +10,7 @@ namespace mpm::parallel {
 
 class MpiTransport final : public core::ParticleTransport {
  public:
-  /// `halo` knows the neighbouring ranks.
+  /// `halo` provides the neighbouring ranks.
   MpiTransport(const Communicator& comm, const core::BrickDirectory& bricks, MpiHalo& halo)
       : comm_(comm), bricks_(bricks), halo_(halo) {}
 

@@ -4,7 +4,6 @@
 // A brick that its first particle enters is assigned to the rank that shares most nodes with it (the lowest
 // on ties), or, in a uniform decomposition, to the rank of its box. No result of the run depends on the
 // assignment.
-// owns what.
 #pragma once
 
 #include <optional>

@@ -24,10 +24,10 @@ consteval auto member_of(core::Column column) {
   for (const auto& entry : Point::columns()) {
     if (entry.column == column) return entry.member;
   }
-  throw "this family of laws cannot carry the column: add it to the point's table";
+  throw "this family of laws cannot use the column: add it to the table of the point";
 }
 
-/// Whether a law of this configuration carries one of the columns of its `state`; all by default.
+/// Whether a law with these parameters uses a given column of its `state`; all by default.
 template <class Law>
 bool carries(const Law& law, core::Column column) {
   if constexpr (requires { law.carries(column); }) return law.carries(column);

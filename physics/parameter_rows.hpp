@@ -40,6 +40,6 @@ inline constexpr core::ParameterInfo plastic_work_row{
     .default_value = 0.9,
     .min = 0,
     .max = 1,
-    .meaning = "part of the plastic work that becomes heat"};
+    .meaning = "fraction of the plastic work that is converted to heat"};
 
 }  // namespace mpm::physics

@@ -56,7 +56,7 @@ std::vector<std::string> faults_of(const core::TypeInfo& info, const BuildTraits
   std::set<std::string_view> names;
   for (const core::ParameterInfo& p : info.parameters) {
     const std::string where = ", parameter '" + std::string(p.name) + "': ";
-    if (!names.insert(p.name).second) faults.push_back(where + "it is stated twice");
+    if (!names.insert(p.name).second) faults.push_back(where + "it is declared twice");
     for (const std::string& fault : faults_of(p)) faults.push_back(where + fault);
   }
   return faults;

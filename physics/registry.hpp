@@ -9,7 +9,7 @@
 // physics/failure/plastic_strain.hpp; its function update, linearise or fails determines its family. add()
 // compiles it once, with the flags of this project, for use with every law of the other families. It rejects,
 // by name: a name already in use, a parameter without range or meaning, and headers of another build than the
-// library. Shown by tests/physics/registry_test.cpp and tests/hygiene/consumer.
+// library. Tested by tests/physics/registry_test.cpp and tests/hygiene/consumer.
 #pragma once
 
 #include <cstddef>
@@ -136,7 +136,7 @@ class Registry {
     take(entry_of<Law>(), BuildTraits::here());
     return *this;
   }
-  /// Errors in the added laws, one sentence each; the programs refuse to start with any.
+  /// Errors in the added laws, one sentence each; the programs do not start if there are any.
   const std::vector<std::string>& faults() const { return faults_; }
   /// The external laws: "StrengthModel Wearing".
   const std::vector<std::string>& added() const { return added_; }

@@ -42,9 +42,9 @@ std::string find_restart(const RunOptions& options, const parallel::Communicator
     for (const std::string& notice : notices) std::fprintf(stderr, "%s\n", notice.c_str());
   }
   if (newest) return *newest;
-  throw io::FileError(
-      "cannot read " + named + ": no such file" +
-      (sibling ? "; the newest restart file of the job is " + *sibling : "; nothing was started"));
+  throw io::FileError("cannot read " + named + ": no such file" +
+                      (sibling ? "; the newest restart file of the job is " + *sibling
+                               : "; no readable restart file of the job was found"));
 }
 
 Case parsed(const std::string& bytes, const std::string& path, const core::Catalogue& catalogue) {
@@ -98,7 +98,7 @@ std::optional<core::Geometry> translated(const core::Geometry& geometry, const c
   return there;
 }
 
-/// Refuses changes of the input with -rt that cannot take effect, since the particles already exist. Throws
+/// Rejects changes of the input with -rt that cannot take effect, since the particles already exist. Throws
 /// InputErrors.
 void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
   std::vector<core::Diagnostic> faults;
@@ -108,8 +108,9 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
                            bool differs = false) {
     if (!differs && io::to_text(then) == text) return;
     faults.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
-                      "differs from the input of the restart file, which created the particles; -rt may "
-                      "change Grid, Solution, Output and Deactive: restore it"});
+                      "differs from the input of the restart file: the particles exist already, so the "
+                      "change would have no effect; restore it (-rt may change Grid, Solution, Output, "
+                      "Deactive, loads and material parameters)"});
   };
   for (core::ComponentInput& component : then.components) {
     for (core::BodyInput& body : component.bodies) {
@@ -144,7 +145,7 @@ Case load_case(const RunOptions& options, const parallel::Communicator& world,
   if (!is_restart(options.job)) {
     if (options.restart_input) {
       throw core::InputErrors(core::SourceLocation{options.job, 0}, "-rt",
-                              "needs a restart file (Job_<step>.pe) to start from");
+                              "requires a restart file: give Job_<step>.pe instead of an input file");
     }
     return from_input(options.job, world, catalogue);
   }
@@ -177,7 +178,7 @@ ExitCode convert_restart(const RunOptions& options, const parallel::Communicator
                          const core::Catalogue& catalogue) {
   if (!is_restart(options.job)) {
     throw core::InputErrors(core::SourceLocation{options.job, 0}, "-h5pt",
-                            "converts a restart file: name a Job_<step>.pe");
+                            "converts a restart file: give a Job_<step>.pe");
   }
   const Case c = load_case(options, world, catalogue);
   const std::string& restart = *c.restart;

@@ -83,7 +83,7 @@ std::string log_notice(const std::string& path, const Continuation& from) {
   if (expected.empty()) return {};
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  if (error) return fmt::format("'{}' is missing; it had {} bytes: a new file begins", path, expected);
+  if (error) return fmt::format("'{}' is missing; it had {} bytes: a new file is started", path, expected);
   if (bytes >= std::strtoull(expected.c_str(), nullptr, 10)) return {};
   return fmt::format(
       "'{}' has {} bytes, but had {} when the restart file was written: the missing part is lost", path,

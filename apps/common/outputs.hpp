@@ -39,7 +39,7 @@ struct Continuation {
 };
 
 /// For a run that continues in another folder than its restart file's: removes the marks of files
-/// `<stem><ending>` that do not exist there, so that they begin anew. True if there are any. Collective.
+/// `<stem><ending>` that do not exist there, so that new ones are started. True if there are any. Collective.
 bool forget_what_is_elsewhere(const std::string& stem, Continuation& from, core::Reductions& ranks);
 
 /// Notice for the user about the log to be continued, before it is opened; usually empty. On one rank.

@@ -91,14 +91,14 @@ class LegReader {
         names.push_back(k.name);
         list.emplace_back(k.name);
       }
-      fail(fmt::format("there is no path '{}'{}; there are {}", kind_, io::did_you_mean(kind_, names),
+      fail(fmt::format("unknown path '{}'{}; expected one of {}", kind_, io::did_you_mean(kind_, names),
                        io::join(list, ", ")));
     }
     for (std::size_t i = 1; i < words.size(); ++i) {
       if (kind_ == "table" && file_.empty() && !is_option(words[i])) {
         file_ = words[i];
       } else if (is_option(words[i])) {
-        if (i + 1 == words.size()) fail(fmt::format("'{}' needs a number after it", words[i]));
+        if (i + 1 == words.size()) fail(fmt::format("'{}' must be followed by a number", words[i]));
         option(words[i], number(words[i + 1]));
         ++i;
       } else if (kind_ == "mixed" && words[i].find('=') != words[i].npos) {
@@ -107,7 +107,7 @@ class LegReader {
         numbers_.push_back(number(words[i]));
       }
     }
-    if (rate_ && time_) fail("has both a rate and a time");
+    if (rate_ && time_) fail("has both a rate and a time: give one of them");
   }
 
   std::vector<Leg> read() const {
@@ -124,10 +124,10 @@ class LegReader {
     if (kind_ == "pressure") return pressures();
     if (kind_ == "mixed") return {finished(mixed())};
     if (kind_ == "hold") {
-      if (!time_ || !numbers_.empty()) fail("is written: hold time T");
+      if (!time_ || !numbers_.empty()) fail("expected: hold time T");
       return {finished(legs::hold(*time_))};
     }
-    if (file_.empty()) fail("is written: table FILE");
+    if (file_.empty()) fail("expected: table FILE");
     Leg leg;
     leg.kind = kind_;
     leg.measure = {1, 0, 0, 0, 0, 0};
@@ -166,7 +166,7 @@ class LegReader {
       time_ = value;
     } else {
       if (!(value >= 1) || value != std::floor(value) || value > 1e9)
-        fail(fmt::format("steps {} must be a whole number from 1", value));
+        fail(fmt::format("steps {} must be a whole number of at least 1", value));
       steps_ = static_cast<int>(value);
     }
   }
@@ -174,7 +174,7 @@ class LegReader {
   void need_numbers() const {
     if (numbers_.empty()) {
       const Kind& kind = *std::ranges::find(kinds, kind_, &Kind::name);
-      fail(fmt::format("is written: {} {} [rate R | time T] [steps N]", kind.name, kind.usage));
+      fail(fmt::format("expected: {} {} [rate R | time T] [steps N]", kind.name, kind.usage));
     }
   }
 
@@ -194,8 +194,8 @@ class LegReader {
   }
 
   std::vector<Leg> to_stress() const {
-    if (!numbers_.empty()) fail("ends at a strain or at a stress, not both");
-    if (!rate_ && !time_) fail("a leg to a stress needs a time (or a rate of the stress)");
+    if (!numbers_.empty()) fail("gives both a strain and a stress as the end: give one of them");
+    if (!rate_ && !time_) fail("a leg that ends at a stress requires a time (or a rate of the stress)");
     Leg leg = kind_ == "uniaxial_stress" ? legs::uniaxial_stress(0) : legs::simple_shear(0);
     leg.strain.reset();
     const core::Sym3<double> weight =
@@ -207,7 +207,7 @@ class LegReader {
   std::vector<Leg> confined() const {
     need_numbers();
     if (!confining_ && kind_ == "triaxial")
-      fail("needs the lateral pressure, as in: triaxial -0.05 confining 10");
+      fail("requires the lateral pressure, as in: triaxial -0.05 confining 10");
     const double p = confining_.value_or(0);
     std::vector<Leg> made =
         strains([&](double e) { return kind_ == "triaxial" ? legs::triaxial(e, p) : legs::biaxial(e, p); });
@@ -221,15 +221,15 @@ class LegReader {
 
   std::vector<Leg> pressures() const {
     need_numbers();
-    if (rate_) fail("a leg to a pressure has a time, not a rate");
+    if (rate_) fail("a leg that ends at a pressure takes a time, not a rate");
     std::vector<Leg> made;
     for (const double p : numbers_) made.push_back(finished(legs::pressure(p, time_.value_or(1))));
     return made;
   }
 
   Leg mixed() const {
-    if (!numbers_.empty() || assignments_.empty()) fail("is written: mixed e_xx=0.01 s_yy=-10 ... time T");
-    if (!time_) fail("needs a time");
+    if (!numbers_.empty() || assignments_.empty()) fail("expected: mixed e_xx=0.01 s_yy=-10 ... time T");
+    if (!time_) fail("requires a time");
     Leg leg;
     leg.kind = kind_;
     leg.from_zero = true;
@@ -243,8 +243,10 @@ class LegReader {
                                  ? std::ranges::find(components, name.substr(2), &Component::name)
                                  : components.end();
       if (component == components.end() || name[1] != '_' || (name[0] != 'e' && name[0] != 's'))
-        fail(fmt::format(
-            "'{}' is not a component; e_xx is a strain, s_xx a stress, of xx, yy, zz, xy, yz, xz", name));
+        fail(
+            fmt::format("'{}' is not a component; expected e_ (strain) or s_ (stress) followed by xx, yy, "
+                        "zz, xy, yz or xz",
+                        name));
       if (std::ranges::find(seen, component->name) != seen.end())
         fail(fmt::format("{} is prescribed twice", component->name));
       seen.push_back(component->name);
@@ -276,7 +278,7 @@ class LegReader {
   std::optional<int> steps_;
 };
 
-/// Whether the strains of b count from the start of the run of legs that a belongs to.
+/// Whether the strains of b are measured from the start of the sequence of legs to which a belongs.
 bool same_run(const Leg& a, const Leg& b) {
   if (a.kind != b.kind || a.kind == "mixed" || a.kind == "table") return false;
   const bool confined = a.kind == "triaxial" || a.kind == "biaxial";
@@ -293,11 +295,11 @@ std::vector<Leg> parse_path(std::string_view text, const PathDefaults& defaults)
       if (part.empty()) continue;  // a semicolon at the end
       const LegReader reader(part, defaults);
       std::vector<Leg> legs = reader.read();
-      // A confined leg that continues at the same pressure needs no leg to reach it.
+      // A confined leg that continues at the same pressure does not require a leg to reach it.
       if (legs.size() > 1 && legs[0].kind != legs[1].kind && last && same_run(*last, legs[1]))
         legs.erase(legs.begin());
       for (Leg& leg : legs) {
-        if (leg.kind == "hold") {  // belongs to the run of legs that it interrupts
+        if (leg.kind == "hold") {  // belongs to the sequence of legs that it interrupts
           if (last) leg.measure = last->measure;
         } else {
           leg.from_zero = !last || !same_run(*last, leg);
@@ -347,7 +349,8 @@ std::string path_help() {
   text +=
       "\nStrains are logarithmic and rates true; pressure is positive in compression, strain and stress in "
       "tension.\n"
-      "Several numbers are reached in turn; they count from the start of the run of legs of the same kind.\n"
+      "Several numbers are reached in sequence, measured from the start of consecutive legs of the same "
+      "kind.\n"
       "'stress S time T' instead of the strain ends a uniaxial_stress or simple_shear leg at that "
       "stress.\n\n"
       "  --path \"uniaxial_stress 0.2 rate 1000\"\n"

@@ -42,7 +42,7 @@ struct Settings {
 
 io::MaterialChoice choose(Settings& settings, const Registry& registry) {
   if (settings.input.empty() == settings.library.empty())
-    throw std::invalid_argument("name an input file or --library NAME; see --help");
+    throw std::invalid_argument("give an input file or --library NAME; see --help");
   if (settings.isothermal) settings.set.emplace_back("PlasticWorkCoefficient=0");
   if (settings.library.empty())
     return io::read_material(settings.input, registry.catalogue(), {settings.material, settings.set});
@@ -166,7 +166,7 @@ int run_point(int argc, char** argv, const Registry& registry) {
               "input file with the material, with or without .xmp; other elements may be missing");
   line.option("-m,--material", settings.material,
               "name of the material; not needed if the file has only one");
-  line.option("-l,--library", settings.library, "material of the library; mpm_check --materials lists them");
+  line.option("-l,--library", settings.library, "material of the library; mpm_check --materials lists all");
   line.option("-u,--units", settings.units, "units of path and table with --library, as in \"mm g ms\"");
   line.option("-s,--set", settings.set, "NAME=VALUE: overrides one parameter; may be repeated");
   line.flag("--isothermal", settings.isothermal,

@@ -1,4 +1,4 @@
-// Tests whether system resources are available, before a library terminates the program for lack of them.
+// Tests whether system resources are available: libraries terminate the program if they are not.
 #pragma once
 
 #include <stdexcept>

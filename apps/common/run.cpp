@@ -87,7 +87,7 @@ void describe_bodies(const core::Model& model, io::Log& log) {
       if (layout.has(static_cast<core::Column>(c)))
         more += fmt::format(" {}", core::name_of(static_cast<core::Column>(c)));
     }
-    log.say("body       \"{}\" of \"{}\": {} bytes a particle{}{}", body.name, body.model->name(),
+    log.say("body       \"{}\" of \"{}\": {} bytes per particle{}{}", body.name, body.model->name(),
             layout.bytes_per_particle(), more.empty() ? "" : ", beyond the mechanics", more);
   }
   if (model.bodies.size() > most) log.say("body       {} more bodies", model.bodies.size() - most);
@@ -104,21 +104,22 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Comm
   communication.reductions.sum(std::span<std::int64_t>(counts));
   log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use",
           g.cells[0], g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
-  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} a rank", counts[0],
+  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} per rank", counts[0],
           communication.reductions.size(), threads, particles.min, particles.max);
-  log.say("memory     {} for particles, bricks and bodies on the fullest rank", bytes_in_words(memory.max));
+  log.say("memory     {} for particles, bricks and bodies, maximum over the ranks",
+          bytes_in_words(memory.max));
   describe_bodies(model, log);
   std::string phases;
   for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
   log.say("step       {}", phases);
   const double critical = model.clock.critical_dt;
-  log.say("time step  critical {}, to {:.6g} at the end",
+  log.say("time step  critical {}, end time {:.6g}",
           std::isfinite(critical) ? fmt::format("{:.6g}", critical) : "without limit",
           model.scene->solution.end_time);
 }
 
-/// A hot body at the density of a cold one starts under thermal pressure: a note with the density (to first
-/// order) that avoids it. Collective.
+/// A body with an initial temperature, at the density of a cold one, starts under thermal pressure: a note
+/// gives the density (to first order) that avoids it. Collective.
 void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log) {
   const std::vector<const core::BodyInput*> inputs = core::active_bodies(*model.scene);
   if (std::ranges::none_of(inputs, [](const auto* input) { return input->initial_temperature.has_value(); }))
@@ -140,11 +141,12 @@ void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io
     const double bulk = material.reference_density() * (c * c - 4.0 / 3 * s * s);
     if (!inputs[b]->initial_temperature || !(std::abs(p) > 1e-6 * bulk)) continue;
     const double change = p / bulk;
-    log.note("note       body '{}' starts with the pressure {:.6g}, its heat's included{}",
+    log.note("note       body '{}' starts with the pressure {:.6g}, including thermal pressure{}",
              model.bodies[b].name, p,
-             std::abs(change) > 0.1 ? ""
-                                    : fmt::format("; with density=\"{:.6g}\" it would start with hardly any",
-                                                  inputs[b]->density * (1 - change)));
+             std::abs(change) > 0.1
+                 ? ""
+                 : fmt::format("; with density=\"{:.6g}\" it would start nearly free of pressure",
+                               inputs[b]->density * (1 - change)));
   }
 }
 
@@ -157,7 +159,7 @@ std::vector<std::string> add_new_bodies(core::Model& model, const std::vector<st
   const core::Totals totals = core::compute_totals(model, communication);
   for (const std::size_t b : numbers) {
     notices.push_back(fmt::format(
-        "body '{}' was not in the restart file: its {} particles are added now, as the input states them",
+        "body '{}' was not in the restart file: its {} particles are added now, as defined in the input",
         model.bodies[b].name, totals.bodies[b].particles));
   }
   return notices;
@@ -193,7 +195,7 @@ class Run {
                 model_.clock.time);
     stepper_.emplace(model_, communication_);
     describe(model_, *stepper_, communication_, threads_, *log_);
-    for (const std::string& law : registry.added()) log_->note("law        {}, of this program", law);
+    for (const std::string& law : registry.added()) log_->note("law        {}, added by this program", law);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
     if (!case_.restart) say_thermal_pressures(model_, communication_, *log_);
     setup_seconds_ = clock_.seconds();
@@ -258,11 +260,13 @@ class Run {
     for (const auto& [name, value] : io::provenance_of(*case_.scene)) log_->note("{:<10} {}", name, value);
     if (lock_ && !lock_->notice().empty()) log_->note("note       {}", lock_->notice());
     for (const std::string& path : superseded)
-      log_->note("note       a restart file of an earlier run, later than where this one begins, is now {}",
-                 path);
+      log_->note(
+          "note       a restart file of an earlier run, later than the start of this one, has been renamed "
+          "to {}",
+          path);
     if (!cut.empty()) log_->warn("{}", cut);
     if (elsewhere)
-      log_->note("note       some files of the earlier run are missing in this folder: they begin anew");
+      log_->note("note       some files of the earlier run are missing in this folder: new ones are started");
   }
 
   bool goes_on_elsewhere() {
@@ -312,7 +316,7 @@ class Run {
       }
       if (stepper_->stopping())
         return noted_signal() != 0 ? fmt::format("signal {}", noted_signal())
-                                   : "asked to stop: signal or --max-wall-time";
+                                   : "stop requested by a signal or --max-wall-time";
       if (status_rows_reached()) return fmt::format("{} rows in the .sta file", outputs_->status_rows());
       if (watch_->near_boundary(model_, communication_))
         return "a particle is next to an open boundary of the grid";
@@ -349,17 +353,17 @@ class Run {
     const bool boxes = model_.scene->grid.shape == core::ShapeFunction::contiguous_particle_gimp;
     const char* const words[] = {
         "failed",
-        "would have had no volume and kept the old one",
-        "held by Volume min or max",
-        "without a wave speed: the square was negative, or the compression "
-        "beyond the equation's limit",
-        "strained too far in one step for their law to end on its yield surface: take a smaller TimeStep "
+        "with an update to zero or negative volume; the old volume was kept",
+        "limited by Volume min or max",
+        "with undefined wave speed: its square was negative, or the compression exceeded the limit of the "
+        "equation of state",
+        "with a strain increment too large for the return to the yield surface: use a smaller TimeStep "
         "factor",
-        "held by LimitVelocity",
-        boxes ? "with a domain wider than a cell, taken as a cell wide: use CPDI or larger cells"
-              : "with a domain that reaches more than a cell from the particle, taken as one that reaches a "
-                "cell: use larger cells",
-        "with a tangled domain, replaced by a parallelepiped or a cube: take smaller steps or CPDI"};
+        "limited by LimitVelocity",
+        boxes ? "with a domain wider than a cell, limited to one cell: use CPDI or larger cells"
+              : "with a domain that extends more than a cell from the particle, limited to one cell: use "
+                "larger cells",
+        "with a tangled domain, replaced by a parallelepiped or a cube: use smaller steps or CPDI"};
     communication_.reductions.sum(std::span<std::int64_t>(counts));
     for (std::size_t i = 0; i < std::size(counts); ++i) {
       if (counts[i] > 0) log_->say("counted    {} particle(s) {}", counts[i], words[i]);
@@ -438,7 +442,7 @@ ExitCode run(const RunOptions& options, const parallel::Communicator& world,
   if (options.lsdyna) {
     throw core::InputErrors(
         core::SourceLocation{options.job, 0}, "-lsdyna",
-        "known, but not implemented yet: leave the option out; .h5part and .vtu files hold the particles");
+        "known, but not implemented yet: omit the option; .h5part and .vtu files hold the particles");
   }
   if (options.to_h5part) return convert_restart(options, world, registry.catalogue());
   if (!options.dry_run) watch_signals();

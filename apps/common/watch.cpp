@@ -29,7 +29,7 @@ void Watch::after_step(const core::Model& model, const core::Stepper::Incidents&
                        core::Reductions& ranks, io::Log& log) {
   for (; !load_ends_.empty() && load_ends_.begin()->first < model.clock.time;
        load_ends_.erase(load_ends_.begin())) {
-    log.warn("time {:.6g}: the last Coefficient of {} has passed, its load is zero from now on",
+    log.warn("time {:.6g}: the last Coefficient of {} has passed: its load is zero from now on",
              model.clock.time, load_ends_.begin()->second);
   }
   if (scene_.solution.energy_fraction) check_energy(model, ranks);
@@ -61,7 +61,7 @@ void Watch::warn(Kind& kind, std::int64_t count, const core::OffendingParticles&
         continue;
       log.warn("{}{} {}", when, words, kind.words);
       if (kind.named.size() == core::OffendingParticles::most)
-        log.warn("these were {} particles {}: from now on they are only counted",
+        log.warn("{} particles {} have been named: further ones are only counted",
                  core::OffendingParticles::most, kind.words);
     }
     return;
@@ -86,8 +86,8 @@ void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& ba
   if (drifts_.size() < judged_rows || !(std::abs(mean) > std::abs(largest_mean_drift_))) return;
   if (std::abs(mean) > notable_drift && std::abs(largest_mean_drift_) <= notable_drift) {
     log.warn(
-        "step {}, time {:.6g}: the energy balance has been off by {:.3g} % in the mean of {} rows, more than "
-        "{:.3g} %: the results may be wrong; docs/stability.md says what to try",
+        "step {}, time {:.6g}: the error of the energy balance is {:.3g} % in the mean over {} rows, more "
+        "than {:.3g} %: the results may be wrong; docs/stability.md lists remedies",
         clock.step, clock.time, 100 * mean, judged_rows, 100 * notable_drift);
   }
   largest_mean_drift_ = mean;
@@ -97,7 +97,7 @@ std::string Watch::words_of_drift() const {
   const double last = mean_drift();
   const double worst = std::abs(last) > std::abs(largest_mean_drift_) ? last : largest_mean_drift_;
   if (!(std::abs(worst) > notable_drift)) return {};
-  return fmt::format("the energy balance was off by up to {:.3g} %", 100 * worst);
+  return fmt::format("the error of the energy balance was up to {:.3g} %", 100 * worst);
 }
 
 void Watch::conclude(io::Log& log) const {
@@ -106,7 +106,7 @@ void Watch::conclude(io::Log& log) const {
   if (warn_.level != core::WarnInput::Level::per_particle) return;
   for (const Kind& kind : kinds_) {
     if (kind.incidents > 0)
-      log.say("counted    {} particle(s) {}, added over the steps; {} named above", kind.incidents,
+      log.say("counted    {} particle(s) {}, summed over the steps; {} named above", kind.incidents,
               kind.words, kind.named.size());
   }
 }
@@ -116,9 +116,10 @@ void Watch::check_energy(const core::Model& model, core::Reductions& ranks) cons
   core::require_finite(model, std::array{totals.kinetic, totals.internal, totals.external_work}, ranks);
   const double drift = core::energy_balance(totals, model.initial_energy).relative_drift;
   if (std::abs(drift) <= *scene_.solution.energy_fraction) return;
-  throw core::NumericalFailure(fmt::format(
-      "step {}, time {:.6g}: the total energy is off by {:.3g} of itself, more than EnergyFraction {:.3g}",
-      model.clock.step, model.clock.time, drift, *scene_.solution.energy_fraction));
+  throw core::NumericalFailure(
+      fmt::format("step {}, time {:.6g}: the relative error of the total energy is {:.3g}, more than "
+                  "EnergyFraction {:.3g}",
+                  model.clock.step, model.clock.time, drift, *scene_.solution.energy_fraction));
 }
 
 bool Watch::near_boundary(const core::Model& model, core::Reductions& ranks) const {

@@ -15,13 +15,13 @@
 
 namespace mpm::apps {
 
-/// Energy drift, relative to the largest energy of the balance, above which a run says so without being
-/// asked: in the mean over some rows of the status file, since kinetic and internal energy belong to times
-/// half a step apart, so that their sum oscillates with the waves.
+/// Energy drift, relative to the largest energy of the balance, above which every run prints a warning. It is
+/// averaged over some rows of the status file: kinetic and internal energy belong to times half a step apart,
+/// so their sum oscillates with the waves.
 inline constexpr double notable_drift = 0.02;
 inline constexpr std::size_t judged_rows = 10;
-/// The first step that is judged: before, all energy may be the little that a body gained since it began to
-/// fall, of which the error of one step is a notable part.
+/// The first step that is checked: earlier the total energy may be so small (a body that starts to fall) that
+/// the error of one step is a notable fraction of it.
 inline constexpr std::int64_t first_judged_step = 50;
 
 class Watch {
@@ -35,7 +35,7 @@ class Watch {
                   io::Log& log);
   /// The energy balance at a row of the status file; warns at the first notable drift.
   void note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log);
-  /// Of a notable drift since this run's start or continuation; empty without.
+  /// Message about a notable drift since the start or continuation of this run; empty without one.
   std::string words_of_drift() const;
   /// Reports a notable drift, and what level 1 has counted beyond the particles that it named.
   void conclude(io::Log& log) const;

@@ -7,7 +7,7 @@
 namespace mpm::core {
 
 /// Relative tolerance within which a particle on a boundary counts as inside: far above the round-off of
-/// decimal input, far below any effect on results, and dimensionless.
+/// decimal input, far below any effect on results; dimensionless.
 inline constexpr double on_boundary = 1e-9;
 
 /// Coordinates origin + half * odd, half being half a spacing. Where the origin itself is a multiple of

@@ -94,8 +94,9 @@ bool PointFile::next(std::string_view& line) {
                                          : end_ - begin_;
   place_ = following_;
   if (length > longest_line)
-    throw std::runtime_error(fmt::format("line {} is longer than {} characters: this is no file of particles",
-                                         place_.number, longest_line));
+    throw std::runtime_error(
+        fmt::format("line {} is longer than {} characters: this is not a file of particles", place_.number,
+                    longest_line));
   line = {start, length};
   const std::size_t taken = length + (newline != nullptr ? 1 : 0);
   begin_ += taken;
@@ -130,9 +131,8 @@ ParsedLine parse_point_line(std::string_view line) {
     if (!to_number(word, parsed.values[n]))
       return wrong(fmt::format("{}: expected a number, found `{}`", names[n], printable(word)));
     if (is_subnormal(parsed.values[n]))
-      return wrong(
-          fmt::format("{}: {} is too small to be kept with full precision; write 0, or choose other units",
-                      names[n], printable(word)));
+      return wrong(fmt::format("{}: {} is too small for double precision; write 0, or choose other units",
+                               names[n], printable(word)));
   }
   const std::string_view extra = take_word(rest);
   if (!extra.empty())

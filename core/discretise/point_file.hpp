@@ -1,6 +1,6 @@
 #pragma once
 // Lines of a text file of particles, plain or gzipped: mass x y z, separated by blanks. Empty lines and text
-// after # or ! are skipped. Reads in blocks; does not store what it has passed.
+// after # or ! are skipped. Reads in blocks, which are discarded after use.
 
 #include <array>
 #include <cstdint>

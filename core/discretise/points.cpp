@@ -67,7 +67,7 @@ FilePoints::FilePoints(const std::string& path, const SourceLocation& body, cons
     : PointList(frame, density), path_(path), file_(open(path, body)) {
   scan(body);
   if (identities() == 0)
-    throw about_file(path, body, "the file holds no particles: expected lines of mass x y z");
+    throw about_file(path, body, "the file contains no particles: expected lines of mass x y z");
 }
 
 void FilePoints::scan(const SourceLocation& body) {
@@ -88,7 +88,7 @@ void FilePoints::scan(const SourceLocation& body) {
     errors.push_back(about_file(path_, body, error.what()).diagnostics().front());
   }
   if (bad > most_messages)
-    errors.push_back(at_line(path_, 0, fmt::format("{} more lines are wrong", bad - most_messages)));
+    errors.push_back(at_line(path_, 0, fmt::format("{} more lines are invalid", bad - most_messages)));
   if (!errors.empty()) throw InputErrors(std::move(errors));
 }
 
@@ -108,7 +108,7 @@ void FilePoints::generate(std::uint64_t first_unit, std::uint64_t last_unit, std
 void FilePoints::append_lines(std::uint64_t first, std::uint64_t last, std::vector<Seed>& out) const {
   std::string_view line;
   for (std::uint64_t i = first; i < last;) {
-    if (!file_.next(line)) throw std::runtime_error("it has become shorter");
+    if (!file_.next(line)) throw std::runtime_error("it is now shorter");
     const ParsedLine parsed = parse_point_line(line);
     if (parsed.kind == LineKind::wrong) throw std::runtime_error(parsed.message);
     if (parsed.kind == LineKind::blank) continue;

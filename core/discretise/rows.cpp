@@ -20,7 +20,7 @@ bool RowSource::set_extent(double rows, double width) {
 }
 
 void RowSource::generate(std::uint64_t first_unit, std::uint64_t last_unit, std::vector<Seed>& out) const {
-  if (!numbered()) throw std::length_error("a body with too many particles to be numbered was generated");
+  if (!numbered()) throw std::length_error("a body has more particles than can be numbered");
   const std::uint64_t end = std::min(last_unit, units()) * candidates_per_unit;
   const std::uint64_t last = std::min(end, identities_);
   std::uint64_t candidate = std::min(first_unit, units()) * candidates_per_unit;

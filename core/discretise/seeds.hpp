@@ -1,8 +1,9 @@
 #pragma once
-// Seeds: the particles of a body's shape, generated in pieces. A source knows its body's units of work, and
-// any rank can generate any of them. No rank needs more than its own share; the seeds and their identities
-// are bitwise identical for every distribution of the units. The lattices and their limits are described in
-// block.hpp, lattice.hpp, revolved.hpp, shells.hpp and points.hpp. Shown by tests/core/discretise.
+// Seeds: the particles of a body's shape, generated in pieces. A source divides its body into units of work,
+// and any rank can generate any of them. No rank stores more than its own share; the seeds and their
+// identities are bitwise identical for every distribution of the units. The lattices and their limits are
+// described in block.hpp, lattice.hpp, revolved.hpp, shells.hpp and points.hpp. Tested by
+// tests/core/discretise.
 
 #include <array>
 #include <cstdint>
@@ -32,7 +33,7 @@ class SeedSource {
   SeedSource& operator=(const SeedSource&) = delete;
   virtual ~SeedSource() = default;
 
-  /// Pieces of work, each of at most some thousand seeds, many of none. Their order follows the body in
+  /// Pieces of work, each of at most some thousand seeds; many are empty. Their order follows the body in
   /// layers, so ranks that take every N-th run of units are better balanced than ranks that take one
   /// contiguous range each.
   virtual std::uint64_t units() const = 0;

@@ -19,7 +19,7 @@ namespace mpm::core {
 
 namespace {
 
-/// No machine can store more particles; a larger number means a wrong spacing.
+/// More particles than any machine can store: such a number indicates a wrong spacing.
 constexpr double most_particles = 0x1p48;
 /// Arc over base of an ogive: above it round-off dominates its outline and volumes.
 constexpr double most_slender = 1000;
@@ -63,8 +63,8 @@ class NumberCheck {
     const double volume = value * value * value;
     if (!std::isnormal(volume) || (dense_ && !std::isnormal(volume * body_.density)))
       report(attribute, value,
-             "the volume or the mass of a particle with this distance from its neighbours is 0 or beyond "
-             "all numbers: choose other units");
+             "the volume or the mass of a particle with this spacing is outside the range of double "
+             "precision: choose other units");
   }
   /// A wall between two radii. Both may be 0 where a cone ends in its tip.
   void wall(std::string_view inner_name, double inner, std::string_view outer_name, double outer, bool tip) {
@@ -75,7 +75,7 @@ class NumberCheck {
   void one_source(bool has_children, const std::string& file, std::string_view children) {
     if (has_children && !file.empty())
       report({"Geometry", 0, "file", file,
-              fmt::format("{} are given in the input too; expected one of the two ways", children)});
+              fmt::format("{} are also given in the input; expected only one of the two", children)});
     if (!has_children && file.empty())
       report({"Geometry", 0, {}, {}, fmt::format("expected {}, or file=\"...\"", children)});
   }
@@ -108,7 +108,7 @@ class NumberCheck {
       wall("Inner_Radius", ball.inner_radius, "Outer_Radius", ball.outer_radius, false);
     angle(ball.angle);
     if (ball.upper_half && std::isfinite(ball.angle) && ball.angle != 90)
-      report("half", 1, fmt::format("needs angle=\"90\", not {}", ball.angle));
+      report("half", 1, fmt::format("requires angle=\"90\", not {}", ball.angle));
   }
   void check(const CylinderGeometry& c) {
     spacing("dp_bottom", c.bottom_spacing);
@@ -134,12 +134,12 @@ class NumberCheck {
     if (ogive.ogive_radius > 0 && ogive.ogive_radius < ogive.end_radius)
       report("Ogive_Radius", ogive.ogive_radius,
              fmt::format("expected at least End_Radius, {}: the arc starts at the rim of the base, in the "
-                         "direction of the axis; with less it would end before it reaches the axis",
+                         "direction of the axis; an arc of smaller radius does not reach the axis",
                          ogive.end_radius));
     if (ogive.end_radius > 0 && ogive.ogive_radius > most_slender * ogive.end_radius)
       report("Ogive_Radius", ogive.ogive_radius,
              fmt::format("expected at most {} times End_Radius, {}; a Cylinder with Top_Outer_Radius=\"0\" "
-                         "makes a longer tip",
+                         "gives a longer tip",
                          most_slender, ogive.end_radius));
     angle(ogive.angle);
   }
@@ -153,14 +153,15 @@ class NumberCheck {
       for (std::size_t i = 0; i < N; ++i)
         if (const std::int64_t id = mesh.elements[e].nodes[i]; id > 0 && !ids.contains(id))
           report({"Element", e, fmt::format("id{}", i + first_id), fmt::format("{}", id),
-                  "there is no node of this number"});
+                  "no node has this number"});
   }
   void check(const BarLinesGeometry& bars) {
     if (bars.extend_direction >= 0 && bars.extend_direction == bars.expand_direction)
       report("expand_direction", bars.expand_direction, "expected another axis than extend_direction");
   }
   template <class Geometry>
-  void check(const Geometry&) {}  // no checks beyond the ranges of the attributes, or none of its own (Bool)
+  void check(const Geometry&) {
+  }  // no checks beyond the ranges of the attributes; Bool is checked by its operands
 
   const BodyInput& body_;
   bool dense_ = false;
@@ -188,7 +189,8 @@ bool placed(const Scene& scene, const BodyInput& body) {
 void check_operands(const Scene& scene, const BoolGeometry& difference, const Parts& parts,
                     std::vector<ShapeFault>& faults) {
   const auto check = [&](const char* attribute, BodyPlace place) {
-    if (place.component == BodyPlace{}.component) return;  // the reader found no body of this name
+    if (place.component == BodyPlace{}.component)
+      return;  // the reader has reported that no body has this name
     const BodyInput& other = body_at(scene, place);
     const auto report = [&](std::string message) {
       faults.push_back({"Body", 0, attribute, other.name, std::move(message)});
@@ -197,18 +199,18 @@ void check_operands(const Scene& scene, const BoolGeometry& difference, const Pa
       report(fmt::format("a body of type {} cannot be an operand; expected one of {}", other.type,
                          fmt::join(operand_types, ", ")));
     else if (!other.for_bool)
-      report(fmt::format("body '{}', on line {}, needs ForBoolBody=\"1\"", other.name, other.source.line));
+      report(fmt::format("body '{}', on line {}, requires ForBoolBody=\"1\"", other.name, other.source.line));
     if (!parts.circle().empty() &&
         parts.circle_by_subtrahend() == (attribute == std::string_view("BoolBodyB")))
-      report(fmt::format("the body is made of itself: {}; expected operands that do without it",
+      report(fmt::format("the body is an operand of itself: {}; expected operands that do not contain it",
                          fmt::join(parts.circle(), " -> ")));
   };
   check("BoolBodyA", difference.minuend);
   check("BoolBodyB", difference.subtrahend);
   if (parts.too_many())
     faults.push_back({"Body", 0, "BoolBodyA", body_at(scene, difference.minuend).name,
-                      fmt::format("the body is made of more than {} shapes, counted through its operands and "
-                                  "as often as they are used; expected fewer",
+                      fmt::format("the body consists of more than {} shapes, including those of its "
+                                  "operands, each counted as often as it is used; expected fewer",
                                   Parts::most_shapes)});
 }
 
@@ -219,10 +221,11 @@ void check_inside(const Scene& scene, const BodyInput& body, std::vector<ShapeFa
     const GridAxis& axis = scene.grid.axes[i];
     if (std::isinf(box.lower[i]) || !(axis.min < axis.max)) continue;
     if (box.upper[i] >= axis.min && box.lower[i] <= axis.max) continue;
-    faults.push_back({"Body", 0, "name", body.name,
-                      fmt::format("the body lies outside the grid: its {0} from {1} to {2}, the grid's from "
-                                  "{3} to {4}",
-                                  "xyz"[i], box.lower[i], box.upper[i], axis.min, axis.max)});
+    faults.push_back(
+        {"Body", 0, "name", body.name,
+         fmt::format(
+             "the body is outside the grid: its {0} ranges from {1} to {2}, that of the grid from {3} to {4}",
+             "xyz"[i], box.lower[i], box.upper[i], axis.min, axis.max)});
     return;
   }
 }
@@ -230,21 +233,22 @@ void check_inside(const Scene& scene, const BodyInput& body, std::vector<ShapeFa
 void check_count(std::string_view attribute, double spacing, double count, std::vector<ShapeFault>& faults) {
   if (count > most_particles)
     faults.push_back({"Geometry", 0, std::string(attribute), fmt::format("{}", spacing),
-                      fmt::format("this makes about {:.3g} particles, more than any machine holds (2^48); "
-                                  "expected a larger distance of particles",
+                      fmt::format("this gives about {:.3g} particles, more than the limit of 2^48; expected "
+                                  "a larger particle spacing",
                                   count)});
 }
 
 ShapeFault nothing_left(const Scene& scene, const BodyInput& body) {
   if (const auto* difference = std::get_if<BoolGeometry>(&body.geometry))
     return {"Body", 0, "BoolBodyB", body_at(scene, difference->subtrahend).name,
-            fmt::format("the body has no particles: none of body '{}' lies outside this one",
+            fmt::format("the body has no particles: no particle of body '{}' is outside the subtracted body",
                         body_at(scene, difference->minuend).name)};
   return {"Geometry",
           0,
           {},
           {},
-          "the body has no particles: its shape is smaller than their distance; expected a smaller distance"};
+          "the body has no particles: its shape is smaller than the particle spacing; expected a smaller "
+          "spacing"};
 }
 
 /// Checks the particles' lattice: whether there are too many particles, or none.

@@ -2,8 +2,9 @@
 // Checks that a body's input defines a shape with particles: the only place where geometry is checked. The
 // input reader reports these errors together with all others, at the lines of the attributes;
 // make_seed_source throws them, for scenes created in another way. Two checks need the particles themselves
-// and follow their creation (core/setup/build_model.hpp): that each is in the grid, and that a body too large
-// to be tried here has any. Shown by tests/core/discretise/difference_test and tests/io/input/shapes_test.
+// and follow their creation (core/setup/build_model.hpp): that each particle is inside the grid, and that a
+// body too large to be checked here has particles. Tested by tests/core/discretise/difference_test and
+// tests/io/input/shapes_test.
 
 #include <cstddef>
 #include <string>

@@ -16,7 +16,7 @@ namespace {
 
 double choose(double condition, double yes, double no) { return condition != 0 ? yes : no; }
 
-/// The parser's operator = changes variables; only comparisons may hold the character.
+/// The parser's operator = assigns to variables: the character is allowed only in comparisons.
 bool assigns(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;
@@ -34,7 +34,7 @@ bool is_name(std::string_view token) {
   return !token.empty() && letter(token.front());
 }
 
-/// The parser's complaint in words of our own.
+/// The parser's error as a message to the user.
 Formula::Check refusal(const mu::ParserError& fault) {
   Formula::Check check;
   std::string token = fault.GetToken();
@@ -49,15 +49,15 @@ Formula::Check refusal(const mu::ParserError& fault) {
   switch (fault.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN:
       if (is_name(token)) check.unknown_name = token;
-      check.error = fmt::format("'{}' {} is not known", token, at());
+      check.error = fmt::format("unknown name '{}' {}", token, at());
       break;
-    case mu::ecUNEXPECTED_EOF: check.error = "the expression ends too early"; break;
+    case mu::ecUNEXPECTED_EOF: check.error = "unexpected end of the expression"; break;
     case mu::ecEMPTY_EXPRESSION: check.error = "empty"; break;
     case mu::ecEXPRESSION_TOO_LONG: check.error = "the expression is too long"; break;
     case mu::ecMISSING_PARENS: check.error = "a closing parenthesis is missing"; break;
     case mu::ecTOO_MANY_PARAMS: check.error = fmt::format("too many arguments of '{}'", token); break;
     case mu::ecTOO_FEW_PARAMS: check.error = fmt::format("too few arguments of '{}'", token); break;
-    default: check.error = fmt::format("'{}' {} is not expected there", token, at());
+    default: check.error = fmt::format("unexpected '{}' {}", token, at());
   }
   return check;
 }
@@ -102,12 +102,12 @@ struct Formula::Parser {
 };
 
 Formula::Check Formula::check(std::string_view text) {
-  if (assigns(text)) return {"'=' assigns; equality is written ==", {}, {}, {}};
+  if (assigns(text)) return {"'=' is an assignment; use == for equality", {}, {}, {}};
   try {
     Parser parser(text);
     Check found;
     const double value = parser.parser.Eval();
-    if (parser.parser.GetNumResults() != 1) return {"a comma stands outside of a function", {}, {}, {}};
+    if (parser.parser.GetNumResults() != 1) return {"a comma is outside of a function call", {}, {}, {}};
     for (const auto& [name, address] : parser.parser.GetUsedVar())
       found.uses.set(variable_names.find(name.front()));
     if (found.uses.none()) found.constant = value;
@@ -138,7 +138,7 @@ double Formula::operator()(const PlaceAndTime& at) {
   parser_->values[6] = at.time;
   try {
     return parser_->parser.Eval();
-  } catch (const mu::ParserError&) {  // of a build that throws where others give NaN
+  } catch (const mu::ParserError&) {  // muParser may be built to throw instead of returning NaN
     return std::numeric_limits<double>::quiet_NaN();
   }
 }

@@ -1,6 +1,6 @@
-// A compiled expression of place and time: + - * / ^, comparisons, && ||, ?: and if(condition, a, b), pi,
+// A compiled expression of position and time: + - * / ^, comparisons, && ||, ?: and if(condition, a, b), pi,
 // sqrt, ln, exp, sin and the other functions of muParser, which parses and evaluates it. Its variables are
-// the place x, y, z, the first place X, Y, Z and the time t. Shown by
+// the current position x, y, z, the initial position X, Y, Z and the time t. Tested by
 // tests/core/expressions/formula_test.cpp.
 #pragma once
 
@@ -35,11 +35,10 @@ std::string_view not_finite_in_words(double value);
 
 class Formula {
  public:
-  /// What is wrong with the text of a formula, or the variables that it uses and, where it uses none, its
-  /// value.
+  /// The error in the text of a formula, or the variables that it uses and, if it uses none, its value.
   struct Check {
     std::string error;         ///< empty if it is well formed
-    std::string unknown_name;  ///< in it, where that is the error
+    std::string unknown_name;  ///< the name in the text, if that is the error
     VariableSet uses;
     std::optional<double> constant;
   };

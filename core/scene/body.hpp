@@ -45,7 +45,7 @@ struct HarmonicExcitation {
   Vec3<double> end_time{};
 };
 
-/// Force per mass, constant or of place and time; the expressions' numbers are 0.
+/// Force per mass, constant or a function of position and time; components with expressions are 0.
 struct BodyForce {
   Vec3<double> number{};  ///< length/time^2
   Expressions expressions;
@@ -62,7 +62,7 @@ struct SurfaceLoad {
   double pressure = 0;      ///< stress, positive inwards
   Vec3<double> traction{};  ///< stress
   int normal = -1;          ///< axis of `traction`; -1: none
-  /// In place of components of `traction` (0, 1, 2) and of `pressure` (3).
+  /// Expressions for components of `traction` (0, 1, 2) and `pressure` (3).
   Expressions expressions;
   static constexpr int pressure_component = 3;
   Vec3<double> lower{-1e300, -1e300, -1e300};
@@ -85,16 +85,16 @@ struct BodyInput {
   std::size_t material = 0;  ///< index into Scene::materials
   std::string type;          ///< the type's name in the input; `geometry` holds the matching alternative
   Geometry geometry;
-  double density = 0;                     ///< initial density; the material's reference density unless given
+  double density = 0;                     ///< initial density; default: the reference density of the material
   std::optional<std::size_t> work_plane;  ///< index into Scene::work_planes; the global frame without
-  bool deactivated = false;               ///< takes no part in the run and is not written
-  bool for_bool = false;                  ///< operand of a Bool body; removed once that is made
-  bool no_output = false;                 ///< takes part, but is not written
+  bool deactivated = false;               ///< excluded from the run and the output
+  bool for_bool = false;                  ///< operand of a Bool body; not a body of the run
+  bool no_output = false;                 ///< not written to the particle files
   Vec3<double> initial_velocity{};
-  Expressions initial_velocity_expressions;   ///< of the first place, in place of some of its components
+  Expressions initial_velocity_expressions;   ///< of the initial position, for some of its components
   std::optional<double> initial_temperature;  ///< > 0; the material's without
   std::optional<Vec3<double>> prescribed_velocity;
-  Expressions prescribed_velocity_expressions;  ///< in place of some of its components
+  Expressions prescribed_velocity_expressions;  ///< for some of its components
   std::optional<PrescribedAcceleration> prescribed_acceleration;
   std::optional<HarmonicExcitation> harmonic_excitation;
   std::optional<BodyForce> body_force;

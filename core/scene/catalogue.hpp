@@ -14,7 +14,7 @@ inline constexpr double no_default = std::numeric_limits<double>::quiet_NaN();
 /// One attribute of a material law. Ranges are closed unless `min_open` or `max_open` says otherwise.
 struct ParameterInfo {
   std::string_view name;  ///< the attribute's spelling in the input
-  /// Value when the attribute is absent; `no_default` leaves it out of the law's values (the law then knows
+  /// Value when the attribute is absent; `no_default` omits it from the law's values (the law can then detect
   /// that it was not given). Ignored when `required`.
   double default_value = no_default;
   bool required = false;

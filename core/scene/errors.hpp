@@ -1,5 +1,5 @@
 #pragma once
-// Errors in the user's input: each names file, line, element, attribute and value and the expected value; all
+// Errors in the user's input: each states file, line, element, attribute, value and the expected value; all
 // errors of a file are thrown together. The program that catches InputErrors prints what() and exits with
 // code 2.
 

@@ -1,5 +1,5 @@
 #pragma once
-// Expressions of place and time that stand in the input in place of numbers, as text with its place in the
+// Expressions of position and time, given in the input instead of numbers: their text and its location in the
 // input. core/expressions evaluates them.
 
 #include <string>
@@ -10,9 +10,9 @@
 namespace mpm::core {
 
 struct Expression {
-  int component = 0;      ///< of the quantity, in which it stands in place of a number
+  int component = 0;      ///< component of the quantity whose number it replaces
   std::string text;       ///< of the variables x, y, z, X, Y, Z, t (core/expressions/formula.hpp)
-  std::string element;    ///< name of the element that holds it
+  std::string element;    ///< name of its element
   std::string attribute;  ///< its name
   SourceLocation source;
 };

@@ -5,10 +5,10 @@
 
 namespace mpm::core {
 
-/// Bricks of four cells, whose coordinates have 21 bits, one of them spare.
+/// Bricks have four cells per axis, and coordinates of 21 bits, of which 20 are used.
 inline constexpr std::int64_t most_cells_per_axis = std::int64_t{4} << 20;
 
-/// Threads per rank; with very many the system ends the program.
+/// Threads per rank; with very many the system terminates the program.
 inline constexpr int most_threads = 1024;
 
 }  // namespace mpm::core

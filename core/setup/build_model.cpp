@@ -51,7 +51,7 @@ void refuse_too_large(const Model& model, const ModelPlan& plan, const SeedCount
                model, ranks);
 }
 
-/// Counts the bodies' particles and refuses what no grid can hold. Collective.
+/// Counts the bodies' particles and rejects numbers that exceed the limits. Collective.
 SeedCount count_checked(const Model& model, std::span<const BodySeeds> seeds, Reductions& ranks) {
   const GridGeometry& geometry = model.grid->geometry();
   SeedCount count = count_seeds(geometry, seeds, ranks);

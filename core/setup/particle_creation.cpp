@@ -74,8 +74,8 @@ void refuse_uncounted(std::span<const BodySeeds> bodies, std::uint64_t first_ide
   if (identities < static_cast<double>(identity_limit)) return;
   throw InputErrors(
       largest->input->source, "Body",
-      fmt::format("the lattices of the bodies, body `{}`'s above all, have {} sites, more than the largest "
-                  "identity (2^53), for about {:.3g} particles; use a larger dp",
+      fmt::format("the lattices of the bodies, of which that of body `{}` is the largest, have {} sites, "
+                  "more than the largest identity (2^53), for about {:.3g} particles; use a larger dp",
                   largest->input->name,
                   largest->source->identities() >= identity_limit ? "at least 9.01e+15"
                                                                   : fmt::format("{:.3g}", identities),
@@ -129,7 +129,7 @@ void refuse_outside(const Scene& scene, const GridGeometry& g, const SeedCount& 
   }
   throw InputErrors(
       scene.grid.source, "Grid",
-      fmt::format("{} particles lie outside the grid [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]; "
+      fmt::format("{} particles are outside the grid [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]; "
                   "enlarge the grid or move the body. The first: {}",
                   outside[0], g.origin.x, g.origin.x + double(g.cells[0]) * g.cell.x, g.origin.y,
                   g.origin.y + double(g.cells[1]) * g.cell.y, g.origin.z,

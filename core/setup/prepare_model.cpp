@@ -25,10 +25,9 @@ GridGeometry geometry_of(const Scene& scene) {
     g.boundary[static_cast<std::size_t>(2 * a)] = axis.lower;
     g.boundary[static_cast<std::size_t>(2 * a + 1)] = axis.upper;
     if (static_cast<std::int64_t>(axis.cells) > most_cells_per_axis) {
-      throw InputErrors(
-          scene.grid.source, "Grid",
-          fmt::format("{} cells along {} are more than the {} that a grid may have; use larger cells",
-                      axis.cells, "xyz"[a], most_cells_per_axis));
+      throw InputErrors(scene.grid.source, "Grid",
+                        fmt::format("{} cells along {} exceed the limit of {} per axis; use larger cells",
+                                    axis.cells, "xyz"[a], most_cells_per_axis));
     }
   }
   g.site = site_of(scene);
@@ -46,23 +45,23 @@ bool made_of_bars(const Geometry& geometry) {
 
 void refuse_bar_material(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
   if (!material.uniaxial() || made_of_bars(input.geometry)) return;
-  throw InputErrors(input.source, "Body",
-                    fmt::format("material `{}` is for bars, and body `{}` of type \"{}\" has none: give it a "
-                                "material without _1D",
-                                scene.materials[input.material].name, input.name, input.type));
+  throw InputErrors(
+      input.source, "Body",
+      fmt::format(
+          "material `{}` is for bars only, but body `{}` is of type \"{}\": give it a material without _1D",
+          scene.materials[input.material].name, input.name, input.type));
 }
 
 void refuse_temperature(const BodyInput& input, const ConstitutiveModel& material) {
   if (!input.initial_temperature || material.columns({}).has(Column::temperature)) return;
   throw InputErrors(
       input.source, "InitialTemperature",
-      fmt::format("material `{}` of body `{}` carries no temperature: give it SpecHeat and a law "
-                  "that heats, CoefficientOfThermalConductivity or TemperatureCoefficient, or "
-                  "leave InitialTemperature out",
+      fmt::format("material `{}` of body `{}` has no temperature: give it SpecHeat and a law with heating, "
+                  "CoefficientOfThermalConductivity or TemperatureCoefficient, or remove InitialTemperature",
                   material.name(), input.name));
 }
 
-/// The components of the first place that expressions of the run use.
+/// The components of the initial position that expressions of the run use.
 ColumnSet columns_of_expressions(const BodyInput& input) {
   ColumnSet columns;
   const auto add = [&](const Expressions& expressions) {

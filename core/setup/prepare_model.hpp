@@ -26,7 +26,7 @@ struct BodyPlan {
   std::string name;
   double expected_particles = 0;
   double bytes_per_particle = 0;
-  std::vector<std::string_view> columns;  ///< beyond what every particle carries
+  std::vector<std::string_view> columns;  ///< beyond those of every particle
 };
 
 /// What a scene will need, computed before any allocation.

@@ -59,9 +59,7 @@ void refuse_undefined(const Model& model, Reductions& ranks) {
   if (!ranks.any(body >= 0)) return;
   refuse_particle(
       model, lost.identity, body,
-      "its state at the start is not all finite numbers; correct its velocity, its density or its "
-      "material: " +
-          lost.words,
+      "its initial state is not finite; correct its velocity, its density or its material: " + lost.words,
       ranks);
 }
 
@@ -75,7 +73,7 @@ void refuse_endless(const Model& model, const Fastest& mine, Reductions& ranks) 
   const double dt = how.specified > 0 ? how.specified : how.factor * model.clock.critical_dt;
   if (!endless(dt)) return;
   const std::string what =
-      fmt::format("the first time step of {:.3g} would take more than 2^63 steps to EndTime {:.6g}", dt,
+      fmt::format("with the first time step of {:.3g}, EndTime {:.6g} would require more than 2^63 steps", dt,
                   solution.end_time);
   if (how.specified > 0)
     throw InputErrors(solution.source, "TimeStep", what + ": increase `specified`, or check the units");

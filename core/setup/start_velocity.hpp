@@ -1,5 +1,5 @@
 // The velocities with which the particles of a body are created: its prescribed or else its initial velocity,
-// numbers or expressions of the first place.
+// numbers or expressions of the initial position.
 #pragma once
 
 #include <optional>

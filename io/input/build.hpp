@@ -39,7 +39,7 @@ std::vector<core::DetonationItem> build_detonations(const Node& root, const Buil
 core::GridInput build_grid(const Node& root, const BuildContext& context);
 core::ContactInput build_contact(const Node& root);
 core::SolutionInput build_solution(const Node& root, const BuildContext& context);
-/// Shape functions and transfer that go together, with each other and with the bodies.
+/// Reports incompatible choices of shape function, transfer and bodies.
 void check_method(const Node& root, const core::Scene& scene, const BuildContext& context);
 core::OutputInput build_output(const Node& root, double end_time, const BuildContext& context);
 core::DecompositionInput build_decomposition(const Node& root, const BuildContext& context);

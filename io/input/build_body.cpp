@@ -97,9 +97,9 @@ core::SurfaceLoad build_surface_load(const Node& node, const BuildContext& conte
   const bool pulls = load.traction != core::Vec3<double>{} || varies(false);
   if (const auto normal = node.given_integer("normal")) load.normal = static_cast<int>(*normal);
   if (pulls != (load.normal >= 0))
-    node.report(context.diagnostics, "normal and tx, ty, tz go together: give both or neither");
+    node.report(context.diagnostics, "normal is the axis of the traction tx, ty, tz: give both or neither");
   if (!pulls && load.pressure == 0 && !varies(true))
-    node.report(context.diagnostics, "needs a pressure, or tx, ty, tz and normal");
+    node.report(context.diagnostics, "expected a pressure, or tx, ty, tz and normal");
   static constexpr std::array<std::array<const char*, 2>, 3> sides{
       {{"xmin", "xmax"}, {"ymin", "ymax"}, {"zmin", "zmax"}}};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -139,7 +139,8 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
   if (const auto h = node.child("HarmExcit")) {
     body.harmonic_excitation = build_excitation(*h);
     if (body.prescribed_acceleration)
-      h->report(context.diagnostics, "a body has either PrescribedAcceleration or HarmExcit");
+      h->report(context.diagnostics,
+                "a body cannot have both PrescribedAcceleration and HarmExcit: remove one");
   }
   if (const auto f = node.child("BodyForce"))
     body.body_force = {f->reals("bx", "by", "bz"), expressions_of(*f, {"bx", "by", "bz"}, context)};
@@ -153,7 +154,7 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
     body.fixed_layers.push_back(build_fixed_layer(layer, context));
 }
 
-/// Refuses loads on a body with prescribed velocity, where they have no effect.
+/// Rejects loads without effect on a body with prescribed velocity.
 void check_held(const core::BodyInput& body, const Node& node, const BuildContext& context) {
   const auto refuse = [&](std::string_view element, const std::string& why) {
     for (const Node& load : node.children(element)) load.report(context.diagnostics, why);
@@ -161,36 +162,35 @@ void check_held(const core::BodyInput& body, const Node& node, const BuildContex
   if (body.prescribed_velocity && !body.constrain_rigid_position) {
     for (const char* element : {"PrescribedAcceleration", "HarmExcit"})
       refuse(element,
-             "has no effect beside PrescribedVelocity: give ConstrainRigidPosition value=\"1\" to add it to "
-             "that velocity, or InitialVelocity in its place");
+             "has no effect with PrescribedVelocity: give ConstrainRigidPosition value=\"1\" to add it to "
+             "that velocity, or replace PrescribedVelocity by InitialVelocity");
   }
   if (body.prescribed_velocity || body.constrain_rigid_position)
     for (const char* element : {"Traction", "BodyForce"})
-      refuse(element, "has no effect on a body whose velocity is prescribed or held");
+      refuse(element, "has no effect on a body whose velocity is prescribed or constrained");
   if (body.constrain_rigid_position && !body.prescribed_velocity) {
     for (const core::Expression& e : body.initial_velocity_expressions)
       node.child("InitialVelocity")
           ->report(context.diagnostics, e.attribute,
-                   "ConstrainRigidPosition holds this velocity for the whole body: give a number, or "
+                   "ConstrainRigidPosition keeps one velocity for the whole body: expected a number; or use "
                    "PrescribedVelocity");
   }
 }
 
-/// Refuses expressions of the place for a rigid body, whose particles move as one.
+/// Rejects expressions of the position for a rigid body, whose particles have one velocity.
 void check_rigid_expressions(const core::BodyInput& body, const Node& node, const BuildContext& context) {
   const auto check = [&](const char* element, const core::Expressions& expressions) {
     for (const core::Expression& e : expressions)
       if ((core::Formula::check(e.text).uses & ~core::variables_named("t")).any())
         node.child(element)->report(
             context.diagnostics, e.attribute,
-            "all particles of a rigid body move alike: expected a number or an expression in t alone");
+            "a rigid body moves as a whole: expected a number or an expression in t only");
   };
   check("PrescribedVelocity", body.prescribed_velocity_expressions);
   if (body.body_force) check("BodyForce", body.body_force->expressions);
   for (const core::Expression& e : body.initial_velocity_expressions)
     node.child("InitialVelocity")
-        ->report(context.diagnostics, e.attribute,
-                 "all particles of a rigid body move alike: expected a number");
+        ->report(context.diagnostics, e.attribute, "a rigid body moves as a whole: expected a number");
 }
 
 /// A rigid body acts on others through contact only: in a single velocity field it would exert no force, so
@@ -212,10 +212,10 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
     if (deformable == nullptr || scene.contact.enable) continue;
     nodes[i].report(
         context.diagnostics, "material",
-        fmt::format("a rigid body acts on others through contact, which this version does not have: it would "
-                    "pass through '{}' and push nothing. Give the body a material that deforms, with "
-                    "PrescribedVelocity where its motion is known (that pushes), or leave it out; rigid "
-                    "bodies by themselves may run",
+        fmt::format("a rigid body acts on others only through contact, which is not implemented yet: it "
+                    "would pass through '{}' without exerting a force. Give the body a deformable material, "
+                    "with PrescribedVelocity where its motion is known (such a body does exert forces), or "
+                    "remove it; a scene of rigid bodies only is accepted",
                     deformable->name));
   }
 }

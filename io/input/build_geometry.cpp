@@ -1,4 +1,4 @@
-// The shapes of bodies. Their dimensions are checked when all bodies are known (check_shapes).
+// The shapes of bodies. Their dimensions are checked after all bodies are built (check_shapes).
 
 #include <fmt/format.h>
 

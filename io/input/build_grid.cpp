@@ -58,7 +58,7 @@ void count_cells(core::GridAxis& axis, const Node& max, const Node& size, std::s
   if (cells > static_cast<double>(core::most_cells_per_axis))
     return size.report(
         context.diagnostics, attribute,
-        fmt::format("this makes {:.7g} cells along the axis; at most {} are possible: use larger cells",
+        fmt::format("this gives {:.7g} cells along the axis; at most {} are possible: use larger cells",
                     std::ceil(cells), core::most_cells_per_axis));
   constexpr double round_off = 1e-6;  // of a cell
   const double whole = std::round(cells);
@@ -73,7 +73,7 @@ void count_cells(core::GridAxis& axis, const Node& max, const Node& size, std::s
     max.report(
         context.diagnostics, "value",
         fmt::format(
-            "a wall must lie on a face of cells: {} cells of {} do not fit between {} and {}; expected "
+            "a wall must coincide with a cell face: {} cells of {} do not fit between {} and {}; expected "
             "{} or {}",
             cells, axis.cell_size, axis.min, axis.max, axis.min + std::floor(cells) * axis.cell_size,
             axis.min + std::ceil(cells) * axis.cell_size));
@@ -126,7 +126,7 @@ core::GridInput build_grid(const Node& root, const BuildContext& context) {
   grid.shape = shape_function(node->word("shape"));
   if (node->boolean("gimp")) {
     if (node->find("shape") && grid.shape != core::ShapeFunction::uniform_gimp)
-      node->report(context.diagnostics, "gimp", "contradicts shape; leave one of them out");
+      node->report(context.diagnostics, "gimp", "contradicts shape; remove one of the two");
     grid.shape = core::ShapeFunction::uniform_gimp;
   }
   if (const std::optional<Node> dynamic = node->child("DynamicCell"))

@@ -116,18 +116,18 @@ void check_method(const Node& root, const core::Scene& scene, const BuildContext
   const std::optional<Node> solution = root.child("Solution"), grid = root.child("Grid");
   if (solution && core::is_affine(transfer) && !core::affine_transfers_go_with(shape)) {
     solution->report(context.diagnostics, "transfer",
-                     "does not go with this shape: expected QuadraticBSpline, CubicBSpline, uGIMP or cpGIMP");
+                     "is not available with this shape function: expected shape QuadraticBSpline, "
+                     "CubicBSpline, uGIMP or cpGIMP");
   }
   if (!grid || (shape != contiguous_particle_gimp && shape != cpdi && shape != cpdi2)) return;
   for (const core::ComponentInput& component : scene.components) {
     for (const core::BodyInput& body : component.bodies) {
       const auto* sphere = std::get_if<core::SphereGeometry>(&body.geometry);
       if (sphere != nullptr && sphere->layout == core::Layout::polar)
-        grid->report(
-            context.diagnostics, "shape",
-            fmt::format("body '{}' has spherical shells of particles, whose domains are no boxes along the "
-                        "axes: use uGIMP, or discretization 0",
-                        body.name));
+        grid->report(context.diagnostics, "shape",
+                     fmt::format("body '{}' has spherical shells of particles, whose domains are not boxes "
+                                 "along the axes: use uGIMP, or discretization 0",
+                                 body.name));
     }
   }
 }
@@ -144,7 +144,7 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
   solution.flip_fraction = node->real("flip_fraction");
   if (solution.flip_fraction != 1 && solution.transfer != core::Transfer::flip)
     node->report(context.diagnostics, "flip_fraction",
-                 fmt::format("has a meaning with transfer FLIP only, not with {}", node->word("transfer")));
+                 fmt::format("is available only with transfer FLIP, not with {}", node->word("transfer")));
   solution.xpic_order = node->small_integer("xpic_order");
   solution.xpic_interval = node->small_integer("xpic_interval");
   const auto value_of = [&](std::string_view child, std::string_view attribute) -> std::optional<double> {

@@ -1,4 +1,4 @@
-// Reports faults that core finds in the shapes of bodies at the lines of the input.
+// Reports errors that core finds in the shapes of bodies, with the lines of the input.
 
 #include "core/discretise/shape_check.hpp"
 #include "io/input/build.hpp"
@@ -7,7 +7,7 @@ namespace mpm::io {
 
 namespace {
 
-/// The elements of a body that faults are about.
+/// The elements of a body to which errors refer.
 class Elements {
  public:
   explicit Elements(const Node& body) : body_(body), geometry_(body.child("Geometry")) {

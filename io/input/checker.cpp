@@ -12,7 +12,7 @@ namespace mpm::io {
 
 namespace {
 
-/// The names of the elements under which `name` may stand.
+/// The names of the elements that may contain `name`.
 void find_parents(const ElementSpec& spec, std::string_view name, std::vector<std::string>& parents) {
   if (spec.child(name)) parents.push_back(fmt::format("<{}>", spec.name));
   for (const ElementSpec& child : spec.children) find_parents(child, name, parents);
@@ -33,7 +33,7 @@ class Checker {
     element(Node(document_, 0, language_, {}));
     for (const Document::StrayText& text : document_.stray_texts())
       diagnostics_.add(text.line, document_.elements()[text.element].name,
-                       fmt::format("no text may stand here: '{}'", text.text));
+                       fmt::format("text is not allowed here: '{}'", text.text));
   }
 
  private:
@@ -63,7 +63,7 @@ class Checker {
       if (!row && hangs_on_wrong_type(node, given.name)) return;
       if (!row) return report(unknown_attribute(node, given.name));
       if (node.find(row->name) != &given)
-        return report(fmt::format("the same as '{}', which is given too", row->name));
+        return report(fmt::format("the same attribute as '{}', which is also given", row->name));
     }
     if (std::string wrong = fault(*row, given.value); !wrong.empty())
       report(std::move(wrong));
@@ -84,8 +84,9 @@ class Checker {
       if (a.name == name) types.insert(types.end(), a.for_types.begin(), a.for_types.end());
       if (a.applies_to(node.type())) names.push_back(a.name);
     }
-    if (!types.empty()) return fmt::format("not with type {}, only with {}", node.type(), join(types, ", "));
-    if (names.empty()) return "no such attribute; the element has none";
+    if (!types.empty())
+      return fmt::format("not available with type {}, only with {}", node.type(), join(types, ", "));
+    if (names.empty()) return "no such attribute; the element has no attributes";
     std::vector<std::string> list(names.begin(), names.end());
     constexpr std::size_t short_list = 12;
     std::string message = "no such attribute";
@@ -139,8 +140,8 @@ class Checker {
       for (const std::string& name : group.names)
         if (!node.find(name)) missing.push_back(name);
       if (missing.empty() || missing.size() == group.names.size()) continue;
-      node.report(diagnostics_, fmt::format("{} are given all or none; missing: {}", join(group.names, ", "),
-                                            join(missing, ", ")));
+      node.report(diagnostics_, fmt::format("{} must be given together or not at all; missing: {}",
+                                            join(group.names, ", "), join(missing, ", ")));
     }
   }
 
@@ -155,11 +156,11 @@ class Checker {
       }
       const auto [first, is_first] = first_line.emplace(child.name, child.line);
       if (!node.type().empty() && !spec->applies_to(node.type()))
-        diagnostics_.add(child.line, child.name, fmt::format("not with type {}", node.type()));
+        diagnostics_.add(child.line, child.name, fmt::format("not available with type {}", node.type()));
       else if (!is_first && !spec->multiple)
         diagnostics_.add(
             child.line, child.name,
-            fmt::format("stands once in <{}>; the first is on line {}", node.name(), first->second));
+            fmt::format("may occur only once in <{}>; the first is on line {}", node.name(), first->second));
       element(Node(document_, i, *spec, node.type()));
     }
     if (node.element().incomplete) return;
@@ -179,7 +180,7 @@ class Checker {
     std::vector<std::string> parents;
     find_parents(language_, name, parents);
     if (!parents.empty())
-      return fmt::format("stands in {}, not in <{}>", join(parents, " or "), parent.name());
+      return fmt::format("belongs in {}, not in <{}>", join(parents, " or "), parent.name());
     return fmt::format("no such element in <{}>{}", parent.name(), did_you_mean(name, names));
   }
 

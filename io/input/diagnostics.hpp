@@ -1,4 +1,4 @@
-// Collects every fault about one input, to be thrown together.
+// Collects all errors in one input, to be thrown together.
 #pragma once
 
 #include <string>

@@ -240,15 +240,14 @@ int overfull_tag(std::string_view bytes) {
 std::optional<XmlError> refusal(std::string_view bytes) {
   using namespace std::string_view_literals;
   if (bytes.size() > largest_document)
-    return XmlError{
-        0,
-        fmt::format("{} bytes are more than the {} that an input may have; put particles into a file of "
-                    "their own (Geometry file=)",
-                    bytes.size(), largest_document),
-        {}};
+    return XmlError{0,
+                    fmt::format("{} bytes exceed the limit of {} for an input; store particles in a separate "
+                                "file (Geometry file=)",
+                                bytes.size(), largest_document),
+                    {}};
   if (trim(bytes).empty()) return XmlError{0, "the file is empty", {}};
   if (bytes.starts_with("\0\0"sv) || bytes.starts_with("\xFF\xFE\0\0"sv) || bytes.starts_with("<\0\0\0"sv))
-    return XmlError{0, "UTF-32 is not read; save the file as UTF-8", {}};
+    return XmlError{0, "UTF-32 is not supported; save the file as UTF-8", {}};
   if (const int line = overfull_tag(bytes))
     return XmlError{line, fmt::format("more than {} attributes on one element", most_attributes), {}};
   return {};
@@ -291,7 +290,7 @@ Document parse_document(std::string_view bytes, std::optional<XmlError>& error) 
   error = builder.error();
   if (!error && !parser->wellFormed) error = XmlError{0, "not well-formed XML", {}};
   if (error && watch.failed())
-    error->message += " (some bytes are not of the encoding that the first line names)";
+    error->message += " (some bytes are invalid in the encoding that the first line declares)";
   return error ? Document() : std::move(builder).take();
 }
 

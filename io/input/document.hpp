@@ -1,5 +1,5 @@
 // An XML file as a plain tree of names, values and lines, independent of libxml2.
-// No network, no document type, no entities but the five of XML; gb2312 labels are read as GB18030.
+// No network, no document type, no entities except the five of XML; gb2312 labels are read as GB18030.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace mpm::io {
 
-/// All texts are UTF-8 and live as long as their Document.
+/// All texts are UTF-8 and remain valid as long as their Document exists.
 struct XmlAttribute {
   std::string_view name;
   std::string_view value;

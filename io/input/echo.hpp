@@ -1,5 +1,5 @@
-// A scene written in the input language with all defaults: what `--dry-run` shows, and
-// what a user compares when two inputs should be the same. Reading it again gives the same scene.
+// Writes a scene in the input language with all defaults, to inspect an input or to compare two. Reading it
+// again gives the same scene.
 #pragma once
 
 #include <string>

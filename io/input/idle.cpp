@@ -72,7 +72,11 @@ bool can_fail(const Place& at) {
 
 bool failed_type_is_not(const Place& at, int type) { return at.strength().value_or("FailedType", 0) != type; }
 
-bool no_damage_rule(const Place& at) { return contact_is_off(at) || !at.scene.contact.failed_to_component; }
+/// Nothing reads FailureDamageThreshold.
+bool no_damage_rule(const Place& at) {
+  return (contact_is_off(at) || !at.scene.contact.failed_to_component) &&
+         at.strength().value_or("DamageToFail", 0) == 0;
+}
 
 bool all_zero(const Place& at) {
   return at.node.word("type") != "none" &&
@@ -110,37 +114,38 @@ bool no_pictures(const Place& at) {
 using Random = core::RandomFailureInput;
 const Random& random(const Place& at) { return at.material->random_failure; }
 
-/// A kind of setting that may have no effect.
+/// A setting that may have no effect.
 struct Rule {
   std::string_view path;  ///< of the element
-  /// Any of these that is given with another value than its default; none: the element itself; "*": all but
-  /// the first of the element's, its switch.
+  /// Attributes checked where they are given with a value other than the default; none: the element itself;
+  /// "*": all attributes of the element except the first, its switch.
   std::vector<std::string_view> attributes;
   bool (*idle)(const Place&);
   std::string_view why;
 };
 
 const std::vector<Rule>& rules() {
-  static constexpr std::string_view no_contact = "acts in contact only, and Contact is off";
+  static constexpr std::string_view no_contact = "used only by Contact, which is off";
   static constexpr std::string_view no_part = "an operand of Bool bodies takes no part in the run";
   static const std::vector<Rule> table{
       {"Material", {}, unused_material, "no body is made of this material"},
       {"Material/StrengthModel",
        {"TensileCutoff"},
        [](const Place& at) { return failed_type_is_not(at, 2); },
-       "acts with FailedType=\"2\" only"},
+       "used only with FailedType=\"2\""},
       {"Material/StrengthModel",
        {"FailedType", "FailViscosity"},
        [](const Place& at) { return !can_fail(at); },
-       "acts on failed particles only, and nothing lets this material fail"},
+       "applies only to failed particles, and this material cannot fail"},
       {"Material/StrengthModel",
        {"FailureDamageThreshold"},
        no_damage_rule,
-       "acts with Contact failure_to_component=\"1\" only, and Contact is off"},
+       "used only with Contact failure_to_component=\"1\", or with DamageToFail=\"1\" of "
+       "HolmquistJohnsonCook"},
       {"Material/StrengthModel",
        {"PlasticWorkCoefficient"},
        [](const Place& at) { return !at.strength().has("SpecHeat"); },
-       "heats only with SpecHeat, which is not given"},
+       "requires SpecHeat, which is not given"},
       {"Material/StrengthModel",
        {"roomt"},
        [](const Place& at) { return !at.strength().has("SpecHeat"); },
@@ -163,19 +168,19 @@ const std::vector<Rule>& rules() {
          const std::string& type = at.strength().type;
          return type == "HighExpBurn" || (type == "Null" && at.material->eos);
        },
-       "the equation of state gives the stiffness"},
+       "the equation of state determines the stiffness"},
       {"Material/EquationOfState",
        {"c0", "c1", "c2", "c3", "c4", "c5", "c6"},
        [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 1; },
-       "acts with EOSID=\"1\" only"},
+       "used only with EOSID=\"1\""},
       {"Material/EquationOfState",
        {"A1", "A2", "A3", "B0", "B1", "T1", "T2"},
        [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 2; },
-       "acts with EOSID=\"2\" only"},
+       "used only with EOSID=\"2\""},
       {"Material/EquationOfState",
        {"S1", "gamma0", "simplified"},
        [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 3; },
-       "acts with EOSID=\"3\" only"},
+       "used only with EOSID=\"3\""},
       {"Material/FailureModel",
        {"Erosion"},
        [](const Place& at) { return at.node.type() == "none"; },
@@ -194,31 +199,31 @@ const std::vector<Rule>& rules() {
        [](const Place& at) {
          return random(at).distribution != Random::Distribution::constant && !can_fail(at);
        },
-       "nothing lets this material fail"},
+       "this material cannot fail"},
       {"Material/RandomFailure",
        {"GaussMean", "GaussStd"},
        [](const Place& at) {
          return random(at).enable && random(at).distribution != Random::Distribution::gauss;
        },
-       "acts with FailDistribution=\"1\" only"},
+       "used only with FailDistribution=\"1\""},
       {"Material/RandomFailure",
        {"WeibMed", "WeibMod", "WeibRefVol", "WeibPartVol"},
        [](const Place& at) {
          return random(at).enable && random(at).distribution != Random::Distribution::weibull;
        },
-       "acts with FailDistribution=\"2\" only"},
+       "used only with FailDistribution=\"2\""},
       {"Material/RandomFailure",
        {"DamageRandom"},
        [](const Place& at) { return random(at).enable && !has_damage(at); },
        "the law of this material has no damage"},
       {"Friction", {}, contact_is_off, no_contact},
-      {"WorkPlane", {}, unused_plane, "no body names this work plane"},
+      {"WorkPlane", {}, unused_plane, "no body uses this work plane"},
       {"Component", {"normal_vector_weight"}, contact_is_off, no_contact},
       {"Component/Body",
        {"ForBoolBody"},
        [](const Place& at) { return operand(at) && !at.operands->contains(at.body); },
-       "no Bool body names this body, and it is no part of the run"},
-      {"Component/Body", {"density"}, operand, "the Bool body's own density holds"},
+       "no Bool body uses this body, and it takes no part in the run"},
+      {"Component/Body", {"density"}, operand, "the density of the Bool body applies"},
       {"Component/Body/InitialVelocity", {}, operand, no_part},
       {"Component/Body/InitialTemperature", {}, operand, no_part},
       {"Component/Body/PrescribedVelocity", {}, operand, no_part},
@@ -231,19 +236,20 @@ const std::vector<Rule>& rules() {
       {"Component/Body/InitialVelocity",
        {"vx", "vy", "vz"},
        [](const Place& at) { return at.body->prescribed_velocity.has_value(); },
-       "PrescribedVelocity takes its place from the start"},
+       "PrescribedVelocity replaces it from the start"},
       {"Component/Body/PrescribedAcceleration/Coefficient",
        {"crx", "cry", "crz"},
        [](const Place& at) {
          return at.body->prescribed_acceleration->angular_amplitude == core::Vec3<double>{};
        },
-       "a factor of arx, ary, arz, which are 0"},
+       "multiplies arx, ary, arz, which are 0"},
       {"Component/Body/ConstrainRigidPosition",
        {},
        [](const Place& at) { return !at.body->constrain_rigid_position; },
-       "0 is the same as no such element: a rigid body is held by PrescribedVelocity, and else moves freely"},
+       "0 is equivalent to omitting the element: a rigid body follows PrescribedVelocity, or without it "
+       "moves freely"},
       {"Component/Body/BodyContrl", {"NoOutput"}, no_pictures, "no PostProcessing writes particles"},
-      {"Detonation", {}, nothing_explodes, "no body is of HighExpBurn with beta 0 or 2"},
+      {"Detonation", {}, nothing_explodes, "no body has a HighExpBurn material with beta 0 or 2"},
       {"Grid/Cell/MovingGrid",
        {"*"},
        [](const Place& at) { return !at.scene.grid.moving.enable; },
@@ -251,42 +257,41 @@ const std::vector<Rule>& rules() {
       {"Grid/DynamicCell",
        {"enable", "clear_steps"},
        [](const Place&) { return true; },
-       "only cells with particles are ever stored"},
+       "only cells with particles are stored in any case"},
       {"Contact", {"*"}, contact_is_off, "Contact is off"},
       {"Solution",
        {"near_boundary_stop"},
        no_free_face,
-       "acts at faces of the grid with boundary=\"0\" only, and there is none"},
+       "applies only to grid faces with boundary=\"0\", and there are none"},
       {"Solution",
        {"xpic_order", "xpic_interval"},
        [](const Place& at) { return !core::is_corrected(at.scene.solution.transfer); },
-       "acts with transfer XPIC and FMPM only"},
+       "used only with transfer XPIC and FMPM"},
       {"Solution/TimeStep",
        {"factor", "const", "NotConsiderVisForCp"},
        [](const Place& at) { return at.scene.solution.time_step.specified > 0; },
-       "the specified step takes its place"},
-      {"Solution/LimitVelocity", {}, all_rigid, "it does not hold rigid bodies"},
-      {"Solution/DynamicRelax", {}, all_rigid, "it does not slow rigid bodies"},
+       "the specified step is used instead"},
+      {"Solution/LimitVelocity", {}, all_rigid, "it does not apply to rigid bodies"},
+      {"Solution/DynamicRelax", {}, all_rigid, "it does not apply to rigid bodies"},
       {"Solution/OpenMPSetting",
        {"directionofdecomposition"},
        [](const Place&) { return true; },
-       "threads share the bricks of cells"},
-      {"Output/PostProcessing", {}, no_pictures, "neither h5part nor vtk_data asks for a file"},
+       "bricks of cells are shared among the threads"},
+      {"Output/PostProcessing", {}, no_pictures, "neither h5part nor vtk_data requests a file"},
       {"Output/Restart",
        {},
        [](const Place& at) { return *at.scene.output.restart_interval > at.scene.solution.end_time; },
-       "the interval is longer than the run: no restart file on the way"},
+       "the interval is longer than the run: no restart file is written at intervals"},
       {"Output/Summary", {"enable"}, [](const Place&) { return true; }, "Job.summary.json is always written"},
       {"DomainDecomposition",
        {"dimension0", "dimension1", "dimension2"},
        [](const Place& at) { return at.scene.decomposition.method == core::PartitionMethod::metis; },
-       "method metis divides the grid by itself; only their product must be the number of ranks"},
+       "method metis does not use them, except that their product must be the number of ranks"},
   };
   return table;
 }
 
-/// Whether the node gives the attribute with another value than the default, 0 where there is none of a
-/// required number.
+/// Whether the attribute is given with a value other than the default; the default of a required number is 0.
 bool asked(const Node& node, std::string_view attribute) {
   const AttributeSpec* row = node.spec().attribute(attribute, node.type());
   const XmlAttribute* given = node.find(attribute);
@@ -340,7 +345,7 @@ class Walk {
     std::vector<core::Diagnostic> found;
     for (std::size_t i = 0; i < notes_.size(); ++i) {
       if (times_[i] == 0) continue;
-      if (times_[i] > 1) notes_[i].message += fmt::format(" (and {} more like it)", times_[i] - 1);
+      if (times_[i] > 1) notes_[i].message += fmt::format(" (and {} more such cases)", times_[i] - 1);
       found.push_back(std::move(notes_[i]));
     }
     return found;
@@ -424,10 +429,9 @@ void note_components(const Scene& scene, std::vector<core::Diagnostic>& notes) {
   if (rigid_bodies > 1)
     return add(scene.components.front().source, "rigid bodies pass through each other without contact");
   if (second != nullptr && rigid_bodies < count)
-    add(second->source,
-        touching(scene) +
-            "without contact, bodies of different components that come within a cell of each other stick "
-            "together: they neither slide nor part");
+    add(second->source, touching(scene) +
+                            "without contact, bodies of different components that come within a cell of each "
+                            "other stick together: they neither slide nor separate");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Input settings without effect, because the feature that uses them is off or absent: one note for each kind.
-// mpm_check prints the notes, and the log of a run contains them.
+// Reports input settings without effect, because the feature that uses them is off or absent: one note for
+// each kind. mpm_check prints the notes, and the log of a run contains them.
 #pragma once
 
 #include <vector>

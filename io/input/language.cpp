@@ -1,4 +1,4 @@
-// The laws of the catalogue as part of the language: the words of an element's type, and their attributes.
+// The laws of the catalogue as part of the language: the values of an element's type, and their attributes.
 
 #include <algorithm>
 #include <cmath>

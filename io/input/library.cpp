@@ -61,7 +61,7 @@ void parse_values(LibraryEntry& entry, const Document& document, const XmlElemen
       (element.name == "StrengthModel" ? entry.strength : entry.eos) = a.value;
       continue;
     }
-    if (has(entry, element.name, a.name)) mistake(entry.name, fmt::format("{} stands twice", a.name));
+    if (has(entry, element.name, a.name)) mistake(entry.name, fmt::format("{} occurs twice", a.name));
     entry.values.push_back({std::string(element.name), std::string(a.name), std::string(a.value), source,
                             std::string(value_of(document, element, "note"))});
   }
@@ -73,13 +73,13 @@ LibraryEntry parse_entry(const Document& document, std::uint32_t index, const Li
   entry.name = value_of(document, element, "name");
   entry.title = value_of(document, element, "title");
   entry.note = value_of(document, element, "note");
-  if (library.find(entry.name)) mistake(entry.name, "stands twice");
+  if (library.find(entry.name)) mistake(entry.name, "occurs twice");
   for_each_child(document, index, [&](std::uint32_t child) {
     parse_values(entry, document, document.elements()[child], library);
   });
   if (const std::string_view base = value_of(document, element, "base"); !base.empty()) {
     const LibraryEntry* found = library.find(base);
-    if (!found) mistake(entry.name, fmt::format("its base '{}' does not stand before it", base));
+    if (!found) mistake(entry.name, fmt::format("its base '{}' is not defined before it", base));
     LibraryEntry own = std::move(entry);
     entry = *found;
     entry.name = own.name;
@@ -91,7 +91,7 @@ LibraryEntry parse_entry(const Document& document, std::uint32_t index, const Li
   return entry;
 }
 
-/// Header/Unit, where all three of its names are known.
+/// The units of Header/Unit, if all three are recognised.
 std::optional<core::UnitSystem> header_units(const Document& document) {
   std::optional<core::UnitSystem> units;
   for_each_child(document, 0, [&](std::uint32_t header) {
@@ -121,7 +121,7 @@ class Filler {
     const auto given = attribute(material, "library");
     const auto units_given = attribute(material, "units");
     if (!given) {
-      if (units_given) report(*units_given, "has a meaning only with library, whose values it converts");
+      if (units_given) report(*units_given, "is used only with library, to convert its values");
       return;
     }
     const std::optional<LibraryEntry> entry = find(*given);
@@ -151,7 +151,7 @@ class Filler {
     for (const std::string_view name : split(given.value, '|')) {
       const LibraryEntry* entry = library_.find(name);
       if (!entry) {
-        report(given, fmt::format("the library has no '{}'{}; mpm_check --materials lists what it has", name,
+        report(given, fmt::format("the library has no '{}'{}; mpm_check --materials lists its contents", name,
                                   library_suggestions(library_, name)));
         found_all = false;
       } else if (!all) {
@@ -161,7 +161,7 @@ class Filler {
       }
     }
     if (!all && found_all) {
-      report(given, "expected a name of the library; mpm_check --materials lists them");
+      report(given, "expected the name of a library material; mpm_check --materials lists them");
       return {};
     }
     return found_all ? all : std::nullopt;
@@ -183,14 +183,14 @@ class Filler {
         return {};
       }
       if (header_units_ && *header_units_ != *units) {
-        report(*given, fmt::format("Header / Unit says {}; one input has one system of units",
+        report(*given, fmt::format("contradicts Header / Unit, {}; all units of an input must agree",
                                    header_units_->name()));
         return {};
       }
     }
     if (units && first_units_ && *first_units_ != *units) {
       if (given)
-        report(*given, fmt::format("a material before this one has {}; one input has one system of units",
+        report(*given, fmt::format("contradicts an earlier material, {}; all units of an input must agree",
                                    first_units_->name()));
       return {};
     }
@@ -213,7 +213,7 @@ class Filler {
       const std::uint32_t element = child(name);
       const std::optional<XmlAttribute> other = attribute(element, "type");
       if (other && !type.empty() && other->value != type)
-        continue;  // another law: takes no value of this one
+        continue;  // another law: the library's values do not apply
       if (!other && !type.empty()) document_.set_attribute(element, "type", type, line);
       for (const LibraryValue& v : entry.values) {
         if (v.element != name || attribute(element, v.attribute)) continue;
@@ -298,7 +298,8 @@ std::string library_suggestions(const Library& library, std::string_view name) {
     if (meant.size() < 4 && std::ranges::find(meant, candidate) == meant.end()) meant.emplace_back(candidate);
   };
   if (const std::string_view best = nearest(name, names); !best.empty()) add(best);
-  // Then those whose name or title has the word, or the longest part of it that any has: "copper", "Al-7075".
+  // Otherwise those whose name or title contains the word, or the longest part of it that any contains:
+  // "copper", "Al-7075".
   const std::string wanted = lower(name);
   for (std::size_t length = wanted.size(); length >= 2 && meant.size() < 2; --length) {
     if (wanted[length - 1] == '-') continue;

@@ -59,7 +59,7 @@ std::optional<core::UnitSystem> units_of(const Document& document);
 /// Every entry with its laws, values and sources as readable text.
 std::string library_listing(const Library& library, const core::Catalogue& catalogue);
 
-/// The entries that `name` may have meant, as "; did you mean 'a', 'b'?", or nothing.
+/// The entries that were probably meant by `name`, as "; did you mean 'a', 'b'?", or nothing.
 std::string library_suggestions(const Library& library, std::string_view name);
 
 }  // namespace mpm::io

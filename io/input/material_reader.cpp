@@ -49,10 +49,11 @@ std::uint32_t choose(const Document& document, const std::string& name, const Di
   const std::string list = join({names.begin(), names.end()}, ", ");
   throw core::InputErrors(
       core::SourceLocation{diagnostics.file(), 0}, {},
-      names.empty() ? std::string("it has no material")
+      names.empty() ? std::string("the file contains no material")
       : name.empty()
-          ? fmt::format("it has several materials; choose one with --material: {}", list)
-          : fmt::format("it has no material '{}'{}; it has {}", name, did_you_mean(name, names), list));
+          ? fmt::format("the file contains several materials; choose one with --material: {}", list)
+          : fmt::format("the file contains no material '{}'{}; it contains {}", name,
+                        did_you_mean(name, names), list));
 }
 
 /// Overrides single values of a material in the document, so that they are checked like all others.
@@ -67,7 +68,7 @@ class Setter {
 
   void set(const std::string& setting) {
     const std::size_t equals = setting.find('=');
-    if (equals == setting.npos) return report(setting, "is written NAME=VALUE");
+    if (equals == setting.npos) return report(setting, "expected NAME=VALUE");
     const std::string_view value = trim(std::string_view(setting).substr(equals + 1));
     std::string_view name = trim(std::string_view(setting).substr(0, equals)), element;
     if (name == "ReferenceDensity") name = "ReferenceDensity.value";
@@ -91,7 +92,8 @@ class Setter {
     if (places.empty())
       return report(setting, fmt::format("the material has no '{}'{}", name, did_you_mean(name, known)));
     if (places.size() > 1)
-      return report(setting, fmt::format("more than one law has it: say {}", join(elements, " or ")));
+      return report(setting,
+                    fmt::format("more than one law has this parameter: use {}", join(elements, " or ")));
     document_.set_attribute(places[0], name, in_units_of_the_input(value, setting), 0);
   }
 
@@ -105,7 +107,7 @@ class Setter {
     try {
       const core::Quantity quantity = core::parse_quantity(value);
       if (units_) return fmt::format("{}", units_->value_of(quantity));
-      report(setting, "the input does not say its units, so a unit cannot be converted");
+      report(setting, "the input does not state its units, so a unit cannot be converted");
     } catch (const core::UnitError& error) { report(setting, error.what()); }
     return std::string(value.substr(0, value.find(' ')));
   }

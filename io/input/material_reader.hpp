@@ -26,7 +26,7 @@ struct MaterialChoice {
   core::MaterialInput material;
   std::vector<core::DetonationItem> detonations;
   int volume_update = 0;                  ///< of Solution / Volume, where there is one
-  std::optional<core::UnitSystem> units;  ///< where the input names them
+  std::optional<core::UnitSystem> units;  ///< if the input states them
 };
 
 /// All throw core::InputErrors.

@@ -40,8 +40,8 @@ std::string complaint_about_expression(const AttributeSpec& a, std::string_view 
     return fmt::format("{}; {}{}", wanted, found.error, remedy);
   }
   if (const core::VariableSet others = found.uses & ~a.variables; others.any())
-    return fmt::format("{}; {} {} no meaning here", wanted, core::in_words(others),
-                       others.count() == 1 ? "has" : "have");
+    return fmt::format("{}; {} {} not available here", wanted, core::in_words(others),
+                       others.count() == 1 ? "is" : "are");
   if (found.constant && !std::isfinite(*found.constant))
     return fmt::format("{}; this is {}", wanted, core::not_finite_in_words(*found.constant));
   return {};
@@ -64,8 +64,8 @@ std::string complaint_about_one(const AttributeSpec& a, std::string_view value) 
     case ValueType::real: {
       const std::optional<double> number = parse_real(value);
       if (!number && is_written_real(value))
-        return "beyond the range of numbers, which is 0 and 2.3e-308 to 1.7e308 in size; write 0, or choose "
-               "other units";
+        return "out of the range of double precision (0, or magnitudes from 2.3e-308 to 1.7e308); write 0, "
+               "or choose other units";
       if (!number && a.variables.any()) return complaint_about_expression(a, value);
       if (!number) return expected(a, value) + ", written like 1.5e-3";
       return allowed(a, *number) ? std::string() : expected(a, value);

@@ -21,7 +21,7 @@ namespace mpm::io {
 /// The fault of a value, or an empty text.
 std::string fault(const AttributeSpec& attribute, std::string_view value);
 
-/// The word that the attribute's second spelling of a word stands for; otherwise the value, trimmed.
+/// The value, trimmed; a second spelling of a word is replaced by the word.
 std::string_view canonical_word(const AttributeSpec& attribute, std::string_view value);
 
 class Node {
@@ -42,15 +42,15 @@ class Node {
   /// The attribute under its name or its second accepted spelling.
   const XmlAttribute* find(std::string_view attribute) const;
 
-  /// NaN without value and default; 0 where an expression stands in its place.
+  /// NaN without value and default; 0 where an expression is given.
   double real(std::string_view attribute) const;
-  /// The expression in place of the number, where it uses variables.
+  /// The expression given instead of the number, if it uses variables.
   std::optional<std::string> expression(std::string_view attribute) const;
   std::int64_t integer(std::string_view attribute) const;
   int small_integer(std::string_view attribute) const { return static_cast<int>(integer(attribute)); }
   bool boolean(std::string_view attribute) const { return integer(attribute) == 1; }
   std::string word(std::string_view attribute) const;
-  std::vector<std::string> words(std::string_view attribute) const;  ///< joined by |, each once
+  std::vector<std::string> words(std::string_view attribute) const;  ///< joined by |, without repetitions
   core::Vec3<double> reals(std::string_view a, std::string_view b, std::string_view c) const {
     return {real(a), real(b), real(c)};
   }

@@ -25,7 +25,7 @@ namespace {
   throw core::InputErrors(core::SourceLocation{file.string(), 0}, {}, std::move(message));
 }
 
-/// What is meant where an attribute stands twice, if the language knows.
+/// The intended name where an attribute occurs twice, if the language defines one.
 std::string meant_by_repeated(const ElementSpec& spec, std::string_view name) {
   for (const AttributeSpec& a : spec.attributes)
     if (a.name == name && !a.twice.empty()) return a.twice;
@@ -62,7 +62,7 @@ core::Scene build(const Node& root, const BuildContext& context) {
 }  // namespace
 
 std::filesystem::path find_input(const std::filesystem::path& job) {
-  if (job.empty()) refuse({}, "the name of the job is empty: name an input file, Job.xmp");
+  if (job.empty()) refuse({}, "the name of the job is empty: give an input file, Job.xmp");
   std::error_code ignored;
   std::filesystem::path with_extension = job;
   with_extension += ".xmp";
@@ -115,8 +115,7 @@ core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& fil
     scene = build(Node(document, 0, root, {}), {diagnostics, file.parent_path(), options.check_files});
   const std::filesystem::path name = file.extension() == ".xmp" ? file.stem() : file.filename();
   if (name.empty() || name == ".xmp")
-    diagnostics.add(0, {},
-                    "the file's name has nothing before .xmp, so no name for the job: rename the file");
+    diagnostics.add(0, {}, "the file name is empty before .xmp, so the job has no name: rename the file");
   diagnostics.raise_if_any();
   scene.provenance = {file.string(), name.string(), fnv1a_hex(bytes)};
   if (options.foreign) *options.foreign = foreign_names(Node(document, 0, root, {}), file.string());

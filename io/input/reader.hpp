@@ -16,15 +16,15 @@ struct ElementSpec;
 struct UserSpecification;
 
 struct ReadOptions {
-  bool check_files = true;    ///< look whether the files that the input names can be read
-  bool accept_later = false;  ///< let pass what the language has and the program has not yet
-  std::vector<core::Diagnostic>* notes = nullptr;  ///< gets what the input states without effect (idle.hpp)
-  const UserSpecification* users = nullptr;        ///< what the input must conform to as well
-  /// Receives names that `users` allows and this program does not have; without it they are faults.
+  bool check_files = true;                         ///< check that the files named in the input can be read
+  bool accept_later = false;                       ///< accept input that is known but not implemented yet
+  std::vector<core::Diagnostic>* notes = nullptr;  ///< receives settings without effect (idle.hpp)
+  const UserSpecification* users = nullptr;  ///< an additional Specification that the input must satisfy
+  /// Receives names that `users` allows but this program does not have; without it they are errors.
   std::vector<core::Diagnostic>* foreign = nullptr;
 };
 
-/// The input of a job that is named with or without `.xmp`; throws when there is none.
+/// The input of a job named with or without `.xmp`; throws if there is none.
 std::filesystem::path find_input(const std::filesystem::path& job);
 
 /// The bytes of a file; throws when it cannot be read.

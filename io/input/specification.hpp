@@ -35,17 +35,17 @@ struct AttributeSpec {
   ValueType type = ValueType::text;
   Range range;
   std::vector<std::string> for_types;        ///< empty: for every type
-  std::optional<std::string> default_value;  ///< starts with @ where it is a rule in words
+  std::optional<std::string> default_value;  ///< a rule in words if it starts with @
   std::string unit;
   std::string meaning;
   bool later = false;                             ///< any value but the default is not implemented yet
   std::vector<std::string> later_values;          ///< these values are not implemented yet
-  std::string instead_of;                         ///< a refused spelling of the name
+  std::string instead_of;                         ///< a rejected spelling of the name
   std::string also;                               ///< a second accepted spelling of the name
   std::pair<std::string, std::string> also_word;  ///< accepted spelling of a word, and the word
-  std::string twice;                              ///< what is meant where the attribute stands twice
-  std::string word;                               ///< accepted in place of a number
-  /// Variables of an expression that may stand in place of the number (core/expressions/formula.hpp).
+  std::string twice;  ///< the attribute probably meant where this one occurs twice
+  std::string word;   ///< accepted in place of a number
+  /// Variables of an expression that may replace the number (core/expressions/formula.hpp).
   core::VariableSet variables;
   bool foreign = false;                    ///< a user's Specification has it, this program has not
   std::vector<std::string> foreign_words;  ///< words that only a user's Specification has

@@ -16,7 +16,7 @@ bool contains(const std::vector<std::string>& words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();
 }
 
-/// The names are the additions' own: the user's Specification checks how often they occur.
+/// How often the added names occur is checked against the user's Specification.
 ElementSpec foreign(ElementSpec spec) {
   spec.foreign = true;
   spec.required = false;
@@ -93,7 +93,7 @@ class Finder {
  private:
   void found(const std::string& name, core::Diagnostic what) {
     if (!seen_.insert(name).second) return;
-    what.message = "the Specification has it, this program has not: mpm_run refuses the input";
+    what.message = "defined in the Specification, but not in this program: mpm_run rejects the input";
     found_.push_back(std::move(what));
   }
 

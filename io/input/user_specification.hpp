@@ -1,6 +1,6 @@
-// A Specification.xml of the user's, in the notation of the manual's chapter 5.1. An input is checked against
+// A user's Specification.xml, in the notation of the manual's chapter 5.1. An input is checked against
 // it and against the program's own; names that only the user's Specification has are accepted and reported,
-// so that a keyword of another program needs only a line there.
+// so that a keyword of another program requires only one line there.
 #pragma once
 
 #include <filesystem>

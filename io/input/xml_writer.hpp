@@ -1,4 +1,4 @@
-// Elements and attributes as indented text.
+// Writes elements and attributes as indented text.
 #pragma once
 
 #include <optional>

@@ -68,7 +68,7 @@ void File::read_at(std::span<std::byte> into, std::uint64_t offset) const {
   while (!into.empty()) {
     const ssize_t n = ::pread(handle_, into.data(), into.size(), static_cast<off_t>(offset));
     if (n < 0 && errno != EINTR) fail("read", errno);
-    if (n == 0) throw FileError("cannot read '" + path_ + "': it ends too early");
+    if (n == 0) throw FileError("cannot read '" + path_ + "': unexpected end of file");
     if (n < 0) continue;
     into = into.subspan(static_cast<std::size_t>(n));
     offset += static_cast<std::uint64_t>(n);
@@ -146,7 +146,7 @@ void remove_file(const std::string& path) noexcept { ::unlink(path.c_str()); }
 void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw system_error("make the folder", path, error.value());
+  if (error) throw system_error("create the folder", path, error.value());
 }
 
 }  // namespace mpm::io

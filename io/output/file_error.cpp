@@ -11,10 +11,10 @@ FileError system_error(const std::string& doing, const std::string& path, int er
   std::string text = fmt::format("cannot {} '{}': {}", doing, path, std::generic_category().message(error));
   if (error == ENOSPC || error == EDQUOT) {
     text +=
-        "; free some space, or choose another folder with --output-dir, and start again: from the newest .pe "
-        "file where there is one";
+        "; free disk space or choose another folder with --output-dir, then restart from the newest .pe "
+        "file, if there is one";
   } else if (error == EFBIG) {
-    text += "; raise the limit on the size of files (ulimit -f)";
+    text += "; raise the file size limit (ulimit -f)";
   }
   return FileError(text);
 }

@@ -10,7 +10,7 @@
 
 namespace mpm::io {
 
-/// A file that could not be written or read; the text names the file and what went wrong.
+/// A file that could not be written or read; the text names the file and the cause.
 class FileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -25,7 +25,7 @@ constexpr std::uint64_t bytes_per_field = 2048;
 /// Group of a time before it is renamed.
 constexpr const char* workshop = "unfinished";
 constexpr const char* work = "unfinished/step";
-/// Of a file without times.
+/// Upper bound of the size of a file without times.
 constexpr std::uint64_t bytes_of_file = 131072;
 
 std::vector<Field> fields_for(const std::vector<Variable>& variables) {
@@ -119,7 +119,7 @@ bool H5PartWriter::go_on(core::Reductions& ranks) {
   const std::optional<H5PartMark> mark = H5PartMark::from(*settings_.continue_from);
   if (!ranks.any(ranks.rank() == 0 && std::filesystem::exists(path))) {
     if (mark && mark->times > 0)
-      notice_ = fmt::format("'{}' is missing; it had {} time(s): a new file begins", path, mark->times);
+      notice_ = fmt::format("'{}' is missing; it had {} time(s): a new file is started", path, mark->times);
     return false;
   }
   std::string aside = path + ".damaged", fault;
@@ -133,7 +133,7 @@ bool H5PartWriter::go_on(core::Reductions& ranks) {
     mark_ = *mark;
     return true;
   }
-  notice_ = fmt::format("{}; it is now '{}', and a new file begins", fault, aside);
+  notice_ = fmt::format("{}; it has been renamed to '{}', and a new file is started", fault, aside);
   together(ranks, [&] {
     if (ranks.rank() == 0) rename_file(path, aside);
   });

@@ -30,7 +30,7 @@ class H5PartWriter {
     std::string path;
     std::vector<Variable> variables;
     bool double_precision = false;
-    /// mark() of the run to be continued, empty if it had none; without a value a new file begins.
+    /// mark() of the run to be continued, empty if it had none; without a value a new file is started.
     std::optional<std::string> continue_from;
   };
   /// Bodies without output are left out. Throws FileError. Collective.

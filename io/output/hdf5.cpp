@@ -15,16 +15,16 @@ herr_t keep_innermost(unsigned n, const H5E_error2_t* error, void* text) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
   H5Eclear2(H5E_DEFAULT);
-  throw FileError(fmt::format("cannot {}: {}", doing, reason.empty() ? "HDF5 gives no reason" : reason));
+  throw FileError(fmt::format("cannot {}: {}", doing, reason.empty() ? "HDF5 reports no reason" : reason));
 }
 
-Handle properties(hid_t cls) { return Handle(H5Pcreate(cls), H5Pclose, "make a property list"); }
+Handle properties(hid_t cls) { return Handle(H5Pcreate(cls), H5Pclose, "create a property list"); }
 
 Handle access_properties(Failure& failure) {
   [[maybe_unused]] static const herr_t silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   Handle list = properties(H5P_FILE_ACCESS);
   // Locks fail on some parallel file systems and would prevent viewers from reading a file during writing.
-  check(H5Pset_file_locking(list, false, true), "switch off file locks");
+  check(H5Pset_file_locking(list, false, true), "disable file locks");
   use_driver(list, failure);
   return list;
 }
@@ -40,7 +40,7 @@ Handle group_properties() {
 
 Handle simple_space(std::span<const hsize_t> shape) {
   return Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
-                "make a dataspace");
+                "create a dataspace");
 }
 
 template <class T>
@@ -68,9 +68,9 @@ Container read_whole(hid_t parent, const std::string& name, hid_t memory_type) {
 
 template <class T>
 void write_scalar(hid_t object, const std::string& name, hid_t file_type, hid_t memory_type, const T* value) {
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a dataspace");
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "create a dataspace");
   const Handle attribute(H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose, "make attribute '" + name + "'");
+                         H5Aclose, "create attribute '" + name + "'");
   check(H5Awrite(attribute, memory_type, value), "write attribute '" + name + "'");
 }
 
@@ -79,9 +79,9 @@ Handle open_attribute(hid_t object, const std::string& name) {
 }
 
 Handle text_type(std::size_t length) {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
-  check(H5Tset_size(type, length), "set the length of a text");
-  check(H5Tset_cset(type, H5T_CSET_UTF8), "set the encoding of a text");
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "create a string type");
+  check(H5Tset_size(type, length), "set the length of a string");
+  check(H5Tset_cset(type, H5T_CSET_UTF8), "set the encoding of a string");
   return type;
 }
 
@@ -134,8 +134,8 @@ Handle create_file(const std::string& path, hsize_t user_block, bool links) {
   if (links) {
     constexpr unsigned half_node = 512, tree = 16;  // links in half a leaf, branches in half a node
     constexpr std::size_t bytes_of_names = 32768;
-    check(H5Pset_sym_k(creation, tree, half_node), "make room for links");
-    check(H5Pset_local_heap_size_hint(creation, bytes_of_names), "make room for names");
+    check(H5Pset_sym_k(creation, tree, half_node), "reserve space for links");
+    check(H5Pset_local_heap_size_hint(creation, bytes_of_names), "reserve space for names");
   }
   return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, list), H5Fclose, "create '" + path + "'",
                 failure);
@@ -144,7 +144,7 @@ Handle create_file(const std::string& path, hsize_t user_block, bool links) {
 Handle create_group(hid_t parent, const std::string& name) {
   const Handle list = group_properties();
   return Handle(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, list, H5P_DEFAULT), H5Gclose,
-                "make group '" + name + "'");
+                "create group '" + name + "'");
 }
 
 Handle open_group(hid_t parent, const std::string& name) {
@@ -156,11 +156,11 @@ Handle create_dataset(hid_t parent, const std::string& name, hid_t type, std::sp
   const Handle list = properties(H5P_DATASET_CREATE);
   check(H5Pset_layout(list, H5D_CONTIGUOUS), "choose a contiguous layout");
   check(H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY), "choose early allocation");
-  check(H5Pset_fill_time(list, H5D_FILL_TIME_NEVER), "choose not to fill");
+  check(H5Pset_fill_time(list, H5D_FILL_TIME_NEVER), "disable fill values");
   // Without creation times, so that the same content gives the same bytes.
-  check(H5Pset_obj_track_times(list, false), "leave out the times of datasets");
+  check(H5Pset_obj_track_times(list, false), "disable time stamps of datasets");
   return Handle(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose,
-                "make dataset '" + name + "'");
+                "create dataset '" + name + "'");
 }
 
 Handle open_dataset(hid_t parent, const std::string& name) {
@@ -180,7 +180,7 @@ Extent extent_of(hid_t dataset) {
   const hsize_t size = H5Dget_storage_size(dataset);
   if (size == 0) return {};
   const haddr_t offset = H5Dget_offset(dataset);
-  if (offset == HADDR_UNDEF) fail("find the place of a dataset");
+  if (offset == HADDR_UNDEF) fail("locate a dataset");
   return {offset, size};
 }
 

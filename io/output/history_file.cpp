@@ -172,7 +172,7 @@ std::string HistoryFile::legend() const {
   }
   if (particles > 0)
     text +=
-        "# present[particle]: 1; 0 once it is eroded or has left the grid, its other columns then keep their "
+        "# present[particle]: 1; 0 once it is eroded or has left the grid; its other columns then keep their "
         "last values\n";
   return text;
 }

@@ -33,7 +33,7 @@ class HistoryFile {
   HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
               core::Reductions& ranks);
 
-  /// With histories every step has a row; without, the total energies are written on request.
+  /// With histories, every step has a row; otherwise the total energies are written on request.
   bool each_step() const { return !targets_.empty(); }
   /// Adds the row of the present state to the buffer. Throws core::NumericalFailure if an energy is not
   /// finite. Collective.

@@ -86,7 +86,7 @@ void write_holder(int handle, int number_of_ranks) {
 /// Reports a long wait once.
 class Patience {
  public:
-  /// False when the time is over.
+  /// False after the time limit.
   bool wait(const std::string& path, const std::string& holder) {
     const auto left = end_ - std::chrono::steady_clock::now();
     if (left < 0s) return false;
@@ -120,7 +120,8 @@ JobLock::JobLock(const std::string& path, core::Reductions& ranks) : path_(path)
   });
   // Rank 0 holds the gate, so no other run can intervene.
   if (ranks.any(held) && first_)
-    notice_ = fmt::format("'{}' is not locked on every machine: let only one run write here", path);
+    notice_ = fmt::format(
+        "'{}' is not locked on every machine: make sure that only one run writes to this folder", path);
 }
 
 JobLock::~JobLock() {
@@ -134,19 +135,20 @@ void JobLock::take(const std::string& path, int number_of_ranks) {
     if (handle_ < 0) throw system_error("write", path, errno);
     const Answer answer = set_both(handle_);
     if (answer == Answer::no_locks) {
-      notice_ = fmt::format("'{}' cannot be locked ({}): let only one run write here", path,
-                            system_error("lock", path, errno).what());
+      notice_ = fmt::format("'{}' cannot be locked ({}): make sure that only one run writes to this folder",
+                            path, system_error("lock", path, errno).what());
       return;
     }
     if (answer == Answer::taken && leads_to(path, handle_)) break;
     const std::string holder = answer == Answer::held ? holder_of(handle_) : std::string();
     ::close(std::exchange(handle_, -1));
     if (answer == Answer::held && !patience_left.wait(path, holder)) {
-      throw FileError(fmt::format(
-          "nothing was started: another run writes to this folder under the same job name, or ranks of a "
-          "killed one still live; '{}' is held by {}. Wait for it to end, stop it, or choose another folder "
-          "with --output-dir",
-          path, holder));
+      throw FileError(
+          fmt::format("the run was not started: another run writes to this folder under the same job name, "
+                      "or ranks of a killed run are still alive; '{}' is held by {}. Wait for it to end, "
+                      "stop it, or choose another folder "
+                      "with --output-dir",
+                      path, holder));
     }
   }
   write_holder(handle_, number_of_ranks);

@@ -28,9 +28,8 @@ std::string CutValues::warning(const std::string& file, std::int64_t step,
   }
   if (!is_new) return {};
   return fmt::format(
-      "step {}: beyond what '{}' can hold are {}: written as the largest number of their type; choose units "
-      "in "
-      "which they are smaller",
+      "step {}: out of the range of numbers in '{}': {}; written as the largest number of their type: choose "
+      "units in which the values are smaller",
       step, file, found);
 }
 

@@ -63,9 +63,9 @@ void compare(const std::string& path, std::span<const SharedRows> datasets,
       file.read_at(found, at);
       if (std::memcmp(found.data(), bytes.data(), bytes.size()) == 0) return;
       throw FileError(
-          fmt::format("cannot write '{}': the data written to '{}' does not read back the same, and no error "
-                      "was reported: this file system loses what several machines write; choose another with "
-                      "--output-dir",
+          fmt::format("cannot write '{}': the data read back from '{}' differ from the data written, and no "
+                      "error was reported: this file system loses data written by several machines; choose "
+                      "another with --output-dir",
                       path, datasets[d].dataset));
     });
   }

@@ -1,7 +1,7 @@
 // Job.sta: one row per report of the run's state: step, time, energies, momenta, per body and per material.
 //
-// Lines that start with '#' are comments; the last of them names the columns. Numbers have 17 significant
-// digits, enough to see any drift. Shown by tests/io/output/status_file_test.cpp.
+// Lines that start with '#' are comments; the last of them lists the columns. Numbers have 17 significant
+// digits, enough to see any drift. Tested by tests/io/output/status_file_test.cpp.
 #pragma once
 
 #include <optional>

@@ -28,7 +28,7 @@ std::optional<std::int64_t> step_of(std::string_view row) {
 struct Found {
   bool head = false;
   bool empty = true;
-  TableMark all;  ///< of the rows that were looked at
+  TableMark all;  ///< of the rows that were read
   TableMark kept;
   std::uint64_t bytes = 0;  ///< up to the end of the last row kept
 };
@@ -74,8 +74,8 @@ std::string difference(const std::string& path, const Found& found, const TableC
                        path, rows_in_words(found.all), rows_in_words(expected));
   }
   return fmt::format(
-      "'{}' has been changed: its first {} do not match the checksum in the restart file; its last row "
-      "kept is of step {}, and step {} was expected",
+      "'{}' has been changed: its first {} do not match the checksum in the restart file; the last row kept "
+      "is that of step {}, but step {} was expected",
       path, rows_in_words(expected), found.kept.step, std::min(expected.step, from.step));
 }
 
@@ -101,18 +101,19 @@ TableCut cut_table(const std::string& path, const std::string& head, const Table
   const std::string lost =
       from.mark && from.mark->rows > 0 ? "; it had " + rows_in_words(*from.mark) : std::string();
   if (!std::filesystem::exists(path)) {
-    if (!lost.empty()) cut.notice = fmt::format("'{}' is missing{}: a new file begins", path, lost);
+    if (!lost.empty()) cut.notice = fmt::format("'{}' is missing{}: a new file is started", path, lost);
     return cut;
   }
   const Found found = look_at(path, head, from);
   if (!found.head) {
     if (found.empty) {
-      if (!lost.empty()) cut.notice = fmt::format("'{}' is empty{}: a new file begins", path, lost);
+      if (!lost.empty()) cut.notice = fmt::format("'{}' is empty{}: a new file is started", path, lost);
       return cut;
     }
     rename_file(path, path + ".old");
     cut.notice = fmt::format(
-        "'{0}' does not have this run's columns: it is now '{0}.old', and a new one begins", path);
+        "'{0}' does not have this run's columns: it has been renamed to '{0}.old', and a new file is started",
+        path);
     return cut;
   }
   cut.append = true;

@@ -34,7 +34,7 @@ struct TableContinuation {
 };
 
 struct TableCut {
-  bool append = false;  ///< else a new table begins
+  bool append = false;  ///< else a new table is started
   TableMark kept;
   std::string notice;  ///< notice for the user; usually empty
 };
@@ -45,7 +45,8 @@ TableCut cut_table(const std::string& path, const std::string& head, const Table
 
 class TableFile {
  public:
-  /// Continues the table if it can, else begins it with `comments` and `head`. Throws FileError. Collective.
+  /// Continues the table if possible, else starts it with `comments` and `head`. Throws FileError.
+  /// Collective.
   TableFile(const std::string& path, const std::string& comments, const std::string& head,
             const std::optional<TableContinuation>& from, core::Reductions& ranks);
 

@@ -3,7 +3,7 @@
 // To add one: a name in Variable, a row in variable_table and a line in evaluate(). pres is the pressure p of
 // the equation of state, positive in compression and without the artificial viscosity; stresses are the whole
 // Cauchy stress s - (p + q) I. tria is -p over the Mises stress. Numbers of bodies and materials count
-// from 0 in the order of the input, those of components from 1. Shown by tests/io/output/variables_test.cpp.
+// from 0 in the order of the input, those of components from 1. Tested by tests/io/output/variables_test.cpp.
 #pragma once
 
 #include <array>
@@ -102,10 +102,10 @@ std::vector<Variable> variables_of(const std::vector<std::string>& words);
 /// The column beyond ColumnSet::mechanics() that the variable is read from, if any.
 std::optional<core::Column> column_of(Variable v);
 
-/// Columns that bodies carry only for output: sound speed, yield stress, accumulated strain. Laws request the
-/// state that they read back, such as damage, themselves.
+/// Columns that bodies have only for output: sound speed, yield stress, accumulated strain. State that a law
+/// reads back, such as damage, is requested by the law.
 core::ColumnSet shown_only();
-/// Those of shown_only() that these variables need. The others are 0 where a body does not carry them.
+/// Those of shown_only() that these variables need. The others are 0 where a body does not have them.
 core::ColumnSet columns_for(const std::vector<Variable>& variables);
 /// Columns of every variable that the scene writes or records.
 core::ColumnSet columns_for(const core::OutputInput& output);

@@ -25,7 +25,7 @@ class VtuWriter {
     bool per_body = false;
     std::vector<Variable> variables;
     bool double_precision = false;
-    /// mark() of the run to be continued, whose list is kept; without it a new list begins.
+    /// mark() of the run to be continued, whose list is kept; without it a new list is started.
     std::optional<std::string> continue_from;
   };
   /// Throws FileError. Collective.

@@ -77,8 +77,7 @@ std::vector<core::Column> columns_named(const std::string& text) {
   for (std::string word; words >> word;) {
     const auto found = std::find_if(core::column_table.begin(), core::column_table.end(),
                                     [&](const core::ColumnInfo& info) { return info.name == word; });
-    if (found == core::column_table.end())
-      throw FileError("there is no column '" + word + "' in this program");
+    if (found == core::column_table.end()) throw FileError("this program has no column '" + word + "'");
     columns.push_back(static_cast<core::Column>(found - core::column_table.begin()));
   }
   return columns;
@@ -127,7 +126,7 @@ void write_tiles(hid_t file, const std::vector<TileRecord>& tiles) {
 std::vector<TileRecord> read_tiles(hid_t file) {
   const hdf5::Handle table = hdf5::open_dataset(file, "cohorts");
   const std::vector<hsize_t> shape = hdf5::shape_of(table);
-  if (shape.size() != 2 || shape[1] != 4) throw FileError("the table of tiles has another shape");
+  if (shape.size() != 2 || shape[1] != 4) throw FileError("the table of tiles has the wrong shape");
   std::vector<TileRecord> tiles(shape[0]);
   if (tiles.empty()) return tiles;
   hdf5::check(H5Dread(table, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, tiles.data()),
@@ -149,11 +148,11 @@ Ledger read_ledger(hid_t file) {
   for (const auto& [name, sum] : sum_names) {
     const std::vector<std::int64_t> limbs = hdf5::read_all_int64(group, name);
     const auto raw = (ledger.*sum).raw();
-    if (limbs.size() != raw.size()) throw FileError("an exact sum has another number of limbs");
+    if (limbs.size() != raw.size()) throw FileError("an exact sum has the wrong number of limbs");
     std::copy(limbs.begin(), limbs.end(), raw.begin());
   }
   for (const auto& [name, count] : count_names) {
-    // Files of earlier versions do not have all.
+    // Files of earlier versions do not have all of them.
     if (hdf5::has_attribute(group, name)) ledger.*count = hdf5::read_int64(group, name);
   }
   for (const auto& [name, count] : event_names)
@@ -207,7 +206,7 @@ core::GridGeometry read_grid(hid_t file) {
                             cell = hdf5::read_all_double(group, "cell");
   const std::vector<std::int64_t> cells = hdf5::read_all_int64(group, "cells");
   if (origin.size() != 3 || cell.size() != 3 || cells.size() != 3)
-    throw FileError("the grid is not of three dimensions");
+    throw FileError("the grid is not three-dimensional");
   core::GridGeometry grid;
   if (hdf5::has_attribute(group, bricks_of_nodes) && hdf5::read_int64(group, bricks_of_nodes) != 0)
     grid.site = core::Site::node;
@@ -269,12 +268,13 @@ void check_counts(const RestartContents& c) {
   std::vector<std::int64_t> particles(c.bodies.size());
   for (const TileRecord& r : c.tiles) {
     if (r.body < 0 || static_cast<std::size_t>(r.body) >= c.bodies.size())
-      throw FileError("a tile has no body");
+      throw FileError("a tile refers to a body that does not exist");
     particles[static_cast<std::size_t>(r.body)] += static_cast<std::int64_t>(r.particles);
   }
   for (std::size_t b = 0; b < c.bodies.size(); ++b) {
     if (particles[b] != c.bodies[b].particles)
-      throw FileError("the tiles of body '" + c.bodies[b].name + "' do not add up");
+      throw FileError("the particles of the tiles of body '" + c.bodies[b].name +
+                      "' do not add up to those of the body");
   }
 }
 

@@ -55,14 +55,13 @@ class Fitting {
   void leave_out(const BodyRecord& record, const core::BodyInput* input) {
     if (input != nullptr && input->deactivated) {
       notices_.push_back(
-          fmt::format("body '{}' is deactivated: its {} particles are left out, and what they held is "
-                      "booked as removed",
+          fmt::format("body '{}' is deactivated: its {} particles are removed, with their mass and energy "
+                      "recorded as removed",
                       record.name, record.particles));
     } else if (record.particles > 0) {
       report({model_.scene->provenance.path, 0}, record.name,
-             "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" if it is "
-             "to be left "
-             "out");
+             "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" to remove "
+             "its particles");
     }
   }
 
@@ -70,7 +69,7 @@ class Fitting {
     const std::string& material = model_.scene->materials[static_cast<std::size_t>(body.material)].name;
     if (material != record.material) {
       report(where, record.name,
-             fmt::format("its material is '{}', but '{}' in the restart file; bodies keep their material",
+             fmt::format("its material is '{}', but '{}' in the restart file; a body must keep its material",
                          material, record.material));
     } else if (body.model->reference_density() != record.reference_density) {
       report(
@@ -118,7 +117,7 @@ class Fitting {
     }
     if (!dropped.empty()) {
       notices_.push_back(
-          fmt::format("body '{}': {} of the restart file are not needed any more", record.name, dropped));
+          fmt::format("body '{}': {} of the restart file are no longer needed", record.name, dropped));
     }
     return source;
   }

@@ -87,7 +87,7 @@ std::uint64_t hash_tables(const File& file, std::uint64_t begin, std::uint64_t e
 Guard decode(const File& file, const std::string& path, std::size_t& block_bytes) {
   const std::uint64_t size = file.size();
   std::string block(smallest_block, '\0');
-  if (size < smallest_block) damaged(path, fmt::format("it has {} bytes, too few for any", size));
+  if (size < smallest_block) damaged(path, fmt::format("it has {} bytes, too few for a restart file", size));
   file.read_at(std::as_writable_bytes(std::span(block)), 0);
   if (std::string_view(block).substr(0, magic.size()) != magic) {
     throw FileError(fmt::format("'{}' is not a restart file, or its first block is damaged", path));
@@ -96,7 +96,7 @@ Guard decode(const File& file, const std::string& path, std::size_t& block_bytes
   const auto format = take<std::uint32_t>(block, at);
   block_bytes = take<std::uint32_t>(block, at);
   if (!std::has_single_bit(block_bytes) || block_bytes < smallest_block || block_bytes > size) {
-    damaged(path, "its first block states an impossible length");
+    damaged(path, "its first block contains an invalid length");
   }
   block.resize(block_bytes);
   file.read_at(std::as_writable_bytes(std::span(block)), 0);

@@ -12,7 +12,7 @@
 namespace mpm::io {
 
 inline constexpr std::uint32_t restart_format = 2;
-/// Also readable: without marks of other files, and without the job in the guard.
+/// The oldest readable format: without marks of other files, and without the job in the guard.
 inline constexpr std::uint32_t oldest_restart_format = 1;
 
 struct Guard {

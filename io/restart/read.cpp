@@ -119,8 +119,7 @@ void refuse_outside(std::int64_t outside, const std::string& first, const core::
   }
   throw core::InputErrors(
       model.scene->grid.source, "Grid",
-      fmt::format("{} particles of the restart file lie outside of this grid; make it larger. "
-                  "The first: {}",
+      fmt::format("{} particles of the restart file are outside this grid; enlarge the grid. The first: {}",
                   outside, example));
 }
 

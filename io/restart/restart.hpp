@@ -66,9 +66,9 @@ void verify_restart(const std::string& path, core::Reductions& ranks);
 std::optional<std::string> find_newest_restart(const std::string& folder, const std::string& job,
                                                core::Reductions& ranks, std::vector<std::string>& notices);
 
-/// Renames the restart files of the job that were written after `start`, or all of them if a run begins anew,
-/// to `<name>.superseded`, and returns the new names: that run is about to overwrite what they refer to in
-/// the job's other files. Throws FileError. On one rank, which holds the job's lock.
+/// Renames the restart files of the job that were written after `start`, or all of them if the run starts
+/// from the beginning, to `<name>.superseded`, and returns the new names: that run is about to overwrite what
+/// they refer to in the job's other files. Throws FileError. On one rank, which holds the job's lock.
 std::vector<std::string> set_aside_superseded(const std::string& folder, const std::string& job,
                                               const std::optional<std::string>& start);
 

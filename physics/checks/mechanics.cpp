@@ -30,7 +30,8 @@ Failures ends_on_yield_surface(const LawSample& sample, const Registry& registry
     worst_outside = std::max(worst_outside, (equivalent - yield) / yield);
     strain = point.value(Column::effective_plastic_strain);
   });
-  c.require(plastic_steps > 10, "the path hardly flows: it needs a larger strain, or the law has no yield");
+  c.require(plastic_steps > 10,
+            "hardly any plastic flow on the path: use a larger strain; or the law has no yield");
   c.at_most(worst, 1e-8, "distance from the yield stress after a plastic step, relative");
   c.at_most(worst_outside, 1e-8, "stress beyond the yield stress, relative");
   return c.failures;
@@ -68,11 +69,10 @@ Failures dissipates(const LawSample& sample, const Registry& registry) {
     least = std::min(least, step_dissipation + 1e-12 * scale);
     dissipated += step_dissipation;
   }
-  c.at_most(
-      -least, 0,
-      "energy that a step gives back (a law whose elasticity is not linear, of Young and Poisson, says so: "
-      "static constexpr bool linear_elasticity = false)");
-  c.at_most(-dissipated, 1e-12 * scale, "energy that the path gives back");
+  c.at_most(-least, 0,
+            "energy released by a step (a law whose elasticity is not linear with Young and Poisson must "
+            "declare static constexpr bool linear_elasticity = false)");
+  c.at_most(-dissipated, 1e-12 * scale, "energy released along the path");
   return c.failures;
 }
 
@@ -95,7 +95,7 @@ Failures converges(const LawSample& sample, const Registry& registry) {
   // Errors of round-off size have no order; the time of failure is known only to one step, so errors scatter.
   const double order = std::log2(first / last) / (levels - 1),
                wanted = c.sample.input.failures.empty() ? 0.95 : 0.7;
-  if (!(last < 1e-9)) c.at_most(wanted - order, 0, "wanted order of convergence, less the one found");
+  if (!(last < 1e-9)) c.at_most(wanted - order, 0, "required order of convergence minus the observed one");
   c.at_most(last, 5e-3, "error of the stress with 1600 steps, relative");
   return c.failures;
 }
@@ -120,7 +120,7 @@ Mat3<double> rotation(double angle) {
          skew(s);
 }
 
-/// Error at the end of the path relative to the same path without ten superposed turns, over the largest
+/// Difference at the end of the path from the same path without ten superposed rotations, over the largest
 /// stress.
 double error_of_turns(const Checker& c, int steps) {
   const RandomPath path = c.path(7);
@@ -147,7 +147,7 @@ Failures objective(const LawSample& sample, const Registry& registry) {
   // 4000 steps turn by 0.9 degrees each; the angle error is 2 pi 10 (0.0157)^2/12 = 1.3e-3 in total.
   c.at_most(fine, 1e-3, "error of the stress with 8000 steps, relative");
   if (!(fine < 1e-12))
-    c.at_most(1.8 - std::log2(coarse / fine), 0, "wanted order of convergence 1.8, less the one found");
+    c.at_most(1.8 - std::log2(coarse / fine), 0, "required order of convergence 1.8 minus the observed one");
   return c.failures;
 }
 
@@ -178,9 +178,10 @@ Failures energy_balances(const LawSample& sample, const Registry& registry) {
   };
   const double coarse = imbalance(1000), fine = imbalance(4000);
   // The trapezoidal rule ignores the rotation of the stress within the step: second order nevertheless.
-  c.at_most(fine, 1e-3, "energy less work with 4000 steps, relative");
+  c.at_most(fine, 1e-3, "energy minus work with 4000 steps, relative");
   if (!(fine < 1e-9))
-    c.at_most(0.9 - std::log2(coarse / fine) / 2, 0, "wanted order of convergence 0.9, less the one found");
+    c.at_most(0.9 - std::log2(coarse / fine) / 2, 0,
+              "required order of convergence 0.9 minus the observed one");
   return c.failures;
 }
 
@@ -247,8 +248,9 @@ Failures wave_speed_bounds_tangent(const LawSample& sample, const Registry& regi
   }
   // The difference quotient has a first-order error of 1e-7, plus round-off 1e-16 of the modulus over 1e-7.
   c.at_most(largest, 1 + 1e-5, "stiffest tangent over rho c^2: the time step is not safe");
-  // The bound is sharp: in some direction the material is as stiff as it states.
-  c.at_most(0.98 - stiffest, 0, "rho c^2 is far above every tangent; 0.98 less the stiffest over rho c^2");
+  // The bound is sharp: rho c^2 is the stiffness in some direction.
+  c.at_most(0.98 - stiffest, 0,
+            "rho c^2 is far above every tangent; 0.98 minus the stiffest tangent over rho c^2");
   return c.failures;
 }
 

@@ -25,7 +25,7 @@ class RandomPath {
     std::array<double, 9> l{};
     for (std::size_t i = 0; i < 9; ++i) {
       const auto [a, w] = components_[i];
-      // The spin's share is larger: the tests target rotation.
+      // The spin has a larger share: the tests are mainly about rotation.
       l[i] = strain_ * a * w * std::sin(2 * w * t / duration_) / duration_;
     }
     const double spin = 10 * strain_ * std::cos(3 * t / duration_) / duration_;

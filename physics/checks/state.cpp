@@ -1,4 +1,4 @@
-// Checks that a law's state is in the declared columns and nowhere else.
+// Checks that a law's state is in the declared columns only.
 
 #include <bit>
 #include <cstdint>
@@ -80,7 +80,7 @@ Failures restarts(const LawSample& sample, const Registry& registry) {
   const auto expected = through.save(), found = after.save();
   c.require(
       std::memcmp(expected.block.data(), found.block.data(), expected.block.size() * sizeof(double)) == 0,
-      "the columns differ after a restart: what the law remembers must be in its `state`");
+      "the columns differ after a restart: all history of the law must be in its `state`");
   c.require(after.critical_speed() == through.critical_speed(), "the wave speed differs after a restart");
   return c.failures;
 }
@@ -129,7 +129,7 @@ struct Crowd {
     }
     c.material->initialise(batch, {});
   }
-  /// Makes the batch point into this crowd; needed after a move.
+  /// Makes the batch point into this object; required after a move.
   void connect() {
     batch.layout = &layout;
     for (int b = 0; b < batch.blocks; ++b) batch.block[b] = memory.data() + b * layout.block_doubles();

@@ -2,7 +2,7 @@
 // of the products (manual 3-9), p = F (a + b E). F is a state variable here: the strength stage has updated
 // it for this step. The wave speed is that of the products for any F, and so is the sound speed in the
 // artificial viscosity: the time step then allows for a front that arrives within the step. Burning by
-// compression adds stiffness: the line includes dF/dmu (a + b E). Shown by tests/physics/burn_test.cpp.
+// compression adds stiffness: the line includes dF/dmu (a + b E). Tested by tests/physics/burn_test.cpp.
 #pragma once
 
 #include "physics/eos/point.hpp"

@@ -1,7 +1,7 @@
 // The pressure of JH2 (manual 3.2.1.15; Johnson and Holmquist 1994), not an input type:
 //   p = K1 mu + K2 mu^2 + K3 mu^3 + dP for mu > 0,   K1 mu + dP for mu < 0
 // dP is the bulking pressure, which the strength model stores. The energy of a body placed at another density
-// is the work from the reference density to it. Shown by tests/physics/jh2_test.cpp.
+// is the work from the reference density to it. Tested by tests/physics/jh2_test.cpp.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 //   p = pH (1 - gamma mu/2) + gamma0 E,   gamma = gamma0/(1 + mu),   in tension p = rho0 C0^2 mu + gamma0 E
 //   pH = rho0 C0^2 mu (1 + mu) / (1 - (S1 - 1) mu)^2,   or its cubic expansion where simplified = 1
 // Limit: pH has a pole at mu = 1/(S1 - 1), where the shock speed is infinite; the compression is kept below
-// it. Shown by tests/physics/gruneisen_test.cpp.
+// it. Tested by tests/physics/gruneisen_test.cpp.
 #pragma once
 
 #include <limits>

@@ -7,7 +7,7 @@
 // Loading is mu = mu_m. mu_plock is where the third line reaches PLock; the manual's 3-56 is that value for
 // K2 = K3 = 0 and otherwise causes a jump in the pressure. mu_p, the compression that remains after unloading
 // to p = 0, is recorded for the strength model's damage until the pores are closed. No heat. The tension
-// limit is the strength model's. Shown by tests/physics/holmquist_johnson_cook_test.cpp.
+// limit is the strength model's. Tested by tests/physics/holmquist_johnson_cook_test.cpp.
 #pragma once
 
 #include <string>
@@ -59,8 +59,7 @@ struct HolmquistJohnsonCookBulk {
           .meaning = "cubic term of the dense material"}},
         positive(&P::p_lock, "PLock", "stress", "pressure where all pores are closed, > PCrush"),
         positive(&P::mu_lock, "MuLock", "1", "compression of the dense material at no pressure"),
-        {&P::poisson,
-         poisson_row("taken for the language's sake: the shear modulus is the strength model's")},
+        {&P::poisson, poisson_row("accepted but not used: the shear modulus is that of the strength model")},
     }};
   }
   std::string fault() const {

@@ -3,7 +3,7 @@
 // E holds the chemical energy: E0 is the energy of detonation per initial volume. Its isentropes are
 //   p = A exp(-R1 V) + B exp(-R2 V) + C V^-(1 + w)
 // Limit: for large V it is the gas p = w E/V. A and B may be negative, as in fits to unreacted explosive;
-// where such a fit has no real sound speed, this is counted. Shown by tests/physics/jwl_test.cpp.
+// where such a fit has no real sound speed, this is counted. Tested by tests/physics/jwl_test.cpp.
 #pragma once
 
 #include <string_view>

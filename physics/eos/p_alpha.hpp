@@ -5,9 +5,9 @@
 //   elastic   alpha = alpha* + k (p* - p),  k = k0 (alpha* - 1)/(alpha_p - 1), from the point (p*, alpha*)
 //             where crushing stopped; first that is (Pcrush, alpha_p)
 // alpha_p = rho_s/[rho0 (1 + Pcrush/K)] with the solid's density rho_s at that point. K is rho0 C0^2 where C0
-// is given; without it, and over Gruneisen, whose C0 is the solid's, the pores keep their share in elastic
-// loading: k0 = 0, alpha_p = rho0s/rho0. alpha is found with the energy of the beginning of the step.
-// Shown by tests/physics/p_alpha_test.cpp.
+// is given; without it, and over Gruneisen, whose C0 is the solid's, the porosity is constant in elastic
+// loading: k0 = 0, alpha_p = rho0s/rho0. alpha is found with the energy of the beginning of the step. Tested
+// by tests/physics/p_alpha_test.cpp.
 #pragma once
 
 #include <algorithm>
@@ -245,13 +245,14 @@ struct PAlpha : Solid {
       return table;
     } else {
       return join(
-          table, std::array<Parameter<PAlpha>, 1>{
-                     {{&PAlpha::sound_speed,
-                       {.name = "C0",
-                        .min = 0,
-                        .min_open = true,
-                        .dimension = "velocity",
-                        .meaning = "sound speed at rest: of the porous solid, with EOSID 3 of the solid"}}}});
+          table,
+          std::array<Parameter<PAlpha>, 1>{
+              {{&PAlpha::sound_speed,
+                {.name = "C0",
+                 .min = 0,
+                 .min_open = true,
+                 .dimension = "velocity",
+                 .meaning = "sound speed at rest: of the solid with EOSID 3, else of the porous solid"}}}});
     }
   }
 };

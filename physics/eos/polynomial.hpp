@@ -1,7 +1,7 @@
 // Polynomial equation of state (manual 3-44, thesis 2-131), c2 and c6 acting in compression only:
 //   p = c0 + c1 mu + c2 mu^2 + c3 mu^3 + (c4 + c5 mu + c6 mu^2) E
 // A gamma-law gas is c4 = c5 = gamma - 1 (2-132), an inviscid liquid c1 = rho0 c0^2 (2-133).
-// Shown by tests/physics/polynomial_test.cpp.
+// Tested by tests/physics/energy_test.cpp and laws_test.cpp.
 #pragma once
 
 #include <string_view>

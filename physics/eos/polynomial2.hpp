@@ -1,7 +1,7 @@
 // Polynomial equation of state with a separate branch in tension (manual 3-45, 3-46):
 //   mu >= 0: p = A1 mu + A2 mu^2 + A3 mu^3 + (B0 + B1 mu) E,   mu < 0: p = T1 mu + T2 mu^2 + B0 E
 // Continuous at mu = 0, where the stiffness jumps from T1 to A1 + B1 E. For T2 > 0 the tension has a maximum
-// at mu = -T1/(2 T2); the sound speed beyond is undefined and counted. Shown by
+// at mu = -T1/(2 T2); the sound speed beyond is undefined and counted. Tested by
 // tests/physics/polynomial2_test.cpp.
 #pragma once
 

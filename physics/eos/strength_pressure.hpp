@@ -1,6 +1,6 @@
 // The pressure of a material whose strength law computes it with the deviator (`sets_pressure`): the strength
 // stage stores it and its modulus in the batch, and the energy follows from it. Not an input type.
-// Shown by tests/physics/laws_test.cpp over the samples of such laws.
+// Tested by tests/physics/laws_test.cpp over the samples of such laws.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 // unlike an accumulated strain can also decrease (ANSYS Explicit Dynamics Guide 2024 R2, 11.13: from the
 // global strain components of the cycle),
 //   e_eff = sqrt(2/3 e':e'),   e the logarithmic strain (physics/failure/logarithmic_strain.hpp).
-// A bound of 0 disables the criterion. Shown by tests/physics/principal_failure_test.cpp.
+// A bound of 0 disables the criterion. Tested by tests/physics/principal_failure_test.cpp.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 // Fails where the largest principal strain exceeds PriStrainMax, the smallest falls below PriStrainMin, or
 // the shear strain gamma, their difference, exceeds ShearStrainMax (manual 3.2.3.4); a bound of 0 is off. The
-// strain is logarithmic, of the deformation gradient (physics/failure/logarithmic_strain.hpp). Shown by
+// strain is logarithmic, of the deformation gradient (physics/failure/logarithmic_strain.hpp). Tested by
 // tests/physics/principal_failure_test.cpp.
 #pragma once
 

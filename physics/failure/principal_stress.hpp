@@ -1,6 +1,6 @@
 // Fails where the largest principal stress exceeds PriStressMax, the smallest falls below PriStressMin, or
 // half their difference exceeds ShearStressMax (manual 3.2.3.3); a bound of 0 is off. The stress is s - p I,
-// without the artificial viscosity, which is not a material stress. Shown by
+// without the artificial viscosity, which is not a material stress. Tested by
 // tests/physics/principal_failure_test.cpp.
 #pragma once
 

@@ -4,7 +4,7 @@
 //   Weibull  P(x) = 1 - exp(-(WeibPartVol/WeibRefVol) (x/WeibMed)^WeibMod)                        (3.62)
 // The manual calls GaussStd a variance; as its name says, it is taken as the standard deviation: with the
 // default 0.2 as a variance one particle in eighty would have a negative threshold. A negative draw counts as
-// 0: a particle without strength, whose criterion is met by any value above zero. Shown by
+// 0: a particle without strength, whose criterion is met by any value above zero. Tested by
 // tests/physics/threshold_scatter_test.cpp.
 #pragma once
 

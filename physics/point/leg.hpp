@@ -20,7 +20,7 @@ struct StressControl {
   core::Sym3<double> weight;  ///< of the Cauchy stress
   double target = 0;
   bool ramp =
-      false;  ///< linear from what it is at the beginning of the leg; else the target from the first step
+      false;  ///< linear from its value at the beginning of the leg; else the target from the first step
 };
 
 struct DeformationRow {
@@ -33,16 +33,18 @@ struct Leg {
   core::Mat3<double> direction{};  ///< velocity gradient per unit rate of the measure
   core::Sym3<double> measure{};    ///< the strain that the leg controls, by weights of the accumulated strain
   bool from_zero = false;          ///< the measure starts at zero with this leg
-  std::optional<double> strain;  ///< value of the measure at the end; without: stress alone drives, or a hold
-  std::optional<double> time;    ///< duration; without: from the rate
-  bool whole = false;            ///< direction is the strain of the whole leg, not per unit of the measure
-  double rate = 1;               ///< of the measure, or of the first ramp's stress; > 0
+  std::optional<double>
+      strain;  ///< value of the measure at the end; without it, stress alone drives the leg, or it is a hold
+  std::optional<double> time;  ///< duration; without: from the rate
+  bool whole = false;          ///< direction is the strain of the whole leg, not per unit of the measure
+  double rate = 1;             ///< of the measure, or of the first ramp's stress; > 0
   int steps = 100;
   std::vector<StressControl> controls;
   std::vector<DeformationRow> table;  ///< F over time, linear between its rows, each in `steps` steps
 };
 
-/// The legs of the usual tests; x is the axis. Each counts from the start of the run of legs of its kind.
+/// The legs of the usual tests; x is the axis. Each is measured from the start of consecutive legs of its
+/// kind.
 namespace legs {
 Leg uniaxial_strain(double strain);
 Leg uniaxial_stress(double strain);

@@ -1,5 +1,5 @@
 // Loading paths for one particle: a sequence of legs, each of which prescribes some components of the strain
-// and some of the stress, as in a laboratory. Shown by tests/physics/path_test.cpp.
+// and some of the stress, as in a laboratory. Tested by tests/physics/path_test.cpp.
 #pragma once
 
 #include <functional>
@@ -11,14 +11,14 @@
 
 namespace mpm::physics {
 
-/// Current point of the walk, for output.
+/// State along the path, for output.
 struct PathPoint {
   int leg = 0;
   double strain = 0;                ///< of the leg's measure
   core::Sym3<double> total_strain;  ///< integral of the rate of deformation
 };
 
-/// Result of a walk. Where a stress could not be reached the state is that of the last good step.
+/// Result of a path. If a stress could not be reached, the state is that of the last converged step.
 struct PathEnd {
   bool reached = true;
   int leg = 0;
@@ -26,7 +26,7 @@ struct PathEnd {
   double found = 0;   ///< the closest value reached
 };
 
-/// Walks the legs; `visit` is called before the first and after every step.
+/// Follows the legs; `visit` is called before the first and after every step.
 PathEnd walk(PointDriver& point, const std::vector<Leg>& legs,
              const std::function<void(const PathPoint&)>& visit);
 

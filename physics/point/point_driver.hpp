@@ -82,7 +82,7 @@ struct Path {
   core::Mat3<double> gradient{};
 };
 
-/// Walks a path of one kind (physics/point/path.hpp has the others); `visit(strain)` is called before the
+/// Follows a path of one kind (physics/point/path.hpp has the others); `visit(strain)` is called before the
 /// first and after every step. Returns false where the lateral stress of uniaxial stress could not be brought
 /// to zero.
 bool drive(PointDriver& point, const Path& path, const std::function<void(double strain)>& visit);

@@ -1,7 +1,7 @@
 // One step with some stresses prescribed, which finds the strain rates that produce them, using the
 // material's own update as a black box. Newton's method on trial steps, each from the saved state, with
 // derivatives from differences of trial steps and, for one unknown, bracketing where Newton's method fails.
-// Shown by tests/physics/path_test.cpp.
+// Tested by tests/physics/path_test.cpp.
 #pragma once
 
 #include <utility>

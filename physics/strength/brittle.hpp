@@ -57,7 +57,7 @@ constexpr auto brittle_parameters() {
   for (auto& parameter : table) {
     if (parameter.info.name != "Yield0") continue;
     parameter.info.min_open = false;
-    parameter.info.meaning = "taken for the language's sake: the strength is that of the constants below";
+    parameter.info.meaning = "required but not used: the strength follows from the constants below";
   }
   return table;
 }

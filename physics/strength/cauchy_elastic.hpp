@@ -1,6 +1,6 @@
 // Hooke's law for the whole Cauchy stress (manual 3.2.1.11, which gives its parameters and no equation): as
 // IsoElastic, but with Hooke's pressure, p = -K tr(e), so an EquationOfState is rejected.
-// Shown by tests/physics/elastic_test.cpp.
+// Tested by tests/physics/elastic_test.cpp.
 #pragma once
 
 #include <string_view>

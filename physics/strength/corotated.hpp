@@ -8,7 +8,7 @@
 // positive, and that of J is lambda J^2 (a.n)^2; so rho c^2 <= 2 mu b/J + max(lambda, 0) J for the largest
 // principal value b of B, which for lambda >= 0 is the speed of the longitudinal wave along its axis. The law
 // computes its own pressure: no EquationOfState. Not finite for J <= 0. Limit: as J decreases the resistance
-// to compression remains finite. Shown by tests/physics/finite_elasticity_test.cpp.
+// to compression remains finite. Tested by tests/physics/finite_elasticity_test.cpp.
 #pragma once
 
 #include <limits>

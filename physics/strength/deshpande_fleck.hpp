@@ -5,7 +5,7 @@
 // hat_eps is the strain conjugate to hat: in uniaxial stress both are the axial ones. It follows from the
 // consistency condition with stress and Y at the end of the step. The logarithm locks the foam at r = 1; r is
 // limited to 1 - 1e-12, above which Y is constant. Fails where ln(V/V0) reaches vole; 0 disables this. The
-// law computes its own pressure: no EquationOfState. Shown by tests/physics/foam_test.cpp.
+// law computes its own pressure: no EquationOfState. Tested by tests/physics/foam_test.cpp.
 #pragma once
 
 #include <cmath>

@@ -8,7 +8,7 @@
 // constants phi, c, psi as an alternative to qfai, kfai, qpsi are matched by (6-50) to (6-58). ten_f may not
 // exceed the apex kfai/qfai (6-8), nor qpsi qfai: flow would then release energy. Where qfai = 0 there is no
 // apex and ten_f is used as given; the thesis sets it to zero (6-49). The law computes its own pressure: no
-// EquationOfState. Shown by tests/physics/drucker_prager_test.cpp.
+// EquationOfState. Tested by tests/physics/drucker_prager_test.cpp.
 #pragma once
 
 #include <cmath>
@@ -69,7 +69,7 @@ struct DruckerPrager : IsotropicElasticity {
               .max = 90,
               .max_open = true,
               .dimension = "degree",
-              .meaning = "in the place of qfai, kfai and qpsi: Mohr-Coulomb friction angle",
+              .meaning = "instead of qfai, kfai and qpsi: Mohr-Coulomb friction angle",
               .group = "phi, c, psi"}},
             {&P::coulomb_cohesion,
              {.name = "c",

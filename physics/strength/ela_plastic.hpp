@@ -1,5 +1,5 @@
 // Von Mises plasticity without hardening (manual 3.2.1.3, thesis 2-98 to 2-115): sigma_y = Yield0.
-// Radial return; exact for one step of any size along a fixed direction. Shown by tests/physics/j2_test.cpp.
+// Radial return; exact for one step of any size along a fixed direction. Tested by tests/physics/j2_test.cpp.
 #pragma once
 
 #include <string_view>

@@ -12,7 +12,7 @@
 // matrix. With Gauss_sn, a standard deviation, the initial f of each particle is drawn from its identity:
 // normal with mean Gauss_f0 (f0 if absent), truncated to [0, ff). The law computes its own pressure: no
 // EquationOfState. Limit: steps of more than some 5 % of strain, or first voids that nucleate under a tension
-// of more than some 15 M, may end inside the surface, without deviator; they are counted. Shown by
+// of more than some 15 M, may end inside the surface, without deviator; they are counted. Tested by
 // tests/physics/gurson_test.cpp.
 #pragma once
 
@@ -70,7 +70,7 @@ struct Gurson : MisesPlasticity {
              {.name = "Gauss_sn",
               .default_value = 0,
               .min = 0,
-              .meaning = "deviation of a scattered initial void fraction; 0: no scatter"}},
+              .meaning = "standard deviation of a scattered initial void fraction; 0: no scatter"}},
             {&P::fc,
              {.name = "fc",
               .required = true,
@@ -96,14 +96,14 @@ struct Gurson : MisesPlasticity {
              {.name = "sN",
               .min = 0,
               .min_open = true,
-              .meaning = "deviation of the nucleation strain",
+              .meaning = "standard deviation of the nucleation strain",
               .group = "fN, sN, eN"}},
             {&P::en, {.name = "eN", .min = 0, .meaning = "mean nucleation strain", .group = "fN, sN, eN"}},
             {&P::epmax,
              {.name = "epmax",
               .min = 0,
               .min_open = true,
-              .meaning = "failure strain of TEPLA-F; without it the void fraction alone counts"}},
+              .meaning = "failure strain of TEPLA-F; without it the void fraction alone determines failure"}},
             {&P::tangent_modulus,
              {.name = "TangMod",
               .min = 0,
@@ -252,7 +252,7 @@ struct Gurson : MisesPlasticity {
     return 0.5 * (e + 1.0 / e);
   }
   static constexpr double largest_argument = 300;
-  static constexpr double closed = 1e-12;  ///< a smaller void fraction counts as none
+  static constexpr double closed = 1e-12;  ///< a smaller void fraction is set to zero
 
   /// The root y of y + b sinh(y) = z for b, z >= 0. The function is convex and the start is above the root:
   /// Newton's method converges without a bracket.

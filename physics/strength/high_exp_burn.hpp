@@ -1,11 +1,11 @@
 // High explosive: a fluid whose pressure is scaled by the burn fraction F (manual 3-9 to 3-13):
-//   F = max(F1, F2) <= 1,   F1 = (t - tL) D/(1.5 h) from tL on,   F2 = (1 - V) rho0 D^2/PCJ = (1 - V)/(1 -
-//   V_CJ)
+//   F = max(F1, F2) <= 1,   F1 = (t - tL) D/(1.5 h) from tL on
+//   F2 = (1 - V) rho0 D^2/PCJ = (1 - V)/(1 - V_CJ)
 // by beta: 2 programmed burn F1 alone, 1 beta burn F2 alone, 0 both. h is the cell size, t the end of the
 // step. The lighting time tL is the earliest arrival, at the speed D along straight lines, from any point or
 // rectangle of the input; all explosives share these. F never decreases, even where only beta burn has begun
 // and the volume grows again (the manual leaves that open). Limits: lines of sight pass through obstacles;
-// unlit explosive has no stiffness. s = 2 mu D' as in Null. Shown by tests/physics/burn_test.cpp and
+// unlit explosive has no stiffness. s = 2 mu D' as in Null. Tested by tests/physics/burn_test.cpp and
 // tests/validation/detonation.py.
 #pragma once
 
@@ -75,11 +75,11 @@ struct HighExpBurn {
     compression_burn = beta == 2 ? 0 : density * detonation_velocity * detonation_velocity / pcj;
   }
 
-  /// Takes the points of ignition; returns an error if nothing can ever ignite the explosive.
+  /// Takes the points of ignition; returns an error if nothing can ignite the explosive.
   std::string light(const std::vector<core::DetonationItem>& detonations) {
     sources = detonations;
     if (beta != 2 || !sources.empty()) return {};
-    return "HighExpBurn with beta 2 burns only where it is lit: add a Detonation";
+    return "HighExpBurn with beta 2 burns only after ignition: add a Detonation";
   }
   bool programmed() const { return beta != 1 && !sources.empty(); }
   bool is_viscous() const { return mu > 0; }

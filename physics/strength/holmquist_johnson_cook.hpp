@@ -1,12 +1,11 @@
 // Holmquist-Johnson-Cook concrete (Holmquist, Johnson and Cook 1993; manual 3-14 to 3-16, 3-59):
 //   sigma_y/fc = [A (1 - D) + B p*^N] (1 + C ln rate*) <= SMax,   p* = p/fc, rate* = rate/epso
-//   D = sum of (d epef + d mu_p)/max(D1 (p* + T*)^D2, EFMin),   T* = T/fc,   pressure no lower than -T (1 -
-//   D)
+//   D = sum of (d epef + d mu_p)/max(D1 (p* + T*)^D2, EFMin),   T* = T/fc,   p >= -T (1 - D)
 // The manual leaves p < 0 open: A (1 - D)(1 + p/T)(1 + C ln rate*), as in the IMPETUS manual
 // (MAT_HJC_CONCRETE). The rate factor is 1 below epso. mu_p is the plastic compression that the equation of
 // state of the same name has recorded up to the end of the previous step; with other equations it is zero.
 // Material with D = 1 is rubble with the strength B p*^N: it fails only by DamageToFail (at
-// FailureDamageThreshold) or ErosionByDamage. Shown by tests/physics/holmquist_johnson_cook_test.cpp.
+// FailureDamageThreshold) or ErosionByDamage. Tested by tests/physics/holmquist_johnson_cook_test.cpp.
 #pragma once
 
 #include <algorithm>
@@ -52,12 +51,11 @@ struct HolmquistJohnsonCook : BrittlePlasticity {
             constant(&P::epso, "epso", "1/time", "reference strain rate: 1/s in the unit of time of the case",
                      0, true),
             flag(&P::tensile_failure, "TensileFailure",
-                 "1: fails at the largest tension T (1 - D); 0: is held there"),
+                 "1: fails at the tension T (1 - D); 0: the tension is limited to it"),
             flag(&P::threshold, "Threshold", "1: no damage while the strain to fracture is below EFMin"),
             flag(&P::erosion_by_damage, "ErosionByDamage", "1: eroded when damage reaches 1"),
             flag(&P::erosion_by_pressure, "ErosionByPressure", "1: eroded when the tension exceeds T"),
-            flag(&P::tensile_damage, "TensileDamage",
-                 "1: T (1 - D) in the place of T in the strain to fracture"),
+            flag(&P::tensile_damage, "TensileDamage", "1: T (1 - D) instead of T in the strain to fracture"),
             flag(&P::damage_to_fail, "DamageToFail", "1: fails when damage reaches FailureDamageThreshold"),
             {&P::failure_damage,
              {.name = "FailureDamageThreshold",
@@ -69,7 +67,7 @@ struct HolmquistJohnsonCook : BrittlePlasticity {
   }
   void prepare() { derive_moduli(); }
 
-  /// Reads from the equation of state's traits whether it crushes.
+  /// Takes from the equation of state's traits whether it crushes.
   std::string couple(const EosTraits& eos) {
     crushes = eos.columns.has(core::Column::plastic_volumetric_strain);
     return {};

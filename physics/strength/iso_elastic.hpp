@@ -1,6 +1,6 @@
 // Linear elasticity in the Jaumann rate of the Cauchy stress (manual 3.2.1.1, thesis 2.4.2): s += 2 G de'.
 // The pressure comes from the equation of state, or from K without one. Hypoelastic: a closed cycle of large
-// shear leaves a small residual stress. Shown by tests/physics/elastic_test.cpp.
+// shear leaves a small residual stress. Tested by tests/physics/elastic_test.cpp.
 #pragma once
 
 #include <string_view>

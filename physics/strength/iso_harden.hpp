@@ -1,6 +1,6 @@
 // Von Mises plasticity with linear isotropic hardening (manual 3.2.1.4, thesis 2-98 to 2-115):
 //   sigma_y = Yield0 + E_p epef,   E_p = Young TangMod / (Young - TangMod)
-// Radial return; exact for one step of any size along a fixed direction. Shown by tests/physics/j2_test.cpp.
+// Radial return; exact for one step of any size along a fixed direction. Tested by tests/physics/j2_test.cpp.
 #pragma once
 
 #include <string>

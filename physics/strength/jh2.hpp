@@ -5,7 +5,8 @@
 //   dP <- sqrt((K1 mu + dP)^2 + 2 beta K1 dU) - K1 mu,  dU = (sigma_y^2 before - after)/(6 G)
 // where dU is for the strength lost to damage in the step. dP is constant in expansion and grows in
 // compression only. The manual limits the tension only through the name of T: T (1 - D) is the limit of its
-// HJC. The pressure is CeramicBulk's, so an EquationOfState is rejected. Shown by tests/physics/jh2_test.cpp.
+// HJC. The pressure is CeramicBulk's, so an EquationOfState is rejected. Tested by
+// tests/physics/jh2_test.cpp.
 #pragma once
 
 #include <string_view>
@@ -58,7 +59,7 @@ struct JH2 : BrittlePlasticity {
               .required = true,
               .min = 0,
               .max = 1,
-              .meaning = "part of the elastic energy lost to damage that becomes pressure"}},
+              .meaning = "fraction of the elastic energy released by damage that is converted to pressure"}},
             constant(&P::d1, "D1", "1", "strain to fracture: factor"),
             constant(&P::d2, "D2", "1", "strain to fracture: exponent of the pressure"),
             constant(&P::k2, "K2", "stress", "quadratic term of the pressure", -core::unbounded),

@@ -1,10 +1,10 @@
 // Johnson-Cook plasticity with heat and damage (manual 3-2 to 3-5, thesis 2-116 to 2-120, 2-136, 2-137):
 //   sigma_y = (Yield0 + B epef^n)(1 + C ln(rate/epso))(1 - T*^m),  T* = (T - roomt)/(melt - roomt)
-//   eps_f = (D1 + D2 exp(D3 sigma_m/sigma_eq))(1 + D4 ln(rate/epso))(1 + D5 T*^m),  damage = sum of d
-//   epef/eps_f
+//   eps_f = (D1 + D2 exp(D3 sigma_m/sigma_eq))(1 + D4 ln(rate/epso))(1 + D5 T*^m)
+//   damage = sum of d epef/eps_f
 // Rate factors are 1 below epso. The increment solves the consistency condition with its own rate and
 // adiabatic temperature. Molten material (T* = 1) has no shear strength. The particle fails at damage 1;
-// smaller damage does not weaken it. The exponent m in the last factor is the manual's. Shown by
+// smaller damage does not weaken it. The exponent m in the last factor is the manual's. Tested by
 // tests/physics/johnson_cook_test.cpp.
 #pragma once
 

@@ -4,7 +4,7 @@
 //   sigma = 2/J ((A + B I1) B - B B^2 + I3 W,3 I),   J = det F
 // so that at rest G = 2 (A + B), K = 2 G (1 + nu)/(3 (1 - 2 nu)). Limit: below nu = (2 A + 5 B)/(5 A + 11 B),
 // 0.40 to 0.45, D is negative and large expansion is not resisted. The law computes its own pressure: no
-// EquationOfState. Shown by tests/physics/rubber_test.cpp.
+// EquationOfState. Tested by tests/physics/rubber_test.cpp.
 #pragma once
 
 #include <string>
@@ -35,7 +35,9 @@ struct MooneyRivlin {
         {&P::poisson, poisson_row("Poisson's ratio at rest; 0.49 to 0.499 for rubber")},
     }};
   }
-  std::string fault() const { return a + b > 0 ? "" : "Mr_A2 + Mr_B2, half the shear modulus, must be > 0"; }
+  std::string fault() const {
+    return a + b > 0 ? "" : "Mr_A2 + Mr_B2, half the shear modulus, must be greater than 0";
+  }
   void prepare() {
     c = 0.5 * a + b;
     d = (a * (5 * poisson - 2) + b * (11 * poisson - 5)) / (2 * (1 - 2 * poisson));

@@ -6,7 +6,7 @@
 //   J Q = (lambda (1 - ln J) + mu) n n + mu (n.B n) I
 // so that rho c^2 <= (max(lambda (1 - ln J) + mu, 0) + mu b)/J for the largest principal value b of B, itself
 // replaced by a bound, exact where the two smaller stretches are equal. The law computes its own pressure: no
-// EquationOfState. Not finite for J <= 0. Shown by tests/physics/finite_elasticity_test.cpp.
+// EquationOfState. Not finite for J <= 0. Tested by tests/physics/finite_elasticity_test.cpp.
 #pragma once
 
 #include <string_view>

@@ -2,7 +2,7 @@
 //   ck = 0: Newtonian, tau = mu * rate in simple shear;  ck > 0: power law, tau = ck * rate^nn
 // In tensor form s = 2 eta D' with eta = mu or ck g^(nn - 1), g = sqrt(2 D':D') the shear rate. The manual
 // prints s = mu D' (3-7) and calls mu the dynamic viscosity, which is the same if its shear components mean
-// g. Limit: for nn < 1 the viscosity of a fluid almost at rest is that of the rate 1e-8/dt. Shown by
+// g. Limit: for nn < 1 the viscosity of a fluid almost at rest is that of the rate 1e-8/dt. Tested by
 // tests/physics/fluid_test.cpp.
 #pragma once
 
@@ -42,7 +42,7 @@ struct Null {
           .default_value = 1,
           .min = 0,
           .min_open = true,
-          .meaning = "power-law exponent: < 1 thins with the rate, > 1 thickens"}},
+          .meaning = "power-law exponent: < 1 shear thinning, > 1 shear thickening"}},
     }};
   }
   bool is_viscous() const { return mu > 0 || ck > 0; }

@@ -10,7 +10,7 @@ namespace mpm::physics {
 
 struct MisesPlasticity : IsotropicElasticity {
   double yield0 = 0;                    ///< initial yield stress
-  double plastic_work_coefficient = 0;  ///< part of the plastic work that becomes heat
+  double plastic_work_coefficient = 0;  ///< fraction of the plastic work that is converted to heat
 
   /// Records the plastic strain increment and scales the trial stress back to the yield surface (thesis 2-112
   /// to 2-120). `before` and `after` are the yield stress at the ends of the plastic part of the step; where

@@ -24,7 +24,8 @@ struct StrengthPoint {
   T pressure;
   core::Sym3<T> s;  ///< deviatoric stress
 
-  // --- given only to laws that say so --------------------------------------------------------------------
+  // --- given only to laws that declare it
+  // --------------------------------------------------------------------
   T deviate = 0.0;  ///< standard normal, the particle's own; for `place` of laws that scatter
 
   // --- results besides the stress; laws without them leave them unchanged -------------------------------

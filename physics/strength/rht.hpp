@@ -6,7 +6,7 @@
 // per second; below them Fr is 1. The cap ends at Pcrush of the equation of state. No pressure is lower than
 // (1 - D) Fr times the tip of Y, as in LS-DYNA's law 272 (Borrvall and Riedel 2011). The manual's ft and fs
 // are on the compressive meridian: other directions are lower by R3. D = 1 leaves the residual strength.
-// Shown by tests/physics/rht_test.cpp.
+// Tested by tests/physics/rht_test.cpp.
 #pragma once
 
 #include <limits>

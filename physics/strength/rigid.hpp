@@ -1,6 +1,6 @@
 // A rigid body (manual 3.2.1.13): no stress and no deformation, so a wave speed of zero; only its velocity
-// enters the critical step. Its volume and energy are constant. The step determines its motion: free under
-// gravity, or prescribed. Shown by tests/physics/rigid_test.cpp.
+// enters the critical step. Its volume and energy are constant. Its motion is computed by the time step: free
+// under gravity, or prescribed. Tested by tests/physics/rigid_test.cpp.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // Johnson-Cook plasticity without temperature (manual 3-6):
 //   sigma_y = (Yield0 + B epef^n)(1 + C ln(rate/epso)), the rate factor 1 below the reference rate epso
-// The increment solves the consistency condition with its own rate. Shown by
+// The increment solves the consistency condition with its own rate. Tested by
 // tests/physics/johnson_cook_test.cpp.
 #pragma once
 

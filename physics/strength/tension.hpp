@@ -10,7 +10,7 @@ namespace mpm::physics {
 
 struct TensionRules {
   bool limited = false;
-  double verdict = 0;                                        ///< 1: fails there
+  double verdict = 0;                                        ///< 1: fails at the limit
   double erosion = std::numeric_limits<double>::infinity();  ///< tension beyond which it is eroded, stress
   bool fails() const { return verdict > 0 || erosion < std::numeric_limits<double>::infinity(); }
 };

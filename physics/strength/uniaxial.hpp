@@ -3,7 +3,7 @@
 // IsoHarden. x is the bar's own axis: the caller passes D_xx as the axial strain rate and reads sigma_xx; a
 // bar has no spin. The wave speed is sqrt(Young/rho). Poisson is accepted and has no effect. As the Cauchy
 // stress is s - p I, s = sigma diag(2, -1, -1)/3 and p = -sigma/3. A bar of another density is not
-// prestressed. Shown by tests/physics/bar_law_test.cpp.
+// prestressed. Tested by tests/physics/bar_law_test.cpp.
 #pragma once
 
 #include <string>

@@ -204,14 +204,14 @@ TEST_CASE("values in an input: filled in, overridden, supplemented", "[library]"
 TEST_CASE("faults about the library", "[library]") {
   CHECK(error_about("<Material name='cu' library='OFHC-Cu-J' units='mm g ms'/>") ==
         "case.xmp:1: <Material library=\"OFHC-Cu-J\">: the library has no 'OFHC-Cu-J'; did you mean "
-        "'OFHC-Cu-JC', 'OFHC-Cu-JC-damage'?; mpm_check --materials lists what it has");
+        "'OFHC-Cu-JC', 'OFHC-Cu-JC-damage'?; mpm_check --materials lists its contents");
   CHECK(error_about("<Material name='cu' library='copper' units='mm g ms'/>") ==
         "case.xmp:1: <Material library=\"copper\">: the library has no 'copper'; did you mean "
         "'OFHC-Cu-linear', 'OFHC-Cu-JC', 'OFHC-Cu-JC-damage', 'Cu-Gruneisen'?; mpm_check --materials lists "
-        "what it has");
+        "its contents");
   CHECK(error_about("<Material name='cu' library='' units='mm g ms'/>") ==
-        "case.xmp:1: <Material library=\"\">: expected a name of the library; mpm_check --materials lists "
-        "them");
+        "case.xmp:1: <Material library=\"\">: expected the name of a library material; mpm_check --materials "
+        "lists them");
   CHECK(error_about("<Material name='cu' library='OFHC-Cu-JC'/>") ==
         "case.xmp:1: <Material>: attribute 'units' is missing: library values are converted to the units of "
         "this input, as in units=\"mm g ms\" (or give length, mass and time in Header / Unit)");
@@ -220,16 +220,15 @@ TEST_CASE("faults about the library", "[library]") {
         "dm, cm, mm, um, nm, km, in, ft, kg, g, mg, ug, t, tonne, lb, s, ms, us, ns, min, h");
   CHECK(error_about("<Header><Unit time='s' length='m' mass='kg'/></Header>"
                     "<Material name='cu' library='OFHC-Cu-JC' units='mm g ms'/>") ==
-        "case.xmp:1: <Material units=\"mm g ms\">: Header / Unit says m kg s; one input has one system of "
-        "units");
+        "case.xmp:1: <Material units=\"mm g ms\">: contradicts Header / Unit, m kg s; all units of an input "
+        "must agree");
   CHECK(error_about("<Material name='a' library='OFHC-Cu-JC' units='mm g ms'/>"
                     "<Material name='b' library='OFHC-Cu-JC' units='SI'/>") ==
-        "case.xmp:1: <Material units=\"SI\">: a material before this one has mm g ms; one input has one "
-        "system of units");
+        "case.xmp:1: <Material units=\"SI\">: contradicts an earlier material, mm g ms; all units of an "
+        "input must agree");
   CHECK(error_about("<Material name='cu' units='mm g ms'><ReferenceDensity value='1'/>"
                     "<StrengthModel type='IsoElastic' Young='1' Poisson='0'/></Material>") ==
-        "case.xmp:1: <Material units=\"mm g ms\">: has a meaning only with library, whose values it "
-        "converts");
+        "case.xmp:1: <Material units=\"mm g ms\">: is used only with library, to convert its values");
   CHECK(error_about("<Material name='cu' library='OFHC-Cu-JC' units='mm g ms'>\n"
                     "<StrengthModel Yield0='-1'/></Material>") ==
         "case.xmp:2: <StrengthModel Yield0=\"-1\">: expected a number greater than 0");
@@ -238,7 +237,7 @@ TEST_CASE("faults about the library", "[library]") {
         [&] { io::library_material("OFHC-Cu-JC|Cu-Gruneisen", "mm g ms", physics::catalogue(), {setting}); });
   };
   CHECK(set("Yeild0=1") == "library: --set Yeild0=1: the material has no 'Yeild0'; did you mean 'Yield0'?");
-  CHECK(set("Yield0") == "library: --set Yield0: is written NAME=VALUE");
+  CHECK(set("Yield0") == "library: --set Yield0: expected NAME=VALUE");
   CHECK(set("Yield0=1 MPA") == "library: --set Yield0=1 MPA: 'MPA' is no unit; did you mean 'MPa'?");
   CHECK(set("Yield0=-1") == "library: <StrengthModel Yield0=\"-1\">: expected a number greater than 0");
   CHECK(set("nosuch.Yield0=1") == "library: --set nosuch.Yield0=1: the material has no 'Yield0'");

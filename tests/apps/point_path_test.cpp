@@ -85,27 +85,28 @@ TEST_CASE("legs of a path", "[path]") {
 }
 
 TEST_CASE("faults about a path", "[path]") {
-  CHECK(
-      fault("uniaxal_stress 1") ==
-      "path \"uniaxal_stress 1\": there is no path 'uniaxal_stress'; did you mean 'uniaxial_stress'?; there "
-      "are uniaxial_stress, uniaxial_strain, triaxial, biaxial, equibiaxial, simple_shear, hydrostatic, "
-      "pressure, mixed, hold, table");
+  CHECK(fault("uniaxal_stress 1") ==
+        "path \"uniaxal_stress 1\": unknown path 'uniaxal_stress'; did you mean 'uniaxial_stress'?; expected "
+        "one of uniaxial_stress, uniaxial_strain, triaxial, biaxial, equibiaxial, simple_shear, hydrostatic, "
+        "pressure, mixed, hold, table");
   CHECK(fault("uniaxial_stress") ==
-        "path \"uniaxial_stress\": is written: uniaxial_stress E [E...] [rate R | time T] [steps N]");
+        "path \"uniaxial_stress\": expected: uniaxial_stress E [E...] [rate R | time T] [steps N]");
   CHECK(fault("uniaxial_stress 0.1 rat 1") ==
         "path \"uniaxial_stress 0.1 rat 1\": 'rat' is neither a number nor an option; did you mean 'rate'?");
   CHECK(fault("uniaxial_stress 0.1 rate") ==
-        "path \"uniaxial_stress 0.1 rate\": 'rate' needs a number after it");
+        "path \"uniaxial_stress 0.1 rate\": 'rate' must be followed by a number");
   CHECK(fault("hydrostatic 0.1; uniaxial_stress 0.1 rate 0") ==
         "path \"uniaxial_stress 0.1 rate 0\": rate 0 must be greater than 0");
   CHECK(fault("uniaxial_stress 0.1 rate 1 time 1") ==
-        "path \"uniaxial_stress 0.1 rate 1 time 1\": has both a rate and a time");
+        "path \"uniaxial_stress 0.1 rate 1 time 1\": has both a rate and a time: give one of them");
   CHECK(fault("uniaxial_stress 0.1 steps 1.5") ==
-        "path \"uniaxial_stress 0.1 steps 1.5\": steps 1.5 must be a whole number from 1");
+        "path \"uniaxial_stress 0.1 steps 1.5\": steps 1.5 must be a whole number of at least 1");
   CHECK(fault("uniaxial_stress stress 1") ==
-        "path \"uniaxial_stress stress 1\": a leg to a stress needs a time (or a rate of the stress)");
+        "path \"uniaxial_stress stress 1\": a leg that ends at a stress requires a time (or a rate of the "
+        "stress)");
   CHECK(fault("uniaxial_stress 0.1 stress 1 time 1") ==
-        "path \"uniaxial_stress 0.1 stress 1 time 1\": ends at a strain or at a stress, not both");
+        "path \"uniaxial_stress 0.1 stress 1 time 1\": gives both a strain and a stress as the end: give one "
+        "of them");
   CHECK(fault("hydrostatic 0.1 confining 1") ==
         "path \"hydrostatic 0.1 confining 1\": only triaxial and biaxial have a confining pressure");
   CHECK(
@@ -113,20 +114,17 @@ TEST_CASE("faults about a path", "[path]") {
       "path \"hydrostatic stress 1 time 1\": only uniaxial_stress and simple_shear end at a stress; 'mixed' "
       "prescribes any other");
   CHECK(fault("triaxial 0.1") ==
-        "path \"triaxial 0.1\": needs the lateral pressure, as in: triaxial -0.05 confining 10");
+        "path \"triaxial 0.1\": requires the lateral pressure, as in: triaxial -0.05 confining 10");
   CHECK(fault("pressure 5 rate 1") ==
-        "path \"pressure 5 rate 1\": a leg to a pressure has a time, not a rate");
-  CHECK(fault("mixed e_xx=1") == "path \"mixed e_xx=1\": needs a time");
-  CHECK(fault("mixed 1 time 1") ==
-        "path \"mixed 1 time 1\": is written: mixed e_xx=0.01 s_yy=-10 ... time T");
+        "path \"pressure 5 rate 1\": a leg that ends at a pressure takes a time, not a rate");
+  CHECK(fault("mixed e_xx=1") == "path \"mixed e_xx=1\": requires a time");
+  CHECK(fault("mixed 1 time 1") == "path \"mixed 1 time 1\": expected: mixed e_xx=0.01 s_yy=-10 ... time T");
   CHECK(fault("mixed e_xx=1 s_xx=2 time 1") == "path \"mixed e_xx=1 s_xx=2 time 1\": xx is prescribed twice");
-  CHECK(
-      fault("mixed v_xx=1 time 1") ==
-      "path \"mixed v_xx=1 time 1\": 'v_xx' is not a component; e_xx is a strain, s_xx a stress, of xx, yy, "
-      "zz, xy, "
-      "yz, xz");
-  CHECK(fault("hold 5") == "path \"hold 5\": is written: hold time T");
-  CHECK(fault("table") == "path \"table\": is written: table FILE");
+  CHECK(fault("mixed v_xx=1 time 1") ==
+        "path \"mixed v_xx=1 time 1\": 'v_xx' is not a component; expected e_ (strain) or s_ (stress) "
+        "followed by xx, yy, zz, xy, yz or xz");
+  CHECK(fault("hold 5") == "path \"hold 5\": expected: hold time T");
+  CHECK(fault("table") == "path \"table\": expected: table FILE");
   CHECK(fault("table none.csv") == "table none.csv: cannot be read");
   CHECK(fault(" ; ") == "the path is empty; as in: --path \"uniaxial_stress 0.2 rate 1000\"");
 }

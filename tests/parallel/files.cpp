@@ -292,7 +292,7 @@ TEST_CASE("A write by all ranks together that fails, wherever it does, is an err
       if (calls++ == 0 && rank == 1) memory[77] ^= std::byte{1};
     };
     CHECK_THAT(common_error([&] { io::write_together(path, std::span(&other, 1), exchange); }),
-               Catch::Contains("'rows' does not read back the same"));
+               Catch::Contains("the data read back from 'rows' differ"));
   }
   write();
   io::together(exchange, [&] {

@@ -31,7 +31,7 @@ TEST_CASE("every law goes on from its columns alone, to the last bit", "[physics
 TEST_CASE("every law gives the same answer in SI and in mm-g-ms", "[physics][laws]") {
   holds_for_every_law("units");
 }
-TEST_CASE("a particle's result does not depend on its place or its neighbours", "[physics][laws]") {
+TEST_CASE("the result of a particle does not depend on its lane or its neighbours", "[physics][laws]") {
   holds_for_every_law("neighbours");
 }
 TEST_CASE("columns that are not declared are neither read nor written", "[physics][columns]") {
@@ -41,10 +41,11 @@ TEST_CASE("columns that are declared are used", "[physics][columns]") { holds_fo
 TEST_CASE("plastic laws end each step on or below their yield surface", "[physics][laws]") {
   holds_for_every_law("yield");
 }
-TEST_CASE("plastic flow and viscous flow never give energy back", "[physics][laws]") {
+TEST_CASE("plastic flow and viscous flow never release energy", "[physics][laws]") {
   holds_for_every_law("dissipation");
 }
-TEST_CASE("every law converges with first order or better as the step is refined", "[physics][laws][numbers]") {
+TEST_CASE("every law converges with first order or better as the step is refined",
+          "[physics][laws][numbers]") {
   holds_for_every_law("convergence");
 }
 TEST_CASE("every law is objective under ten superposed turns", "[physics][objectivity][numbers]") {

@@ -248,7 +248,7 @@ TEST_CASE("what cannot be a law is refused by name", "[physics][registry]") {
                                   "line for the keyword reference\n"));
   CHECK_THAT(refusal<2>(), Contains("parameter 'wear': its default lies outside of its range"));
   CHECK_THAT(refusal<3>(), Contains("parameter 'wear': dimension 'stresss': "));
-  CHECK_THAT(refusal<4>(), Contains("parameter 'Young': it is stated twice"));
+  CHECK_THAT(refusal<4>(), Contains("parameter 'Young': it is declared twice"));
   CHECK_THAT(refusal<5>(), Contains("StrengthModel 'Two words': the name is not a word"));
   CHECK_THAT(refusal<6>(), Contains("no number lies in its range"));
   CHECK_THAT(refusal<7>(), Equals(""));

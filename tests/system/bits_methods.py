@@ -116,7 +116,7 @@ class Methods(Case):
                                 ("CPDI", "FLIP"), ("CPDI2", "FLIP"), ("CubicBSpline", "APIC"),
                                 ("cpGIMP", 'FMPM xpic_order="5"')):
             outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL")), "--dry-run"])
-            said[shape] = next(line for line in outcome.out.splitlines() if "bytes a particle" in line)
+            said[shape] = next(line for line in outcome.out.splitlines() if "bytes per particle" in line)
         plain = said["linear"]
         self.assertEqual(said["SGMP"], plain)
         self.assertEqual(said["QuadraticBSpline"], plain)
@@ -131,17 +131,17 @@ class Methods(Case):
         for shape in PLAIN_SHAPES:
             for transfer in AFFINE:
                 outcome = self.run_in("out", [self.write(scene(shape, transfer, "MUSL"))], INPUT_ERROR)
-                self.assertIn(f'transfer="{transfer}">: does not go with this shape', outcome.err)
+                self.assertIn(f'transfer="{transfer}">: is not available with this shape function', outcome.err)
         outcome = self.run_in("out", [self.write(scene("linear", 'PIC flip_fraction="0.5"', "MUSL"))], INPUT_ERROR)
-        self.assertIn("has a meaning with transfer FLIP only, not with PIC", outcome.err)
+        self.assertIn("is available only with transfer FLIP, not with PIC", outcome.err)
 
     def test_domains_wider_than_their_support(self):
         """A bar that is drawn to several times its length: the log and the restart say how often domains were too wide."""
         bar = _mpm.block("bar", (3, 3, 3), (3, 3, 2), ("3*(x-4.5)", 0, 0), of="soft")
         soft = [_mpm.material("soft", 1.0, 'type="IsoElastic" Young="1e-3" Poisson="0"')]
         grid = _mpm.grid((-20, 0, 0), (50, 9, 8))
-        for shape, words in (("cpGIMP", "with a domain wider than a cell"), ("CPDI", "with a domain that reaches more than a cell"),
-                             ("CPDI2", "with a domain that reaches more than a cell")):
+        for shape, words in (("cpGIMP", "with a domain wider than a cell"), ("CPDI", "with a domain that extends more than a cell"),
+                             ("CPDI2", "with a domain that extends more than a cell")):
             text = _mpm.scene([bar], grid.replace("<Grid>", f'<Grid shape="{shape}">'), _mpm.solution(1.5, "MUSL", 0.4), soft,
                               '<Console print_time="0.5"/>')
             outcome = self.run_in("out", [self.write(text)])

@@ -55,10 +55,10 @@ class Debris(_mpm.Case):
         gravity = '<Gravity ax="0" ay="0" az="-9.81"/>'
         text = _mpm.scene([column], tank, _mpm.solution(1.2, "MUSL", 0.9, more=gravity), [water])
         outcome = self.run_in("drift", [self.write(text)])
-        self.assertRegex(outcome.out, r"warning: step \d+, time [\d.]+: the energy balance has been off by -?[\d.]+ % "
-                                      r"in the mean of 10 rows, more than 2 %")
-        self.assertRegex(outcome.out, r"warning: the energy balance was off by up to -?[\d.]+ %")
-        self.assertIn("the energy balance was off by up to", _mpm.summary(self.folder / "drift")["reason"])
+        self.assertRegex(outcome.out, r"warning: step \d+, time [\d.]+: the error of the energy balance is -?[\d.]+ % "
+                                      r"in the mean over 10 rows, more than 2 %")
+        self.assertRegex(outcome.out, r"warning: the error of the energy balance was up to -?[\d.]+ %")
+        self.assertIn("the error of the energy balance was up to", _mpm.summary(self.folder / "drift")["reason"])
         fall = text.replace('value="1.2"', 'value="0.1"')
         outcome = self.run_in("fall", [self.write(fall)])
         self.assertNotIn("energy balance", outcome.out)

@@ -127,7 +127,7 @@ class Heat(_mpm.Case):
                               [_mpm.material(density="8.93e-3", strength=law, more=more)],
                               output='<PostProcessing time_interval="1e-5" h5part="1" var="pres"/>')
             self.run_in("hot", [self.write(text)])
-            notes = re.findall(r"body 'bar' starts with the pressure (\S+), its heat's included; with density=\"(\S+)\"",
+            notes = re.findall(r"body 'bar' starts with the pressure (\S+), including thermal pressure; with density=\"(\S+)\"",
                                (self.folder / "hot/case.out").read_text())
             return _cases.States(self.folder / "hot").column("pres", 0), notes
 

@@ -101,7 +101,7 @@ class CommandLine(Case):
                 self.assertIn(f"particles  1024, on {ranks} rank(s)", outcome.out)
                 self.assertRegex(outcome.out, r"16 x 8 x 8 cells.* \d+ bricks .* in use")
                 self.assertRegex(outcome.out, r"memory +[\d.]+ [kMG]B")
-                self.assertRegex(outcome.out, r'body +"right" of "soft": \d+ bytes a particle')
+                self.assertRegex(outcome.out, r'body +"right" of "soft": \d+ bytes per particle')
                 critical = float(re.search(r"time step +critical ([\d.e+-]+)", outcome.out).group(1))
                 # Smallest cell over elastic wave speed and fastest particle.
                 wave = (1000 * 0.7 / (1.3 * 0.4)) ** 0.5
@@ -166,7 +166,7 @@ class CommandLine(Case):
         self.assertAlmostEqual(last["stress_xx"] / (0.001 * modulus), 1, delta=2e-3)
         outcome = _mpm.run([case, "-m", "steel", "-p", "hold time 1"], program="mpm_point")
         self.assertEqual(outcome.code, INPUT_ERROR)
-        self.assertIn("it has no material 'steel'; it has", outcome.err)
+        self.assertIn("the file contains no material 'steel'; it contains", outcome.err)
         for bad in (["-p", "nonsense 1"], ["-p", "hold time 1", "--set", "Young=-1"], []):
             self.assertEqual(_mpm.run([case, "-m", "soft", *bad], program="mpm_point").code, INPUT_ERROR, bad)
         library = ["--library", "Al-plastic", "--units", "mm g ms"]

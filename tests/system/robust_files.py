@@ -243,7 +243,7 @@ class Damaged(Files):
         for path in (self.old, self.new):
             path.write_bytes(self.bytes[:5000])
         outcome = self.run_in("again", [self.out / "case.pe"], code=FILE_ERROR)
-        for words in (self.old.name, self.new.name, "nothing was started"):
+        for words in (self.old.name, self.new.name, "no readable restart file of the job was found"):
             self.assertIn(words, outcome.complaint)
         self.assertFalse((self.folder / "again").exists())
 

@@ -67,7 +67,7 @@ SCENES = [
      ["Contact", "not implemented"]),
     ("twelve million cells along an axis", in_grid(_mpm.grid((0, 0, 0), (8, 8, 8), cell=8 / 12e6)),
      ["DCell", "1.2e+07 cells", "at most 4194304"]),
-    ("a number that would become 0", changed('vx="0"', 'vx="1e-310"'), ["vx", "1e-310", "beyond the range", "write 0"]),
+    ("a number that would become 0", changed('vx="0"', 'vx="1e-310"'), ["vx", "1e-310", "out of the range", "write 0"]),
     ("particles of no mass", one_body(_mpm.block("cube", (2, 2, 2), (1e-120,) * 3, dp=1e-120)), ["dp", "1e-120", "other units"]),
     ("a material for bars", changed("IsoElastic", "Elastic_1D"), ["case.xmp:", "Body", "for bars", "without _1D"]),
     ("a rigid body beside others", _mpm.scene([BODY, cube("ram", 1, of="iron")], ROOMY, SHORT,
@@ -102,7 +102,7 @@ MACHINES = {"more particles than memory", "dimensions that are not the number of
 LINES = [
     ("nothing", [], INPUT_ERROR, ["job"]),
     ("an empty name", [""], INPUT_ERROR, ["name of the job is empty", "Job.xmp"]),
-    ("a file named .xmp", ["{}/hidden/.xmp"], INPUT_ERROR, [".xmp", "nothing before .xmp", "rename"]),
+    ("a file named .xmp", ["{}/hidden/.xmp"], INPUT_ERROR, [".xmp", "empty before .xmp", "rename"]),
     ("missing file", ["{}/none.xmp"], INPUT_ERROR, ["none.xmp", "no such file"]),
     ("missing file, no ending", ["{}/none"], INPUT_ERROR, ["none", "no such file"]),
     ("a folder", ["{}"], INPUT_ERROR, []),
@@ -217,7 +217,7 @@ class BadInput(Case):
         checked = _mpm.run([self.folder / "case.xmp"], program="mpm_check")
         self.assertEqual(checked.code, _mpm.DONE, checked)
         notes = [line for line in checked.out.splitlines() if line.startswith("note ")]
-        for words in (['<Contact contact_type="2">', "Contact is off"], ["<Friction>", "acts in contact only"],
+        for words in (['<Contact contact_type="2">', "Contact is off"], ["<Friction>", "used only by Contact"],
                       ["<Component>", "bodies 'cube' and 'lid' touch at the start", "stick"]):
             self.assertEqual(len([line for line in notes if all(word in line for word in words)]), 1, (words, checked.out))
         self.assertEqual(len(notes), 3, checked.out)
@@ -240,7 +240,7 @@ class BadInput(Case):
         outcome = check(mine, good, magnet)
         self.assertEqual(outcome.code, _mpm.DONE, outcome)
         self.assertIn(f", by {mine}", outcome.out)
-        self.assertRegex(outcome.out, r"note .*magnet.xmp:\d+: <Magnet>: the Specification has it, this program has not")
+        self.assertRegex(outcome.out, r"note .*magnet.xmp:\d+: <Magnet>: defined in the Specification, but not in this program")
         self.assertEqual(_mpm.run([magnet], program="mpm_check").code, INPUT_ERROR)
         self.write(magnet.read_text().replace('"2"', '"4"'), "magnet.xmp")
         outcome = check(mine, magnet)

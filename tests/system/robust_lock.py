@@ -70,7 +70,7 @@ class Lock(Case):
             share = struct.pack("hhqqi0q", fcntl.F_RDLCK, os.SEEK_SET, 1, 1, 0)
             fcntl.fcntl(survivor, fcntl.F_OFD_SETLK, share)
             outcome = self.run_in("out", [self.out / "case.pe"], code=FILE_ERROR)
-            self.assertRegex(outcome.complaint, "ranks of a killed one still live.*case.lock' is held by process ")
+            self.assertRegex(outcome.complaint, "ranks of a killed run are still alive.*case.lock' is held by process ")
         # The lock file is there, and nobody holds it.
         self.assertTrue(self.lock.exists())
         for ranks in (1, 2):

@@ -62,7 +62,7 @@ class Failures(Case):
 
     def test_energy_fraction(self):
         self.check_failure(scene(_mpm.BOUNCING, '<EnergyFraction value="1e-4"/>', end=9),
-                           r"step \d+, time [\d.]+: the total energy is off by .*, more than EnergyFraction 0\.0001")
+                           r"step \d+, time [\d.]+: the relative error of the total energy is .*, more than EnergyFraction 0\.0001")
 
     def test_energy_fraction_is_checked_at_every_step(self):
         """The run ends in the first step whose energy is off, whenever .sta is written."""
@@ -73,7 +73,7 @@ class Failures(Case):
         self.assertGreater(first, 10)
         self.check_failure(scene(_mpm.BOUNCING, '<EnergyFraction value="1e-4"/>', end=9)
                            .replace('print_time="0.9"', 'print_time="9"'),
-                           rf"step {first}, time [\d.]+: the total energy is off by .*, more than EnergyFraction 0\.0001")
+                           rf"step {first}, time [\d.]+: the relative error of the total energy is .*, more than EnergyFraction 0\.0001")
 
     def test_particle_outside_at_level_2(self):
         self.check_failure(scene(FLIGHT, '<Warn type="grid" level="2"/>', faces="000000"), self.PARTICLE)
@@ -157,8 +157,8 @@ class Leaving(Case):
                                   "left the grid", line) for line in named[:20]]
             order = [(int(m.group(1)), int(m.group(2))) for m in found]
             self.assertEqual(order, sorted(set(order)))
-            self.assertRegex(named[20], "20 particles left the grid: from now on they are only counted")
-            self.assertIn("counted    512 particle(s) left the grid, added over the steps; 20 named above", out)
+            self.assertRegex(named[20], "20 particles left the grid have been named: further ones are only counted")
+            self.assertIn("counted    512 particle(s) left the grid, summed over the steps; 20 named above", out)
         self.assertEqual(len(logs), 1)
 
     def test_each_particle_is_named_once(self):
@@ -173,7 +173,7 @@ class Leaving(Case):
             self.assertEqual([re.search(r"particle (\d+) of", line).group(1) for line in named], list("01234"))
             self.assertIn("with internal energy below zero", named[0])
             steps = _mpm.summary(self.folder / "out")["steps"]
-            self.assertIn(f"counted    {5 * steps} particle(s) with internal energy below zero, added over the steps; "
+            self.assertIn(f"counted    {5 * steps} particle(s) with internal energy below zero, summed over the steps; "
                           "5 named above", out)
             logs.add("\n".join(named))
         self.assertEqual(len(logs), 1)
@@ -364,7 +364,7 @@ class Prescribed(Case):
 
         outcome = self.run_in("out", [press("iron")], code=_mpm.INPUT_ERROR)
         self.assertRegex(outcome.complaint, r'case.xmp:\d+: <Body material="iron">: a rigid body acts on others through '
-                         r"contact, .* pass through 'column' and push nothing\. Give the body a material that deforms")
+                         r"contact, .* pass through 'column' without exerting a force\. Give the body a deformable material")
         self.run_in("out", [press("soft")])
         column, ram = strict_summary(self.folder / "out")["bodies"]
         self.assertAlmostEqual(ram["lower"][2], 8.25 - 0.5, delta=1e-9)
@@ -374,7 +374,7 @@ class Prescribed(Case):
         self.write(_mpm.scene([_mpm.block("cube", (1, 1, 1), (2, 2, 2))], _mpm.grid((0, 0, 0), ROOM), _mpm.solution(1),
                               [_mpm.material(strength='type="Elastic_1D" Young="1000" Poisson="0.3"')]))
         outcome = self.run_in("out", [self.folder / "case.xmp"], code=_mpm.INPUT_ERROR)
-        self.assertRegex(outcome.complaint, "material `soft` is for bars, and body `cube`")
+        self.assertRegex(outcome.complaint, "material `soft` is for bars only, but body `cube`")
 
     def test_dynamic_relaxation(self):
         """A column under its own weight, between walls without friction. At rest (linear elasticity, uniaxial strain,

@@ -199,7 +199,7 @@ class Damaged(Resume):
                 said = self.go_on_after("case.h5part", flipped)
                 if said:
                     aside += 1
-                    self.assertRegex(said, "case.h5part' is damaged.*it is now .*case.h5part.damaged', and a new file begins")
+                    self.assertRegex(said, "case.h5part' is damaged.*it has been renamed to .*case.h5part.damaged', and a new file is started")
                     self.assertTrue((self.out / "case.h5part.damaged").exists())
                     self.assertGreater(len(_resume.states(self.out / "case.h5part")[0]), 0)
                 else:

@@ -1,4 +1,4 @@
-"""Runs that are asked to stop write a restart file and leave with exit code 4; what continues has the same bits."""
+"""A run that is requested to stop writes a restart file and exits with code 4; its continuation has the same bits."""
 
 import re
 import shutil
@@ -103,7 +103,7 @@ class Stop(Case):
 
     def test_user_signal_to_one_rank_of_two(self):
         outcome = self.stopped_by([signal.SIGUSR1], ranks=2, target=lambda p: _mpm.children(p)[-1:])
-        self.continue_and_compare(self.check_stopped(outcome, "(signal|asked to stop)"))
+        self.continue_and_compare(self.check_stopped(outcome, "(signal|stop requested)"))
 
     def test_terminate_under_mpirun(self):
         """Open MPI's mpirun ends with a code of its own, and kills what is still there a second after it has passed
@@ -127,7 +127,7 @@ class Stop(Case):
             with self.subTest(ranks=ranks):
                 self.setUp()
                 outcome = _mpm.run([*self.line, "--max-wall-time", "1e-9"], ranks=ranks)
-                self.continue_and_compare(self.check_stopped(outcome, "asked to stop: .*--max-wall-time"))
+                self.continue_and_compare(self.check_stopped(outcome, "stop requested by .*--max-wall-time"))
 
     def test_wall_time_of_a_run_without_end(self):
         for ranks in (1, 2):
@@ -135,7 +135,7 @@ class Stop(Case):
                 self.write(bounce(end=ENDLESS))
                 shutil.rmtree(self.out, ignore_errors=True)
                 outcome = _mpm.run([*self.line, "--max-wall-time", "0.5"], ranks=ranks)
-                self.check_stopped(outcome, "asked to stop: .*--max-wall-time", end=ENDLESS)
+                self.check_stopped(outcome, "stop requested by .*--max-wall-time", end=ENDLESS)
                 self.assertGreaterEqual(_mpm.summary(self.out)["wall_seconds"]["total"], 0.5)
                 self.go_on_from_endless()
 
@@ -213,8 +213,8 @@ class Restart(Case):
 
     def test_missing_file_does_not_start_anew(self):
         before = _mpm.contents(self.out)
-        for name, words in [("case_7.pe", [str(self.files[1])]), ("other.pe", ["nothing was started"]),
-                            ("other_7.pe", ["nothing was started"])]:
+        for name, words in [("case_7.pe", [str(self.files[1])]), ("other.pe", ["no readable restart file of the job was found"]),
+                            ("other_7.pe", ["no readable restart file of the job was found"])]:
             for ranks in (1, 2):
                 with self.subTest(name, ranks=ranks):
                     outcome = self.run_in("out", [self.out / name], code=FILE_ERROR, ranks=ranks)
@@ -306,7 +306,7 @@ class Restart(Case):
         for ranks in (1, 2):
             outcome = self.run_in("in", [_mpm.restarts(self.folder / "apart", "apart")[0], "-rt", whole],
                                   code=INPUT_ERROR, ranks=ranks)
-            self.assertEqual(outcome.complaint.count("the body lies outside the grid"), 1, outcome)
+            self.assertEqual(outcome.complaint.count("the body is outside the grid"), 1, outcome)
         self.assertFalse((self.folder / "in").exists())
 
 

@@ -173,7 +173,7 @@ TEST_CASE("Bool: too many shapes are refused without counting them one by one", 
   CHECK(Parts(scene, scene.components[0].bodies[3]).shapes() == 8);
   const auto faults = shape_faults(scene, scene.components[0].bodies[40]);
   REQUIRE(faults.size() == 1);
-  CHECK_THAT(faults[0].message, Contains("made of more than 1000 shapes"));
+  CHECK_THAT(faults[0].message, Contains("consists of more than 1000 shapes"));
 }
 
 TEST_CASE("Bool: points far denser than the particles that they take away", "[discretise]") {

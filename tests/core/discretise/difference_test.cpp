@@ -82,16 +82,16 @@ TEST_CASE("Bool: points take away what is within half a spacing", "[discretise]"
 
 TEST_CASE("Bool: nothing left, and a body made of itself", "[discretise]") {
   const BodyInput cube = body(block(1, {0, 0, 0}, {10, 10, 10}));
-  CHECK_THROWS_WITH(
-      rest(difference({cube, cube})),
-      "case.xmp:7: <Body BoolBodyB=\"bar\">: body `rest`: the body has no particles: none of body "
-      "'bar' lies outside this one");
+  CHECK_THROWS_WITH(rest(difference({cube, cube})),
+                    "case.xmp:7: <Body BoolBodyB=\"bar\">: body `rest`: the body has no particles: no "
+                    "particle of body 'bar' is outside the subtracted body");
   Scene scene = difference({cube, cube});
   scene.components[1].bodies[1].geometry = BoolGeometry{{0, 0}, {1, 1}};
   scene.components[1].bodies[1].for_bool = true;
-  CHECK_THROWS_WITH(rest(scene),
-                    "case.xmp:7: <Body BoolBodyB=\"rest\">: body `rest`: the body is made of itself: rest -> "
-                    "rest; expected operands that do without it");
+  CHECK_THROWS_WITH(
+      rest(scene),
+      "case.xmp:7: <Body BoolBodyB=\"rest\">: body `rest`: the body is an operand of itself: rest -> "
+      "rest; expected operands that do not contain it");
 }
 
 TEST_CASE("impossible geometries are refused by their attributes' names", "[discretise]") {

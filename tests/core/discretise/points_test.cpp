@@ -150,14 +150,14 @@ TEST_CASE("point files: every bad line is named", "[discretise]") {
   std::string many;
   for (int i = 0; i < 1000; ++i) many += "wrong\n";
   CHECK_THAT(fault(many),
-             Contains("bad.txt:20: ") && Contains("980 more lines are wrong") && !Contains("bad.txt:21:"));
+             Contains("bad.txt:20: ") && Contains("980 more lines are invalid") && !Contains("bad.txt:21:"));
 }
 
 TEST_CASE("point files: missing, empty, no text, cut off, changed", "[discretise]") {
   const std::string element = "case.xmp:7: <Geometry file=\"bad.txt\">: ";
-  CHECK(fault("# nothing\n\n") == element + "the file holds no particles: expected lines of mass x y z");
+  CHECK(fault("# nothing\n\n") == element + "the file contains no particles: expected lines of mass x y z");
   CHECK(fault(std::string(5000000, 'x')) ==
-        element + "line 1 is longer than 4096 characters: this is no file of particles");
+        element + "line 1 is longer than 4096 characters: this is not a file of particles");
   CHECK_THROWS_WITH(
       source(from_file("/nowhere/points.txt")),
       "case.xmp:7: <Geometry file=\"/nowhere/points.txt\">: the file of particles cannot be opened: No "

@@ -50,23 +50,23 @@ TEST_CASE("The check of a formula names its variables, its constant value or its
   CHECK(Formula::check("if(1 == 1, 4, 5)").constant == 4);
   CHECK(std::isinf(*Formula::check("1/0").constant));
 
-  CHECK(error_of("1d3") == "'d3' at character 2 is not known");
+  CHECK(error_of("1d3") == "unknown name 'd3' at character 2");
   CHECK(Formula::check("sine(x)").unknown_name == "sine");
-  CHECK(error_of("5 GPa") == "'GPa' at character 3 is not known");
-  CHECK(error_of("3x") == "'x' at character 2 is not expected there");
-  CHECK(error_of("x^^2") == "'^' at character 3 is not expected there");
+  CHECK(error_of("5 GPa") == "unknown name 'GPa' at character 3");
+  CHECK(error_of("3x") == "unexpected 'x' at character 2");
+  CHECK(error_of("x^^2") == "unexpected '^' at character 3");
   CHECK(error_of("(x") == "a closing parenthesis is missing");
-  CHECK(error_of("x)") == "')' at character 2 is not expected there");
-  CHECK(error_of("x +") == "the expression ends too early");
+  CHECK(error_of("x)") == "unexpected ')' at character 2");
+  CHECK(error_of("x +") == "unexpected end of the expression");
   CHECK(error_of("") == "empty");
   CHECK(error_of("sin(x, 1)") == "too many arguments of 'sin'");
   CHECK(error_of("if(x, 1)") == "too few arguments of 'if'");
-  CHECK(error_of("x, y") == "a comma stands outside of a function");
+  CHECK(error_of("x, y") == "a comma is outside of a function call");
   CHECK(error_of(std::string(200'000, '(').c_str()) == "the expression is too long");
   CHECK(error_of(("1" + std::string(90, 'e')).c_str()) ==
-        "'1" + std::string(39, 'e') + "...' at character 1 is not known");
+        "unknown name '1" + std::string(39, 'e') + "...' at character 1");
   for (const char* text : {"x = 3", "3 == (x = 4)", "= x"})
-    CHECK(error_of(text) == "'=' assigns; equality is written ==");
+    CHECK(error_of(text) == "'=' is an assignment; use == for equality");
   for (const char* text : {"x == 3", "x <= 3", "x >= 3", "x != 3"}) CHECK(error_of(text).empty());
 }
 

@@ -35,10 +35,10 @@ TEST_CASE("names and occurrences") {
        {"line 25: <solution>: no such element in <PeneBlast>; did you mean 'Solution'?"}},
       {"<Solution>",
        "<Gravity ax='0' ay='0' az='1'/><Solution>",
-       {"line 25: <Gravity>: stands in <Solution>, not in <PeneBlast>"}},
+       {"line 25: <Gravity>: belongs in <Solution>, not in <PeneBlast>"}},
       {"<Solution>",
        "<Contact enable='0'/><Contact enable='0'/><Solution>",
-       {"line 25: <Contact>: stands once in <PeneBlast>; the first is on line 25"}},
+       {"line 25: <Contact>: may occur only once in <PeneBlast>; the first is on line 25"}},
       {"<Solution><EndTime value=\"0.08\"/></Solution>",
        "",
        {"line 2: <PeneBlast>: element <Solution> is missing"}},
@@ -49,7 +49,7 @@ TEST_CASE("names and occurrences") {
       {"<ZMax value",
        "<XMax value",
        {"line 18: <Cell>: element <ZMax> is missing",
-        "line 21: <XMax>: stands once in <Cell>; the first is on line 19"}},
+        "line 21: <XMax>: may occur only once in <Cell>; the first is on line 19"}},
       {"<Solution>",
        "<Solution colour=\"red\">",
        {"line 25: <Solution colour=\"red\">: no such attribute; expected algorithm, near_boundary_stop, "
@@ -65,21 +65,21 @@ TEST_CASE("names and occurrences") {
         "particles; element size for BlockForFEM)"}},
       {"dp=\"0.38\"",
        "dp=\"0.38\" Outer_Radius=\"1\"",
-       {"line 13: <Geometry Outer_Radius=\"1\">: not with type Block, only with Sphere"}},
+       {"line 13: <Geometry Outer_Radius=\"1\">: not available with type Block, only with Sphere"}},
       {"dp=\"0.38\"",
        "dp=\"0.38\"\n\n colour='red'",
        {"line 15: <Geometry colour=\"red\">: no such attribute; expected dp, x0, y0, z0, lx, ly, lz"}},
       {"lz=\"19\"/>",
        "lz=\"19\"><Point mass='1' x='0' y='0' z='0'/></Geometry>",
-       {"line 13: <Point>: not with type Block",
-        "line 13: <Point mass=\"1\">: not with type Block, only with Point"}},
+       {"line 13: <Point>: not available with type Block",
+        "line 13: <Point mass=\"1\">: not available with type Block, only with Point"}},
       {"<FailureModel type",
        "<FailureModel xmlns=\"a\" type",
        {"line 8: <FailureModel xmlns=\"\">: no such attribute; expected type, Erosion"}},
-      {"<Solution>", "<Solution>text", {"line 25: <Solution>: no text may stand here: 'text'"}},
-      {"<Solution>", "<Solution><![CDATA[text]]>", {"line 25: <Solution>: no text may stand here: 'text'"}},
+      {"<Solution>", "<Solution>text", {"line 25: <Solution>: text is not allowed here: 'text'"}},
+      {"<Solution>", "<Solution><![CDATA[text]]>", {"line 25: <Solution>: text is not allowed here: 'text'"}},
       {"version=\"1.0\">", "version=\"2.0\">", {"line 2: <PeneBlast version=\"2.0\">: expected '1.0'"}},
-      {"<Header>", "<HarmExcit/><Header>", {"line 3: <HarmExcit>: stands in <Body>, not in <PeneBlast>"}},
+      {"<Header>", "<HarmExcit/><Header>", {"line 3: <HarmExcit>: belongs in <Body>, not in <PeneBlast>"}},
   });
   CHECK(test::faults("<peneblast/>") ==
         std::vector<std::string>{"line 1: <peneblast>: the root of an input file is <PeneBlast>"});
@@ -114,8 +114,8 @@ TEST_CASE("values") {
   const std::string velocity =
       "expected a number, written like 1.5e-3, or an expression in x, y, z, X, Y, Z; ";
   const std::string beyond =
-      "beyond the range of numbers, which is 0 and 2.3e-308 to 1.7e308 in size; write 0, or choose other "
-      "units";
+      "out of the range of double precision (0, or magnitudes from 2.3e-308 to 1.7e308); write 0, or choose "
+      "other units";
   check_table({
       {"value=\"8.93e-3\"",
        "value=\"-8.93e-3\"",
@@ -130,7 +130,7 @@ TEST_CASE("values") {
       {"vz=\"-190\"", "vz=\"2.3e-308\"", {"ok"}},
       {"vz=\"-190\"",
        "vz=\"-1d3\"",
-       {"line 14: <InitialVelocity vz=\"-1d3\">: " + velocity + "'d3' at character 3 is not known"}},
+       {"line 14: <InitialVelocity vz=\"-1d3\">: " + velocity + "unknown name 'd3' at character 3"}},
       {"vz=\"-190\"", "vz=\"\"", {"line 14: <InitialVelocity vz=\"\">: " + velocity + "empty"}},
       {"<InitialVelocity",
        "<InitialTemperature value='0'/><InitialVelocity",
@@ -142,7 +142,7 @@ TEST_CASE("values") {
       {"<InitialVelocity",
        "<InitialTemperature/><InitialVelocity",
        {"line 14: <InitialTemperature>: attribute 'value' is missing: a number greater than 0 "
-        "(temperature; the material must carry one)"}},
+        "(temperature; the material must have one)"}},
       {"dp=\"0.38\"", "dp=\"0\"", {"line 13: <Geometry dp=\"0\">: expected a number greater than 0"}},
       {"boundary=\"2\"", "boundary=\"5\"", {"line 19: <XMin boundary=\"5\">: expected one of 0, 1, 2, 3, 4"}},
       {"boundary=\"2\"",
@@ -205,14 +205,14 @@ TEST_CASE("laws are checked by their own tables") {
        {"line 6: <StrengthModel FailedType=\"1.5\">: expected a whole number in [0, 2]"}},
       {"Poisson=\".35\"",
        "Poisson=\".35\" D1=\"1000\"",
-       {"line 6: <StrengthModel D1=\"1000\">: not with type IsoHarden, only with JohnsonCook"}},
+       {"line 6: <StrengthModel D1=\"1000\">: not available with type IsoHarden, only with JohnsonCook"}},
       {"Poisson=\".35\"",
        "Poisson=\".35\" SpecHeat=\"1\"",
        {"line 6: <StrengthModel SpecHeat=\"1\">: no such attribute; expected type, Young, Poisson, Yield0, "
         "TangMod, bq1, FailedType"}},
       {"type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
        "type=\"JohnsonCook\" Young=\"1\" Poisson=\".3\" D1=\"1\"",
-       {"line 6: <StrengthModel>: D1, D2 are given all or none; missing: D2"}},
+       {"line 6: <StrengthModel>: D1, D2 must be given together or not at all; missing: D2"}},
       {"type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
        "type=\"Homemade\"",
        {"line 6: <StrengthModel>: attribute 'strength' is missing: a number greater than 0"}},
@@ -279,15 +279,15 @@ TEST_CASE("known, but not implemented yet") {
        {"line 25: <Solution xpic_order=\"0\">: expected a whole number in [1, 20]"}},
       {"<Solution>",
        "<Solution transfer=\"FMPM\" flip_fraction=\"0.9\">",
-       {"line 25: <Solution flip_fraction=\"0.9\">: has a meaning with transfer FLIP only, not with FMPM"}},
+       {"line 25: <Solution flip_fraction=\"0.9\">: is available only with transfer FLIP, not with FMPM"}},
       {"<Solution>", "<Solution flip_fraction=\"0.9\">", {"ok"}},
       {"<Solution>",
        "<Solution transfer=\"PIC\" flip_fraction=\"0.9\">",
-       {"line 25: <Solution flip_fraction=\"0.9\">: has a meaning with transfer FLIP only, not with PIC"}},
+       {"line 25: <Solution flip_fraction=\"0.9\">: is available only with transfer FLIP, not with PIC"}},
       {"<Solution>",
        "<Solution transfer=\"APIC\">",
-       {"line 25: <Solution transfer=\"APIC\">: does not go with this shape: expected QuadraticBSpline, "
-        "CubicBSpline, uGIMP or cpGIMP"}},
+       {"line 25: <Solution transfer=\"APIC\">: is not available with this shape function: expected shape "
+        "QuadraticBSpline, CubicBSpline, uGIMP or cpGIMP"}},
       {"<EndTime", "<FEMSetting/><EndTime", {"line 25: <FEMSetting>: " + remove}},
       {"<EndTime", "<Implicit/><EndTime", {"line 25: <Implicit>: " + remove}},
       {"</PeneBlast>",
@@ -305,20 +305,19 @@ TEST_CASE("known, but not implemented yet") {
       {"<InitialVelocity", "<ConstrainRigidPosition value='1'/><InitialVelocity", {"ok"}},
       {"<InitialVelocity",
        "<Traction tx='1' xmin='2' xmax='1'/><InitialVelocity",
-       {"line 14: <Traction>: normal and tx, ty, tz go together: give both or neither",
+       {"line 14: <Traction>: normal is the axis of the traction tx, ty, tz: give both or neither",
         "line 14: <Traction xmax=\"1\">: must be greater than xmin"}},
       {"<InitialVelocity",
        "<Traction ramp='0'/><InitialVelocity",
        {"line 14: <Traction ramp=\"0\">: expected a number greater than 0",
-        "line 14: <Traction>: needs a pressure, or tx, ty, tz and normal"}},
+        "line 14: <Traction>: expected a pressure, or tx, ty, tz and normal"}},
       {"<InitialVelocity",
        "<PrescribedVelocity vx='0' vy='0' vz='1'/><HarmExcit><A x='0' y='0' z='1'/><Omega x='1' y='1' z='1'/>"
        "<Theta x='0' y='0' z='0'/><EndTime x='1' y='1' z='1'/></HarmExcit><Traction pressure='1'/>"
        "<InitialVelocity",
-       {"line 14: <HarmExcit>: has no effect beside PrescribedVelocity: give ConstrainRigidPosition "
-        "value=\"1\" "
-        "to add it to that velocity, or InitialVelocity in its place",
-        "line 14: <Traction>: has no effect on a body whose velocity is prescribed or held"}},
+       {"line 14: <HarmExcit>: has no effect with PrescribedVelocity: give ConstrainRigidPosition "
+        "value=\"1\" to add it to that velocity, or replace PrescribedVelocity by InitialVelocity",
+        "line 14: <Traction>: has no effect on a body whose velocity is prescribed or constrained"}},
   });
 }
 
@@ -365,20 +364,18 @@ TEST_CASE("bodies and work planes") {
        {"line 10: <WorkPlane>: the axes (ex, ey, ez) and (a11, a21, a31) must not be zero"}},
       {"dp=\"0.38\"",
        "dp=\"1e-9\"",
-       {"line 13: <Geometry dp=\"1e-9\">: this makes about 2.74e+29 particles, more than any machine holds "
-        "(2^48); "
-        "expected a larger distance of particles"}},
+       {"line 13: <Geometry dp=\"1e-9\">: this gives about 2.74e+29 particles, more than the limit of 2^48; "
+        "expected a larger particle spacing"}},
       {"x0=\"0\"",
        "x0=\"100\"",
-       {"line 12: <Body name=\"rod\">: the body lies outside the grid: its x from 100 to 103.8, the grid's "
-        "from 0 to "
-        "11.4"}},
+       {"line 12: <Body name=\"rod\">: the body is outside the grid: its x ranges from 100 to 103.8, that of "
+        "the grid from 0 to 11.4"}},
       {block,
        "type=\"Sphere\"><Geometry dp='1' x0='5' y0='5' z0='5' Outer_Radius='2' Inner_Radius='2'/>",
        {"line 12: <Geometry Outer_Radius=\"2\">: expected more than Inner_Radius, 2"}},
       {block,
        "type=\"Sphere\"><Geometry dp='1' x0='5' y0='5' z0='5' Outer_Radius='2' half='1'/>",
-       {"line 12: <Geometry half=\"1\">: needs angle=\"90\", not 360"}},
+       {"line 12: <Geometry half=\"1\">: requires angle=\"90\", not 360"}},
       {block,
        "type=\"Sphere\"><Geometry dp='1' x0='5' y0='5' z0='5' Outer_Radius='2' angle='0'/>",
        {"line 12: <Geometry angle=\"0\">: expected a number in (0, 360]"}},
@@ -407,7 +404,7 @@ TEST_CASE("bodies and work planes") {
         "LineForBar, NettyForBar, PointForMembrane, RectangularForMembrane, CylinderForMembrane, "
         "PointForFEM, "
         "BlockForFEM",
-        "line 12: <Geometry what=\"1\">: no such attribute; the element has none"}},
+        "line 12: <Geometry what=\"1\">: no such attribute; the element has no attributes"}},
   });
 }
 
@@ -418,11 +415,11 @@ TEST_CASE("the grid") {
        {"line 19: <XMax value=\"0\">: expected more than XMin, 0"}},
       {"dx=\"0.76\"",
        "dx=\"1e-12\"",
-       {"line 22: <DCell dx=\"1e-12\">: this makes 1.14e+13 cells along the axis; at most 4194304 "
+       {"line 22: <DCell dx=\"1e-12\">: this gives 1.14e+13 cells along the axis; at most 4194304 "
         "are possible: use larger cells"}},
       {"dx=\"0.76\"",
        "dx=\"9.5e-7\"",  // twelve million
-       {"line 22: <DCell dx=\"9.5e-7\">: this makes 1.2e+07 cells along the axis; at most 4194304 are "
+       {"line 22: <DCell dx=\"9.5e-7\">: this gives 1.2e+07 cells along the axis; at most 4194304 are "
         "possible: use larger cells"}},
       {"dx=\"0.76\"",
        "dx=\"20\"",
@@ -432,7 +429,7 @@ TEST_CASE("the grid") {
        {"line 18: <Cell>: 6.4e+19 cells cannot be numbered; expected fewer than 2^62"}},
       {"<XMax value=\"11.4\" boundary=\"0\"",
        "<XMax value=\"11.5\" boundary=\"1\"",
-       {"line 19: <XMax value=\"11.5\">: a wall must lie on a face of cells: 15.131578947368421 cells of "
+       {"line 19: <XMax value=\"11.5\">: a wall must coincide with a cell face: 15.131578947368421 cells of "
         "0.76 do not "
         "fit between 0 and 11.5; expected 11.4 or 12.16"}},
       {"<XMax value=\"11.4\"", "<XMax value=\"11.5\"", {"ok"}},
@@ -459,7 +456,8 @@ TEST_CASE("solution and output") {
         "posz, SigmaX, SigmaY, SigmaZ, SigmaXY, SigmaYZ, SigmaXZ, joined by |; did you mean 'pres'?"}},
       {"</PeneBlast>",
        "<DomainDecomposition dimension0='2'/></PeneBlast>",
-       {"line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 are given all or none; missing: "
+       {"line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 must be given together or not at "
+        "all; missing: "
         "dimension1, dimension2"}},
   });
 }

@@ -57,7 +57,7 @@ TEST_CASE("a pressure or a traction may be an expression alone") {
   check_faults("<Traction pressure='x'/>", {"ok"});
   check_faults("<Traction tx='x' normal='0'/>", {"ok"});
   check_faults("<Traction tx='x'/>",
-               {"line 14: <Traction>: normal and tx, ty, tz go together: give both or neither"});
+               {"line 14: <Traction>: normal is the axis of the traction tx, ty, tz: give both or neither"});
 }
 
 TEST_CASE("a wrong expression is refused with what is wrong in it, all at once") {
@@ -70,13 +70,13 @@ TEST_CASE("a wrong expression is refused with what is wrong in it, all at once")
       "<InitialVelocity vx='0.1*sine(x)' vy='t*x' vz='(1+x'/>\n<BodyForce bx='1/0' by='T' bz='x=2'/>\n"
       "<Traction pressure='X + Y*t'/>",
       {"line 14: <InitialVelocity vx=\"0.1*sine(x)\">: " + at_start +
-           "'sine' at character 5 is not known; did you mean 'sin'?",
-       "line 14: <InitialVelocity vy=\"t*x\">: " + at_start + "t has no meaning here",
+           "unknown name 'sine' at character 5; did you mean 'sin'?",
+       "line 14: <InitialVelocity vy=\"t*x\">: " + at_start + "t is not available here",
        "line 14: <InitialVelocity vz=\"(1+x\">: " + at_start + "a closing parenthesis is missing",
        "line 15: <BodyForce bx=\"1/0\">: " + expected + "this is infinite",
-       "line 15: <BodyForce by=\"T\">: " + expected + "'T' at character 1 is not known; did you mean 't'?",
-       "line 15: <BodyForce bz=\"x=2\">: " + expected + "'=' assigns; equality is written ==",
-       "line 16: <Traction pressure=\"X + Y*t\">: " + of_load + "X, Y have no meaning here"});
+       "line 15: <BodyForce by=\"T\">: " + expected + "unknown name 'T' at character 1; did you mean 't'?",
+       "line 15: <BodyForce bz=\"x=2\">: " + expected + "'=' is an assignment; use == for equality",
+       "line 16: <Traction pressure=\"X + Y*t\">: " + of_load + "X, Y are not available here"});
   check_faults(
       "<PrescribedAcceleration ax='x' ay='0' az='0' arx='0' ary='0' arz='0'><Coefficient time='0' "
       "cx='1' cy='0' cz='0' crx='0' cry='0' crz='0'/></PrescribedAcceleration>",
@@ -86,10 +86,10 @@ TEST_CASE("a wrong expression is refused with what is wrong in it, all at once")
 TEST_CASE("expressions where a body cannot follow them are refused") {
   check_faults("<PrescribedVelocity vx='t' vy='0' vz='X'/>", {"ok"});
   check_faults("<PrescribedVelocity vx='t' vy='0' vz='X'/><BodyForce bx='1'/>",
-               {"line 14: <BodyForce>: has no effect on a body whose velocity is prescribed or held"});
+               {"line 14: <BodyForce>: has no effect on a body whose velocity is prescribed or constrained"});
   check_faults("<InitialVelocity vx='x' vy='0' vz='0'/><ConstrainRigidPosition value='1'/>",
-               {"line 14: <InitialVelocity vx=\"x\">: ConstrainRigidPosition holds this velocity for the "
-                "whole body: give a number, or PrescribedVelocity"});
+               {"line 14: <InitialVelocity vx=\"x\">: ConstrainRigidPosition keeps one velocity for the "
+                "whole body: expected a number; or use PrescribedVelocity"});
 }
 
 }  // namespace

@@ -56,24 +56,29 @@ TEST_CASE("settings of materials without effect") {
                     both = with("FailedType='1' FailViscosity='2'"),
                     threshold = with("FailureDamageThreshold='0.5'"),
                     work = with("PlasticWorkCoefficient='0.5'"), room = with("roomt='300'"),
+                    concrete =
+                        "<StrengthModel type='HolmquistJohnsonCook' Young='1' Poisson='0.2' Yield0='1' A='1' "
+                        "B='2' N='0.6' C='0' fc='48' SMax='7' D1='0.04' D2='1' EFMin='0.01' T='4' epso='1'",
+                    only_with =
+                        "used only with Contact failure_to_component=\"1\", or with DamageToFail=\"1\" of "
+                        "HolmquistJohnsonCook",
                     warm = with("PlasticWorkCoefficient='0.5' SpecHeat='1' roomt='300'");
   check_table({
       {law, tensile,
-       "line 6: <StrengthModel TensileCutoff=\"-1\">: no effect: acts with FailedType=\"2\" only"},
+       "line 6: <StrengthModel TensileCutoff=\"-1\">: no effect: used only with FailedType=\"2\""},
       {law, failed,
-       "line 6: <StrengthModel FailedType=\"1\">: no effect: acts on failed particles only, and nothing lets "
-       "this material fail"},
+       "line 6: <StrengthModel FailedType=\"1\">: no effect: applies only to failed particles, and this "
+       "material cannot fail"},
       {law, both,
-       "line 6: <StrengthModel>: FailedType, FailViscosity have no effect: acts on failed particles only, "
-       "and "
-       "nothing lets this material fail"},
-      {law, threshold,
-       "line 6: <StrengthModel FailureDamageThreshold=\"0.5\">: no effect: acts with Contact "
-       "failure_to_component=\"1\" only, and Contact is off"},
+       "line 6: <StrengthModel>: FailedType, FailViscosity have no effect: applies only to failed particles, "
+       "and this material cannot fail"},
+      {law, threshold, "line 6: <StrengthModel FailureDamageThreshold=\"0.5\">: no effect: " + only_with},
+      {law, concrete + " FailureDamageThreshold='0.5' DamageToFail='1'", ""},
+      {law, concrete + " FailureDamageThreshold='0.5'",
+       "line 6: <StrengthModel FailureDamageThreshold=\"0.5\">: no effect: " + only_with},
       {law, work,
-       "line 6: <StrengthModel PlasticWorkCoefficient=\"0.5\">: no effect: heats only with SpecHeat, which "
-       "is "
-       "not given"},
+       "line 6: <StrengthModel PlasticWorkCoefficient=\"0.5\">: no effect: requires SpecHeat, which is not "
+       "given"},
       {law, room,
        "line 6: <StrengthModel roomt=\"300\">: no effect: there is no temperature without SpecHeat"},
       {law, warm, ""},
@@ -83,11 +88,11 @@ TEST_CASE("settings of materials without effect") {
        "line 6: <StrengthModel SpecHeat=\"1\">: no effect: nothing heats this material"},
       {"<StrengthModel type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
        "<StrengthModel type='Null' Young='1'",
-       "line 6: <StrengthModel Young=\"1\">: no effect: the equation of state gives the stiffness"},
+       "line 6: <StrengthModel Young=\"1\">: no effect: the equation of state determines the stiffness"},
       {"<EquationOfState type=\"Gruneisen\" C0=\"3940\" S1=\"1.49\" gamma0=\"1.96\"/>",
        "<EquationOfState type='PAlpha' Plock='1' Pcrush='0.1' n='3' rho0s='9e-3' EOSID='3' C0='1' S1='1' "
        "gamma0='1' c1='4'/>",
-       "line 7: <EquationOfState c1=\"4\">: no effect: acts with EOSID=\"1\" only"},
+       "line 7: <EquationOfState c1=\"4\">: no effect: used only with EOSID=\"1\""},
       {"<FailureModel type=\"none\"/>", "<FailureModel type='none' Erosion='1'/>",
        "line 8: <FailureModel Erosion=\"1\">: no effect: type none has no criterion"},
       {"<FailureModel type=\"none\"/>",
@@ -100,15 +105,15 @@ TEST_CASE("settings of materials without effect") {
        "line 8: <RandomFailure enable=\"1\">: no effect: FailDistribution 0 gives every particle the same "
        "thresholds"},
       {"<FailureModel type=\"none\"/>", "<RandomFailure enable='1' FailDistribution='1'/>",
-       "line 8: <RandomFailure enable=\"1\">: no effect: nothing lets this material fail"},
+       "line 8: <RandomFailure enable=\"1\">: no effect: this material cannot fail"},
       {"<FailureModel type=\"none\"/>",
        "<RandomFailure enable='1' FailDistribution='1' WeibMod='3'/><FailureModel type='PlaStrain' "
        "epmax='1'/>",
-       "line 8: <RandomFailure WeibMod=\"3\">: no effect: acts with FailDistribution=\"2\" only"},
+       "line 8: <RandomFailure WeibMod=\"3\">: no effect: used only with FailDistribution=\"2\""},
       {"<FailureModel type=\"none\"/>",
        "<RandomFailure enable='1' FailDistribution='2' GaussStd='3'/><FailureModel type='PlaStrain' "
        "epmax='1'/>",
-       "line 8: <RandomFailure GaussStd=\"3\">: no effect: acts with FailDistribution=\"1\" only"},
+       "line 8: <RandomFailure GaussStd=\"3\">: no effect: used only with FailDistribution=\"1\""},
       {"<FailureModel type=\"none\"/>",
        "<RandomFailure enable='1' FailDistribution='1' DamageRandom='1'/><FailureModel type='PlaStrain' "
        "epmax='1'/>",
@@ -123,41 +128,40 @@ TEST_CASE("settings of materials without effect") {
 TEST_CASE("settings of features that are off") {
   check_table({
       {"<WorkPlane", "<Friction><Coefficient value='0.1' mat1='cu' mat2='cu'/></Friction><WorkPlane",
-       "line 10: <Friction>: no effect: acts in contact only, and Contact is off"},
+       "line 10: <Friction>: no effect: used only by Contact, which is off"},
       {"<WorkPlane", "<WorkPlane name='spare'/><WorkPlane",
-       "line 10: <WorkPlane>: no effect: no body names this work plane"},
+       "line 10: <WorkPlane>: no effect: no body uses this work plane"},
       {"<Component name=\"target\"", "<Component name=\"target\" normal_vector_weight='2'",
-       "line 11: <Component normal_vector_weight=\"2\">: no effect: acts in contact only, and Contact is "
-       "off"},
+       "line 11: <Component normal_vector_weight=\"2\">: no effect: used only by Contact, which is off"},
       {"<InitialVelocity", "<PrescribedVelocity vx='0' vy='0' vz='1'/><InitialVelocity",
-       "line 14: <InitialVelocity vz=\"-190\">: no effect: PrescribedVelocity takes its place from the "
-       "start"},
+       "line 14: <InitialVelocity vz=\"-190\">: no effect: PrescribedVelocity replaces it from the start"},
       {"<InitialVelocity",
        "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'><Coefficient time='0' cx='1' "
        "cy='0' cz='0' crx='1' cry='0' crz='2'/></PrescribedAcceleration><InitialVelocity",
-       "line 14: <Coefficient>: crx, crz have no effect: a factor of arx, ary, arz, which are 0"},
+       "line 14: <Coefficient>: crx, crz have no effect: multiplies arx, ary, arz, which are 0"},
       {"<InitialVelocity",
        "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'><Coefficient time='0' cx='1' "
        "cy='0' cz='0' crx='1' cry='0' crz='0'/><Coefficient time='1' cx='1' cy='0' cz='0' crx='1' cry='0' "
        "crz='0'/></PrescribedAcceleration><InitialVelocity",
-       "line 14: <Coefficient crx=\"1\">: no effect: a factor of arx, ary, arz, which are 0 (and 1 more like "
-       "it)"},
+       "line 14: <Coefficient crx=\"1\">: no effect: multiplies arx, ary, arz, which are 0 (and 1 more such "
+       "cases)"},
       {"<InitialVelocity", "<ConstrainRigidPosition value='0'/><InitialVelocity",
-       "line 14: <ConstrainRigidPosition>: no effect: 0 is the same as no such element: a rigid body is held "
-       "by PrescribedVelocity, and else moves freely"},
+       "line 14: <ConstrainRigidPosition>: no effect: 0 is equivalent to omitting the element: a rigid body "
+       "follows PrescribedVelocity, or without it moves freely"},
       {"<InitialVelocity", "<BodyContrl NoOutput='1'/><InitialVelocity",
        "line 14: <BodyContrl NoOutput=\"1\">: no effect: no PostProcessing writes particles"},
       {"<Grid>", "<Detonation><Item type='point' time='0' x='0' y='0' z='0'/></Detonation><Grid>",
-       "line 17: <Detonation>: no effect: no body is of HighExpBurn with beta 0 or 2"},
+       "line 17: <Detonation>: no effect: no body has a HighExpBurn material with beta 0 or 2"},
       {"</Cell>",
        "<MovingGrid enable='0' consider_failure_particle='1' time_step_factor='0.8' x_min='-1' "
        "z_max='50'/></Cell>",
        "line 23: <MovingGrid>: consider_failure_particle, x_min, z_max have no effect: MovingGrid is off"},
       {"</Cell>", "<MovingGrid enable='0'/></Cell>", ""},
       {"</Grid>", "<DynamicCell enable='1' clear_steps='10'/></Grid>",
-       "line 24: <DynamicCell enable=\"1\">: no effect: only cells with particles are ever stored"},
+       "line 24: <DynamicCell enable=\"1\">: no effect: only cells with particles are stored in any case"},
       {"</Grid>", "<DynamicCell enable='0' clear_steps='5'/></Grid>",
-       "line 24: <DynamicCell clear_steps=\"5\">: no effect: only cells with particles are ever stored"},
+       "line 24: <DynamicCell clear_steps=\"5\">: no effect: only cells with particles are stored in any "
+       "case"},
       {"<Solution>",
        "<Contact enable='0' failure_to_component='1' auto_normal_vector_weight='1' "
        "normal_vector_excluding_failure_particle='1' distance_type='1' min_distance='0.5' "
@@ -174,33 +178,33 @@ TEST_CASE("settings of the run without effect") {
   walls = replaced(walls, "boundary=\"0\"/>\n      <ZMin", "boundary=\"2\"/>\n      <ZMin");
   walls = replaced(walls, "boundary=\"0\"/>\n      <DCell", "boundary=\"2\"/>\n      <DCell");
   CHECK(notes_of(replaced(walls, "<Solution>", "<Solution near_boundary_stop='1'>")) ==
-        std::vector<std::string>{
-            "line 25: <Solution near_boundary_stop=\"1\">: no effect: acts at faces of the "
-            "grid with boundary=\"0\" only, and there is none"});
+        std::vector<std::string>{"line 25: <Solution near_boundary_stop=\"1\">: no effect: applies only to "
+                                 "grid faces with boundary=\"0\", and there are none"});
   check_table({
       {"<Solution>", "<Solution near_boundary_stop='1'>", ""},
       {"<Solution>", "<Solution xpic_order='3' xpic_interval='2'>",
-       "line 25: <Solution>: xpic_order, xpic_interval have no effect: acts with transfer XPIC and FMPM "
-       "only"},
+       "line 25: <Solution>: xpic_order, xpic_interval have no effect: used only with transfer XPIC and "
+       "FMPM"},
       {"<Solution>", "<Solution transfer='FMPM' xpic_order='3' xpic_interval='2'>", ""},
       {"<Solution>", "<Solution transfer='XPIC' xpic_order='1'>", ""},
       {"<EndTime", "<TimeStep specified='1e-4' factor='0.5' const='1'/><EndTime",
-       "line 25: <TimeStep>: factor, const have no effect: the specified step takes its place"},
+       "line 25: <TimeStep>: factor, const have no effect: the specified step is used instead"},
       {"<EndTime", "<TimeStep specified='0' factor='0.5'/><EndTime", ""},
       {"<EndTime", "<OpenMPSetting directionofdecomposition='2'/><EndTime",
-       "line 25: <OpenMPSetting directionofdecomposition=\"2\">: no effect: threads share the bricks of "
-       "cells"},
+       "line 25: <OpenMPSetting directionofdecomposition=\"2\">: no effect: bricks of cells are shared among "
+       "the threads"},
       {"</PeneBlast>", "<Output><PostProcessing time_interval='1' var='pres'/></Output></PeneBlast>",
-       "line 26: <PostProcessing>: no effect: neither h5part nor vtk_data asks for a file"},
+       "line 26: <PostProcessing>: no effect: neither h5part nor vtk_data requests a file"},
       {"</PeneBlast>", "<Output><Restart time_interval='1'/></Output></PeneBlast>",
-       "line 26: <Restart>: no effect: the interval is longer than the run: no restart file on the way"},
+       "line 26: <Restart>: no effect: the interval is longer than the run: no restart file is written at "
+       "intervals"},
       {"</PeneBlast>", "<Output><Summary enable='0'/></Output></PeneBlast>",
        "line 26: <Summary enable=\"0\">: no effect: Job.summary.json is always written"},
       {"</PeneBlast>", "<Output><Summary enable='1'/></Output></PeneBlast>", ""},
       {"</PeneBlast>",
        "<DomainDecomposition dimension0='1' dimension1='2' dimension2='1' method='metis'/></PeneBlast>",
-       "line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 have no effect: method metis "
-       "divides the grid by itself; only their product must be the number of ranks"},
+       "line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 have no effect: method metis does "
+       "not use them, except that their product must be the number of ranks"},
   });
 }
 
@@ -218,9 +222,9 @@ TEST_CASE("rigid bodies by themselves") {
             "line 6: <StrengthModel>: bq1, VarSoundspeed have no effect: a rigid body has neither stress nor "
             "heat"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<LimitVelocity max='1'/><EndTime")) ==
-        std::vector<std::string>{"line 25: <LimitVelocity>: no effect: it does not hold rigid bodies"});
+        std::vector<std::string>{"line 25: <LimitVelocity>: no effect: it does not apply to rigid bodies"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<DynamicRelax damping='1'/><EndTime")) ==
-        std::vector<std::string>{"line 25: <DynamicRelax>: no effect: it does not slow rigid bodies"});
+        std::vector<std::string>{"line 25: <DynamicRelax>: no effect: it does not apply to rigid bodies"});
 }
 
 /// A second body beside the rod, of the rod's component or of one of its own.
@@ -237,7 +241,7 @@ std::string two_bodies(std::string_view text, double x, bool own_component) {
 TEST_CASE("several components without contact") {
   const std::string stick =
       "without contact, bodies of different components that come within a cell of each other stick together: "
-      "they neither slide nor part";
+      "they neither slide nor separate";
   CHECK(notes_of(two_bodies(bar, 6, false)).empty());
   CHECK(notes_of(two_bodies(bar, 6, true)) == std::vector<std::string>{"line 16: <Component>: " + stick});
   CHECK(notes_of(two_bodies(bar, 4.5, true)) ==
@@ -260,11 +264,10 @@ TEST_CASE("rigid bodies beside others are refused") {
   std::vector<core::Diagnostic> notes;
   CHECK_THROWS_WITH(
       parse(mixed, notes),
-      "case.xmp:16: <Body material=\"iron\">: a rigid body acts on others through contact, which this "
-      "version "
-      "does not have: it would pass through 'rod' and push nothing. Give the body a material that deforms, "
-      "with PrescribedVelocity where its motion is known (that pushes), or leave it out; rigid bodies by "
-      "themselves may run");
+      "case.xmp:16: <Body material=\"iron\">: a rigid body acts on others only through contact, which is not "
+      "implemented yet: it would pass through 'rod' without exerting a force. Give the body a deformable "
+      "material, with PrescribedVelocity where its motion is known (such a body does exert forces), or "
+      "remove it; a scene of rigid bodies only is accepted");
   CHECK_NOTHROW(parse(replaced(mixed, "name='second'", "name='second' Deactive='1'"), notes));
   CHECK_NOTHROW(parse(replaced(mixed, "<Solution>", "<Contact enable='1'/><Solution>"), notes, true));
   CHECK_THROWS_WITH(

@@ -212,8 +212,8 @@ TEST_CASE("bytes that are not of the encoding") {
   const std::string text = replaced(replaced(bar, "encoding=\"utf-8\"", "encoding=\"gb2312\""),
                                     "<Name value=\"bar\"/>", "<Name value=\"\xFF\xFF\"/>");
   CHECK(test::faults(text).front() ==
-        "line 3: not well-formed XML: AttValue: ' expected (some bytes are not of the encoding that the "
-        "first line names)");
+        "line 3: not well-formed XML: AttValue: ' expected (some bytes are invalid in the encoding that the "
+        "first line declares)");
   CHECK(test::faults(replaced(bar, "encoding=\"utf-8\"", "encoding=\"klingon\"")).front() ==
         "line 1: not well-formed XML: Unsupported encoding klingon");
 }

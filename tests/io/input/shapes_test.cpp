@@ -69,14 +69,13 @@ TEST_CASE("wrong ogives") {
       complaints_about(ogive("Ogive_Radius='0.9' End_Radius='1'")) ==
       Lines{
           "line 12: <Geometry Ogive_Radius=\"0.9\">: expected at least End_Radius, 1: the arc starts at the "
-          "rim of the base, in the direction of the axis; with less it would end before it reaches the "
-          "axis"});
+          "rim of the base, in the direction of the axis; an arc of smaller radius does not reach the axis"});
   CHECK(complaints_about(ogive("Ogive_Radius='1' End_Radius='1'")) == Lines{"ok"});
   CHECK(
       complaints_about(ogive("Ogive_Radius='1001' End_Radius='1'")) ==
       Lines{
           "line 12: <Geometry Ogive_Radius=\"1001\">: expected at most 1000 times End_Radius, 1; a Cylinder "
-          "with Top_Outer_Radius=\"0\" makes a longer tip"});
+          "with Top_Outer_Radius=\"0\" gives a longer tip"});
   CHECK(complaints_about(ogive("Ogive_Radius='3' End_Radius='0'")) ==
         Lines{"line 12: <Geometry End_Radius=\"0\">: expected a number greater than 0"});
   CHECK(complaints_about(ogive("Ogive_Radius='-3' End_Radius='-1' angle='361'")) ==
@@ -85,13 +84,13 @@ TEST_CASE("wrong ogives") {
               "line 12: <Geometry angle=\"361\">: expected a number in (0, 360]"});
   CHECK(complaints_about(ogive("End_Radius='1'")) ==
         Lines{"line 12: <Geometry>: attribute 'Ogive_Radius' is missing: a number greater than 0 (radius of "
-              "the arc, whose centre lies in the plane of the base; from 1 to 1000 times End_Radius)"});
+              "the arc, whose centre is in the plane of the base; from 1 to 1000 times End_Radius)"});
   CHECK(complaints_about(ogive("Ogive_Radius='0.03' End_Radius='0.01'")) ==
-        Lines{"line 12: <Geometry>: the body has no particles: its shape is smaller than their distance; "
-              "expected a smaller distance"});
-  CHECK(
-      complaints_about(test::replaced(ogive("Ogive_Radius='3' End_Radius='1'"), "z0='5'", "z0='50'"))[0]
-          .starts_with("line 12: <Body name=\"nose\">: the body lies outside the grid: its z from 50 to 52"));
+        Lines{"line 12: <Geometry>: the body has no particles: its shape is smaller than the particle "
+              "spacing; expected a smaller spacing"});
+  CHECK(complaints_about(test::replaced(ogive("Ogive_Radius='3' End_Radius='1'"), "z0='5'", "z0='50'"))[0]
+            .starts_with(
+                "line 12: <Body name=\"nose\">: the body is outside the grid: its z ranges from 50 to 52"));
   CHECK(complaints_about(
             test::replaced(ogive("Ogive_Radius='3' End_Radius='1'"), "dp_bottom='0.2'", "dp_bottom='1e-12'"))
             .size() == 1);
@@ -104,36 +103,31 @@ TEST_CASE("wrong Bool bodies") {
   CHECK(
       complaints_about(cube + "<Body name='rest' material='cu' type='Bool'/>\n") ==
       Lines{"line 13: <Body>: attribute 'BoolType' is missing: 'subtract' (the operation: the particles of A "
-            "that lie outside the shape of B; two bodies without contact between them are their sum, and A "
-            "minus (A minus B) is what both have in common)",
+            "outside the shape of B; the intersection is A minus (A minus B))",
             "line 13: <Body>: attribute 'BoolBodyA' is missing: a text (body from which is subtracted, of "
             "type Point, Block, Sphere, Cylinder, Ogive or Bool, with ForBoolBody 1)",
             "line 13: <Body>: attribute 'BoolBodyB' is missing: a text (body that is subtracted, of the same "
-            "types, with ForBoolBody 1; of a Point body, what lies within half a particle spacing of a "
+            "types, with ForBoolBody 1; for a Point body, the positions within half a particle spacing of a "
             "point)"});
   CHECK(complaints_about(cube + test::replaced(ball, " ForBoolBody='1'", "") +
                          test::replaced(difference("rest", "cube", "ball"), "subtract", "add")) ==
         Lines{"line 14: <Body BoolType=\"add\">: expected 'subtract'",
-              "line 14: <Body BoolBodyB=\"ball\">: body 'ball', on line 13, needs ForBoolBody=\"1\""});
-  CHECK(
-      complaints_about(cube +
-                       test::replaced(difference("rest", "cube", "cube"), "/>", "><Geometry/></Body>")) ==
-      Lines{"line 13: <Geometry>: not with type Bool",
-            "line 13: <Body BoolBodyB=\"cube\">: the body has no particles: none of body 'cube' lies outside "
-            "this one"});
-  CHECK(
-      complaints_about(cube + difference("rest", "rest", "cube", " ForBoolBody='1'")) ==
-      Lines{"line 13: <Body BoolBodyA=\"rest\">: the body is made of itself: rest -> rest; expected operands "
-            "that do without it"});
+              "line 14: <Body BoolBodyB=\"ball\">: body 'ball', on line 13, requires ForBoolBody=\"1\""});
+  CHECK(complaints_about(cube +
+                         test::replaced(difference("rest", "cube", "cube"), "/>", "><Geometry/></Body>")) ==
+        Lines{"line 13: <Geometry>: not available with type Bool",
+              "line 13: <Body BoolBodyB=\"cube\">: the body has no particles: no particle of body 'cube' is "
+              "outside the subtracted body"});
+  CHECK(complaints_about(cube + difference("rest", "rest", "cube", " ForBoolBody='1'")) ==
+        Lines{"line 13: <Body BoolBodyA=\"rest\">: the body is an operand of itself: rest -> rest; expected "
+              "operands that do not contain it"});
   // Two that are made of each other; a third that uses one of them adds no fault.
-  CHECK(
-      complaints_about(cube + difference("a", "cube", "b", " ForBoolBody='1'") +
-                       difference("b", "a", "cube", " ForBoolBody='1'") + difference("c", "cube", "a")) ==
-      Lines{
-          "line 13: <Body BoolBodyB=\"b\">: the body is made of itself: a -> b -> a; expected operands that "
-          "do without it",
-          "line 14: <Body BoolBodyA=\"a\">: the body is made of itself: b -> a -> b; expected operands that "
-          "do without it"});
+  CHECK(complaints_about(cube + difference("a", "cube", "b", " ForBoolBody='1'") +
+                         difference("b", "a", "cube", " ForBoolBody='1'") + difference("c", "cube", "a")) ==
+        Lines{"line 13: <Body BoolBodyB=\"b\">: the body is an operand of itself: a -> b -> a; expected "
+              "operands that do not contain it",
+              "line 14: <Body BoolBodyA=\"a\">: the body is an operand of itself: b -> a -> b; expected "
+              "operands that do not contain it"});
   const std::string bars =
       "<Body name='bars' material='cu' type='LineForBar' ForBoolBody='1'><Geometry sectional_area='1' "
       "element_size='1' nb_lines='2' extend_direction='0' expand_direction='1' length='5' internal='1' "
@@ -151,12 +145,12 @@ TEST_CASE("all that is wrong with several shapes comes at once, each about what 
                                "dp='0.5' x0='0' y0='0' z0='0' Outer_Radius='1' "
                                "Inner_Radius='2' half='1'") +
                        difference("rest", "a", "b") + ogive("Ogive_Radius='1' End_Radius='2'")) ==
-      Lines{"line 12: <Geometry lx=\"-4\">: expected a number greater than 0",
-            "line 13: <Geometry Outer_Radius=\"1\">: expected more than Inner_Radius, 2",
-            "line 13: <Geometry half=\"1\">: needs angle=\"90\", not 360",
-            "line 15: <Geometry Ogive_Radius=\"1\">: expected at least End_Radius, 2: the arc starts at the "
-            "rim of the base, in the direction of the axis; with less it would end before it reaches the "
-            "axis"});
+      Lines{
+          "line 12: <Geometry lx=\"-4\">: expected a number greater than 0",
+          "line 13: <Geometry Outer_Radius=\"1\">: expected more than Inner_Radius, 2",
+          "line 13: <Geometry half=\"1\">: requires angle=\"90\", not 360",
+          "line 15: <Geometry Ogive_Radius=\"1\">: expected at least End_Radius, 2: the arc starts at the "
+          "rim of the base, in the direction of the axis; an arc of smaller radius does not reach the axis"});
 }
 
 TEST_CASE("what an operand states without effect is said") {
@@ -171,7 +165,7 @@ TEST_CASE("what an operand states without effect is said") {
   CHECK(notes[1].line == 12);
   CHECK(notes[1].message == "no effect: an operand of Bool bodies takes no part in the run");
   CHECK(notes[2].line == 15);
-  CHECK(notes[2].message == "no effect: no Bool body names this body, and it is no part of the run");
+  CHECK(notes[2].message == "no effect: no Bool body uses this body, and it takes no part in the run");
 }
 
 TEST_CASE("operands are found in the same time each, however many bodies there are") {

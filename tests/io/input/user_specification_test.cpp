@@ -84,7 +84,8 @@ TEST_CASE("an input is checked against the user's Specification and against the 
 }
 
 TEST_CASE("keywords that the user's Specification adds are let pass and named") {
-  const std::string known = "the Specification has it, this program has not: mpm_run refuses the input";
+  const std::string known =
+      "defined in the Specification, but not in this program: mpm_run rejects the input";
   CHECK(checked(replaced(bar, "<InitialVelocity", "<Magnet strength='3'/><InitialVelocity")) ==
         Lines{"ok", "line 14: <Magnet>: " + known});
   CHECK(checked(replaced(bar, "<InitialVelocity", "<Magnet strength='-3'/><InitialVelocity")) ==

@@ -107,7 +107,7 @@ TEST_CASE("too many bytes") {
   io::parse_document({static_cast<const char*>(unused), size}, error);
   munmap(unused, size);
   REQUIRE(error.has_value());
-  CHECK(error->message.find("put particles into a file of their own") != std::string::npos);
+  CHECK(error->message.find("store particles in a separate file") != std::string::npos);
 }
 
 }  // namespace

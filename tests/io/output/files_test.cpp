@@ -111,7 +111,7 @@ TEST_CASE("A file system that is really full") {
   try {
     for (;; ++written) writer.write(model, solo);
   } catch (const io::FileError& e) {
-    CHECK_THAT(e.what(), Catch::Contains("No space left on device") && Catch::Contains("free some space"));
+    CHECK_THAT(e.what(), Catch::Contains("No space left on device") && Catch::Contains("free disk space"));
   }
   CHECK(written > 10);
   io::H5PartWriter again({disk.path() + "/a.h5part", {}, false, writer.mark(solo)}, model, solo);

@@ -240,7 +240,7 @@ TEST_CASE("A file that cannot go on is put aside, whole") {
     io::H5PartWriter writer = series.go_on();
     CHECK(writer.times() == 0);
     CHECK_THAT(writer.notice(), Catch::Contains("a.h5part' has " + std::to_string(bad.size()) + " bytes") &&
-                                    Catch::Contains("a.h5part.damaged', and a new file begins"));
+                                    Catch::Contains("a.h5part.damaged', and a new file is started"));
     CHECK(io::read_file(series.path + ".damaged") == bad);
     series.write(writer, 0);
     CHECK(writer.times() == 1);

@@ -50,7 +50,7 @@ TEST_CASE("A job is locked until its run ends, and a killed run leaves nothing t
   const pid_t child = another_run(path);
   CHECK_THROWS_WITH(io::JobLock(path, solo),
                     Catch::Contains("a.lock' is held by process " + std::to_string(child) + " on ") &&
-                        Catch::Contains("nothing was started"));
+                        Catch::Contains("the run was not started"));
   { const io::JobLock other(folder / "b.lock", solo); }
   kill(child);
   CHECK(std::filesystem::exists(path));

@@ -83,7 +83,7 @@ TEST_CASE("A table that was cut or emptied, or is gone, is said to be") {
   CHECK_THAT(table.cut(12).notice, Catch::Contains("a.sta' is empty; it had 7 row(s) up to step 12"));
   CHECK_FALSE(table.cut(12).append);
   table.put("# another\n#  step others\n 1 2\n");
-  CHECK_THAT(table.cut(12).notice, Catch::Contains("does not have this run's columns: it is now"));
+  CHECK_THAT(table.cut(12).notice, Catch::Contains("does not have this run's columns: it has been renamed"));
   CHECK(std::filesystem::exists(table.path + ".old"));
   CHECK_THAT(table.cut(12).notice, Catch::Contains("a.sta' is missing; it had 7 row(s) up to step 12"));
 }

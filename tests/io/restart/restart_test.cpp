@@ -132,7 +132,7 @@ TEST_CASE("On another grid the particles are redistributed") {
   CHECK_THROWS_WITH(
       io::read_restart(path, outside, solo),
       Catch::Contains("folder/small.xmp:7: <Grid>") &&
-          Catch::Contains("particles of the restart file lie outside of this grid; make it larger"));
+          Catch::Contains("particles of the restart file are outside this grid; enlarge the grid"));
 }
 
 TEST_CASE("A body may be deactivated; what it held is booked") {
@@ -145,7 +145,7 @@ TEST_CASE("A body may be deactivated; what it held is booked") {
   core::Model copy = prepared_model(scene);
   const io::RestartResult result = io::read_restart(path, copy, solo);
   REQUIRE(result.notices.size() == 1);
-  CHECK_THAT(result.notices[0], Catch::Contains("body 'bar' is deactivated: its 300 particles are left out"));
+  CHECK_THAT(result.notices[0], Catch::Contains("body 'bar' is deactivated: its 300 particles are removed"));
   CHECK(copy.local_particles() == 301);
   CHECK(copy.ledger.body_eroded == std::vector<std::int64_t>{5, 0});
   const core::Totals before = core::compute_totals(model, solo), after = core::compute_totals(copy, solo);
@@ -184,9 +184,8 @@ TEST_CASE("A scene that does not fit is refused with every difference") {
   core::Model copy = prepared_model(scene);
   CHECK_THROWS_WITH(
       io::read_restart(path, copy, solo),
-      Catch::Contains(
-          "<Body name=\"dust\">: the restart file has this body, but the scene does not; add it, with "
-          "Deactive=\"1\" if it is to be left out") &&
+      Catch::Contains("<Body name=\"dust\">: the restart file has this body, but the scene does not; add it, "
+                      "with Deactive=\"1\" to remove its particles") &&
           Catch::Contains(
               "folder/small.xmp:5: <Body name=\"bar\">: the scene needs state that the restart file does not "
               "have: effective_plastic_strain, temperature, failed; keep the material laws") &&
@@ -209,7 +208,7 @@ TEST_CASE("What is only shown may start at zero or go") {
   REQUIRE(result.notices.size() == 6);
   CHECK(result.notices[0] ==
         "body 'bar': yield_stress start at zero, since the restart file does not have them");
-  CHECK(result.notices[1] == "body 'bar': sound_speed of the restart file are not needed any more");
+  CHECK(result.notices[1] == "body 'bar': sound_speed of the restart file are no longer needed");
   for (const core::ParticleBlock& block : core::blocks_of(copy)) {
     const core::ColumnLayout& layout = *block.layout;
     const core::Particle first = block.particle(0);
