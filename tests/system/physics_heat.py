@@ -144,7 +144,7 @@ class Heat(_mpm.Case):
         for program in ("mpm_run", "mpm_check"):
             outcome = _mpm.run([self.folder / "case.xmp"], program=program)
             self.assertEqual(outcome.code, _mpm.INPUT_ERROR)
-            self.assertRegex(outcome.err, r"case\.xmp:\d+: <InitialTemperature>: material `soft` of body `b` carries no "
+            self.assertRegex(outcome.err, r"case\.xmp:\d+: <InitialTemperature>: material `soft` of body `b` has no "
                                           "temperature")
 
     def test_the_same_on_any_ranks(self):

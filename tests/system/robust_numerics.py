@@ -363,7 +363,7 @@ class Prescribed(Case):
             return self.write(_mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 12), "222220"), _mpm.solution(1.0), materials))
 
         outcome = self.run_in("out", [press("iron")], code=_mpm.INPUT_ERROR)
-        self.assertRegex(outcome.complaint, r'case.xmp:\d+: <Body material="iron">: a rigid body acts on others through '
+        self.assertRegex(outcome.complaint, r'case.xmp:\d+: <Body material="iron">: a rigid body acts on others only through '
                          r"contact, .* pass through 'column' without exerting a force\. Give the body a deformable material")
         self.run_in("out", [press("soft")])
         column, ram = strict_summary(self.folder / "out")["bodies"]
