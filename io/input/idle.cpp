@@ -266,6 +266,7 @@ const std::vector<Rule>& rules() {
        [](const Place& at) { return at.scene.solution.time_step.specified > 0; },
        "the specified step takes its place"},
       {"Solution/LimitVelocity", {}, all_rigid, "it does not hold rigid bodies"},
+      {"Solution/Volumetric", {"averaging"}, all_rigid, "rigid bodies keep their volume"},
       {"Solution/DynamicRelax", {}, all_rigid, "it does not slow rigid bodies"},
       {"Solution/OpenMPSetting",
        {"directionofdecomposition"},
