@@ -84,6 +84,10 @@ class Case:
         """Text of the input file."""
         raise NotImplementedError
 
+    def files(self, point):
+        """{name: text} of the files beside it that it names."""
+        return {}
+
     def measure(self, point, folder):
         """{error: value} of the run in `folder`."""
         raise NotImplementedError

@@ -63,6 +63,8 @@ def run(case, point, out, keep=False):
     folder.mkdir(parents=True)
     file = folder / "case.xmp"
     file.write_text(scene_of(case, point))
+    for name, text in case.files(point).items():
+        (folder / name).write_text(text)
     code, said, processor, wall = execute(file, folder)
     method = point.method
     row = {"study": point.study, "shape": method.shape, "transfer": method.transfer, "scheme": method.scheme,

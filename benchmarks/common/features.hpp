@@ -57,6 +57,13 @@ inline std::vector<Feature> features() {
        {"1, as the cell", "2, exponential", "3, deformation gradient", "4, accumulated strain"})
     add("volume", fmt::format("update {}", how), "update 0, rate", bar,
         {.solution = fmt::format(R"(<Volume update_type="{}"/>)", how[0])});
+  add("volume", "averaged over cells", "none", bar, {.solution = R"(<Volumetric averaging="cell"/>)"});
+  for (const char* shape : {"SGMP", "QuadraticBSpline"}) {
+    const std::string with = fmt::format(R"(shape="{}")", shape);
+    add("volume", fmt::format("averaged over sites, {}", shape), fmt::format("none, {}", shape),
+        {.grid_attributes = with},
+        {.solution = R"(<Volumetric averaging="cell"/>)", .grid_attributes = with});
+  }
   add("volume", "bounds, never reached", "none", bar,
       {.solution = R"(<Volume update_type="0" min="1e-6" max="1e6"/>)"});
   add("volume", "erosion, never reached", "none", bar,
@@ -125,6 +132,7 @@ inline std::vector<Feature> spelled_out() {
       off("Gravity 0", {.solution = R"(<Gravity ax="0" ay="0" az="0"/>)"}),
       off("DynamicRelax 0", {.solution = R"(<DynamicRelax damping="0"/>)"}),
       off("Volume update_type 0, erode 0", {.solution = R"(<Volume update_type="0" erode="0"/>)"}),
+      off("Volumetric averaging none", {.solution = R"(<Volumetric averaging="none"/>)"}),
       off("Warn", {.solution = R"(<Warn type="ie|vol|grid" level="0"/>)"}),
       off("TimeStep at its defaults",
           {.time_step = R"(<TimeStep factor="0.4" const="0" specified="0" NotConsiderVisForCp="0"/>)"}),

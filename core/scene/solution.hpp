@@ -45,6 +45,9 @@ struct VolumeInput {
   std::optional<double> max;    ///< upper bound of volume over initial volume
 };
 
+/// Over which particles the volume change is averaged, against volumetric locking.
+enum class VolumeAveraging { none, cell };
+
 /// Conditions that are checked for, and the reaction to them.
 struct WarnInput {
   enum class Level {
@@ -102,6 +105,7 @@ struct SolutionInput {
   TimeStepInput time_step;
   std::optional<double> limit_velocity;  ///< largest particle speed
   VolumeInput volume;
+  VolumeAveraging averaging = VolumeAveraging::none;
   WarnInput warn;
   std::optional<double> energy_fraction;  ///< stop when the relative error of the total energy exceeds this
   double damping = 0;                     ///< dynamic relaxation: force per mass and velocity, 1/time

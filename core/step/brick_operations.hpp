@@ -23,12 +23,16 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
   typename S::template Sums<what> sums(contributions);
   typename S::template Scatter<what> cell;
   cell.clear();
+  SiteAverages* const pressures = maps_force(what) && averages_volume_change()
+                                      ? &scratch_[static_cast<std::size_t>(omp_get_thread_num())].averages
+                                      : nullptr;
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
     const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
     const BlockPrefetch prefetch(model_, s, c);
     const ColumnLayout& layout = body.pool->layout();
     const bool loaded = maps_force(what) && loads_.act(grid, s, tile.body);
+    if (pressures != nullptr) sum_pressures(frame, tile, *pressures);
     // Locates the next block before this one is processed, so that its stores complete before they are read.
     Place places[2];
     if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
@@ -42,7 +46,7 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
         places[(b + 1) % 2].find(frame, layout, body.pool->block(tile.blocks[b + 1]));
       const Place& place = places[b % 2];
       before(tile.body, place, block, used);
-      add_block<S, T, what>(frame, place, layout, block, used, cell, sums.records);
+      add_block<S, T, what>(frame, place, layout, block, used, cell, sums.records, pressures);
       if constexpr (maps_force(what)) {
         if (loaded) add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
       }
@@ -51,6 +55,19 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
   cell.flush(frame, sums.records);
   sums.finish(frame);
   if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, contributions);
+}
+
+/// Sums a tile's pressures in its sites.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::noinline]] void PassesWith<S, T>::sum_pressures(const BrickFrame& frame, const ParticleTile& tile,
+                                                       SiteAverages& to) const {
+  BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+  to.clear();
+  for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+    const double* block = pool.block(tile.blocks[b]);
+    const Place place(frame, pool.layout(), block);
+    to.add_pressures(sites_of(place), pool.layout(), block, tile.used_lanes(b));
+  }
 }
 
 /// Adds to the inner nodes what has been mapped beyond the grid's constrained faces.
@@ -238,6 +255,24 @@ template <ShapePolicy S, TransferPolicy T>
   store_sound_speed(batch);
 }
 
+/// Sums a tile's volume changes in its sites. The gradients are formed once more with the stress:
+/// that costs less than to store them.
+template <ShapePolicy S, TransferPolicy T>
+template <bool moves>
+[[gnu::noinline]] void PassesWith<S, T>::sum_volume_changes(const BrickFrame& frame, const ParticleTile& tile,
+                                                            Scratch& at) const {
+  BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+  at.averages.clear();
+  for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+    const double* block = pool.block(tile.blocks[b]);
+    const Place place(frame, pool.layout(), block);
+    S::gradient(frame, place, at.field, at.batch.gradient, 0);
+    if constexpr (!moves) refer_gradient_to_old_positions(at.batch, 0, dt, false);
+    at.averages.add_volume_changes(sites_of(place), block + pool.layout().offset(Column::volume),
+                                   at.batch.gradient, 0, tile.used_lanes(b));
+  }
+}
+
 /// Velocity gradient, with `moves` the motion, then the material update, batch by batch. prefetch_nodes() is
 /// called once per block.
 template <ShapePolicy S, TransferPolicy T>
@@ -247,6 +282,10 @@ template <bool moves, class F>
   const BrickFrame frame = this->frame(s);
   Batch& batch = at.batch;
   double fastest = 0;
+  const bool averages = averages_volume_change();
+  const auto average = [&](const ParticleTile& tile) {
+    if (averages) sum_volume_changes<moves>(frame, tile, at);
+  };
   const auto kinematics = [&](int body, int b, int used) {
     prefetch_nodes();
     volumetric_strain(frame, at.places[b], b, at);
@@ -262,6 +301,7 @@ template <bool moves, class F>
       S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
       refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
     }
+    if (averages) at.averages.average_gradients(sites_of(at.places[b]), batch.gradient, block_lanes * b);
   };
   const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
     update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
@@ -277,7 +317,7 @@ template <bool moves, class F>
       }
     }
   };
-  for_each_batch(s, frame, at, kinematics, stress);
+  for_each_batch(s, frame, at, average, kinematics, stress);
   at.add_work_of_brick();
   if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = wave_weight_ * fastest;
 }

@@ -2,6 +2,7 @@
 // version: tests/support/reference_stepper.
 #pragma once
 
+#include "core/step/site_averages.hpp"
 #include "core/transfer/transfer.hpp"
 
 namespace mpm::core {
@@ -20,15 +21,20 @@ namespace mpm::core {
   }
 }
 
-/// Adds the first `used` particles of a block to a brick's S::Sums.
+/// Adds the first `used` particles of a block to a brick's S::Sums; `pressures`: the mean pressures with
+/// which they act, null where each acts with its own.
 template <ShapePolicy S, TransferPolicy T, NodeFields what>
 [[gnu::always_inline]] inline void add_block(const BrickFrame& frame, const typename S::Place& place,
                                              const ColumnLayout& layout, const double* block, int used,
-                                             typename S::template Scatter<what>& running, double* records) {
+                                             typename S::template Scatter<what>& running, double* records,
+                                             const SiteAverages* pressures = nullptr) {
   typename S::template Scatter<what> sums = running;  // a local copy stays in registers
   typename T::Rows rows;
   if constexpr (maps_momentum(what)) T::template momentum<S>(frame, place, layout, block, rows);
-  if constexpr (maps_force(what)) stress_rows(layout, block, rows);
+  if constexpr (maps_force(what)) {
+    stress_rows(layout, block, rows);
+    if (pressures != nullptr) pressures->average_pressures(sites_of(place), layout, block, rows);
+  }
   for (int i = 0; i < used; ++i) sums.add(frame, place, i, rows, records);
   running = sums;
 }

@@ -17,6 +17,7 @@
 #include "core/step/particles_to_grid.hpp"
 #include "core/step/passes.hpp"
 #include "core/step/prefetch.hpp"
+#include "core/step/site_averages.hpp"
 #include "core/step/speeds.hpp"
 #include "core/threads.hpp"
 #include "core/transfer/corrected.hpp"
@@ -63,6 +64,7 @@ class PassesWith final : public Passes {
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
     typename S::Field field;
+    SiteAverages averages;  ///< of the current tile; empty where volume changes are not averaged
     [[no_unique_address]] std::conditional_t<corrects, typename S::Field, Nothing> corrected;
   };
 
@@ -75,8 +77,8 @@ class PassesWith final : public Passes {
   void for_bricks(int first, int last, F f);
   template <class F>
   void for_each_block(Slot s, int columns, F f);
-  template <class F, class G>
-  void for_each_batch(Slot s, const BrickFrame& frame, Scratch& at, F block_work, G batch_work);
+  template <class E, class F, class G>
+  void for_each_batch(Slot s, const BrickFrame& frame, Scratch& at, E tile_work, F block_work, G batch_work);
   template <NodeFields what, class F>
   void map_bricks(F work);
 
@@ -130,12 +132,16 @@ class PassesWith final : public Passes {
   void move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at);
   void update_domains(int body, const BrickFrame& frame, const ColumnLayout& layout, int b, double* block,
                       int used, Scratch& at);
+  void sum_pressures(const BrickFrame& frame, const ParticleTile& tile, SiteAverages& to) const;
+  template <bool moves>
+  void sum_volume_changes(const BrickFrame& frame, const ParticleTile& tile, Scratch& at) const;
   void volumetric_strain(const BrickFrame& frame, const Place& place, int b, Scratch& at);
   void update_material(const Body& body, Scratch& at);
 
   bool updates_volume_by_cell() const {
     return model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
   }
+  bool averages_volume_change() const { return model_.scene->solution.averaging == VolumeAveraging::cell; }
   BoundaryFaces faces(Slot s) const { return {*model_.grid, s}; }
   BrickFrame frame(Slot s) const { return {model_.grid->geometry(), model_.grid->brick(s).coord}; }
   /// Prefetches the contributions to the next brick's nodes while this brick's blocks are processed.
@@ -210,6 +216,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
   for (Scratch& w : scratch_) {
     w.nodes.resize(static_cast<std::size_t>(node_doubles * model.grid->shape().nodes()));
     w.sums.resize(w.nodes.size());
+    if (averages_volume_change()) w.averages.resize(model.grid->shape().nodes());
   }
 }
 
@@ -248,13 +255,14 @@ template <class F>
   }
 }
 
-/// Processes the blocks of a brick in batches: for each block block_work(body, block of the batch, lanes in
-/// use), then, with the next blocks prefetched, batch_work(tile index, first block index, tile). `at` holds
-/// the batch and its particles' places.
+/// Processes the blocks of a brick in batches: for each tile tile_work(tile); for each block of a batch
+/// block_work(body, block of the batch, lanes in use), then, with the next blocks prefetched, batch_work(tile
+/// index, first block index, tile). `at` holds the batch and its particles' places.
 template <ShapePolicy S, TransferPolicy T>
-template <class F, class G>
+template <class E, class F, class G>
 [[gnu::always_inline]] inline void PassesWith<S, T>::for_each_batch(Slot s, const BrickFrame& frame,
-                                                                    Scratch& at, F block_work, G batch_work) {
+                                                                    Scratch& at, E tile_work, F block_work,
+                                                                    G batch_work) {
   const Brick& brick = model_.grid->brick(s);
   Batch& batch = at.batch;
   batch.time = model_.clock.time + dt;
@@ -265,6 +273,7 @@ template <class F, class G>
     const BlockPrefetch prefetch(model_, s, c);
     BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
     batch.layout = &pool.layout();
+    tile_work(tile);
     const int lines_before_update = std::max(pool.layout().columns() - parts_of_update, 0);
     for (std::size_t first = 0; first < tile.blocks.size(); first += batch_blocks) {
       batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, tile.blocks.size() - first));

@@ -67,6 +67,16 @@ core::VolumeInput build_volume(const Node& node, const BuildContext& context) {
   return volume;
 }
 
+core::VolumeAveraging build_averaging(const Node& node, core::VolumeUpdate update,
+                                      const BuildContext& context) {
+  if (node.word("averaging") == "none") return core::VolumeAveraging::none;
+  if (update == core::VolumeUpdate::cell)
+    node.report(context.diagnostics, "averaging",
+                "does not go with <Volume update_type=\"1\">, which takes the volume change from the cell's "
+                "nodes: expected none, or another update_type");
+  return core::VolumeAveraging::cell;
+}
+
 core::WarnInput build_warn(const Node& node) {
   const std::vector<std::string> types = node.words("type");
   const auto watched = [&](std::string_view word) { return std::ranges::find(types, word) != types.end(); };
@@ -155,6 +165,8 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
   if (const auto step = node->child("TimeStep")) solution.time_step = build_time_step(*step);
   solution.limit_velocity = value_of("LimitVelocity", "max");
   if (const auto volume = node->child("Volume")) solution.volume = build_volume(*volume, context);
+  if (const auto volumetric = node->child("Volumetric"))
+    solution.averaging = build_averaging(*volumetric, solution.volume.update, context);
   if (const auto warn = node->child("Warn")) solution.warn = build_warn(*warn);
   solution.energy_fraction = value_of("EnergyFraction", "value");
   solution.damping = value_of("DynamicRelax", "damping").value_or(0);

@@ -91,6 +91,10 @@ void echo_watches(XmlWriter& w, const core::SolutionInput& solution) {
     w.maybe("min", solution.volume.min);
     w.maybe("max", solution.volume.max);
   }
+  {
+    const auto volumetric = w.element("Volumetric");
+    w.text("averaging", solution.averaging == core::VolumeAveraging::cell ? "cell" : "none");
+  }
   const core::WarnInput& warn = solution.warn;
   std::string types = warn.negative_internal_energy ? "|ie" : "";
   if (warn.negative_volume) types += "|vol";

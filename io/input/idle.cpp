@@ -272,6 +272,7 @@ const std::vector<Rule>& rules() {
        [](const Place& at) { return at.scene.solution.time_step.specified > 0; },
        "the specified step is used instead"},
       {"Solution/LimitVelocity", {}, all_rigid, "it does not apply to rigid bodies"},
+      {"Solution/Volumetric", {"averaging"}, all_rigid, "rigid bodies keep their volume"},
       {"Solution/DynamicRelax", {}, all_rigid, "it does not apply to rigid bodies"},
       {"Solution/OpenMPSetting",
        {"directionofdecomposition"},

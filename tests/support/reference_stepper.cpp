@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -179,14 +180,16 @@ void ReferenceStepper::for_active_nodes(Operation&& operation) {
 template <class Support>
 void ReferenceStepper::particles_to_grid() {
   std::fill(grid_.begin(), grid_.end(), Node{});
-  for (const auto& particle : case_.particles) {
+  const std::vector<double> pressures = acting_pressures();
+  for (std::size_t p = 0; p < case_.particles.size(); ++p) {
+    const ReferenceParticle& particle = case_.particles[p];
     const Support at = support<Support>(particle);
     for (std::size_t n = 0; n < at.count; ++n) {
       Node& node = grid_[at.node[n]];
       node.m += particle.m * at.mass(n);
       for (std::size_t a = 0; a < 3; ++a) node.p[a] += particle.m * particle.v[a] * at.value(n, a);
     }
-    if (case_.scheme != ReferenceScheme::usf) add_force(particle, at);
+    if (case_.scheme != ReferenceScheme::usf) add_force(particle, pressures[p], at);
   }
   const double cutoff = case_.mass_cutoff * node_mass_unit_;
   for (Node& node : grid_) node.active = node.m > cutoff;
@@ -194,9 +197,9 @@ void ReferenceStepper::particles_to_grid() {
 
 /// 2-38 to 2-40.
 template <class Support>
-void ReferenceStepper::add_force(const ReferenceParticle& particle, const Support& at) {
+void ReferenceStepper::add_force(const ReferenceParticle& particle, double pressure, const Support& at) {
   Matrix sigma = particle.s;
-  for (std::size_t a = 0; a < 3; ++a) sigma[a][a] -= particle.p + particle.q;
+  for (std::size_t a = 0; a < 3; ++a) sigma[a][a] -= pressure;
   for (std::size_t n = 0; n < at.count; ++n) {
     Node& node = grid_[at.node[n]];
     for (std::size_t a = 0; a < 3; ++a) {
@@ -384,7 +387,8 @@ Matrix relative_to_old_positions(const Matrix& L, double dt) {
 
 template <class Support>
 void ReferenceStepper::update_stresses(double dt) {
-  for (auto& particle : case_.particles) {
+  std::vector<Matrix> gradients;
+  for (const auto& particle : case_.particles) {
     const Support at = support<Support>(particle);
     Matrix L{};
     for (std::size_t n = 0; n < at.count; ++n) {
@@ -394,11 +398,56 @@ void ReferenceStepper::update_stresses(double dt) {
         for (std::size_t b = 0; b < 3; ++b) L[a][b] += node.w[a] * at.slope(n, a)[b];
     }
     if (case_.scheme == ReferenceScheme::usf) L = relative_to_old_positions(L, dt);
+    gradients.push_back(L);
+  }
+  const auto trace = [](const Matrix& L) { return L[0][0] + L[1][1] + L[2][2]; };
+  std::vector<double> changes;
+  for (const Matrix& L : gradients) changes.push_back(trace(L));
+  if (case_.average) average(changes);
+  for (std::size_t p = 0; p < case_.particles.size(); ++p) {
+    ReferenceParticle& particle = case_.particles[p];
+    Matrix L = gradients[p];
+    for (std::size_t a = 0; a < 3; ++a) L[a][a] += (changes[p] - trace(gradients[p])) / 3;
     update_stress(case_.material, length_, dt, L, particle);
     if (!(particle.V > 0)) throw std::runtime_error("a particle's volume is " + std::to_string(particle.V));
-    if (case_.scheme != ReferenceScheme::usf) deform_domain(case_.shape, dt, L, particle);
-    if (case_.scheme == ReferenceScheme::usf) add_force(particle, at);
+    if (case_.scheme != ReferenceScheme::usf) deform_domain(case_.shape, dt, gradients[p], particle);
   }
+  if (case_.scheme != ReferenceScheme::usf) return;
+  const std::vector<double> pressures = acting_pressures();
+  for (std::size_t p = 0; p < case_.particles.size(); ++p)
+    add_force(case_.particles[p], pressures[p], support<Support>(case_.particles[p]));
+}
+
+/// A site is a cell, or for shapes of three nodes per axis what is nearer to a node than to the others.
+void ReferenceStepper::average(std::vector<double>& values) const {
+  using enum ReferenceShape;
+  const bool of_nodes = case_.shape == sgmp || case_.shape == quadratic_bspline || case_.shape == ugimp ||
+                        case_.shape == cpgimp;
+  const auto site = [&](const ReferenceParticle& particle) {
+    std::array<double, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double scaled = (particle.x[a] - case_.origin[a]) * inverse_cell_[a];
+      at[a] = of_nodes ? std::floor(scaled + 0.5) : std::min(std::floor(scaled), case_.cells[a] - 1.0);
+    }
+    return at;
+  };
+  std::map<std::array<double, 3>, std::array<double, 2>> sums;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    auto& [volume, sum] = sums[site(case_.particles[p])];
+    volume += case_.particles[p].V;
+    sum += case_.particles[p].V * values[p];
+  }
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const auto& [volume, sum] = sums[site(case_.particles[p])];
+    values[p] = sum / volume;
+  }
+}
+
+std::vector<double> ReferenceStepper::acting_pressures() const {
+  std::vector<double> pressures;
+  for (const auto& particle : case_.particles) pressures.push_back(particle.p + particle.q);
+  if (case_.average) average(pressures);
+  return pressures;
 }
 
 ReferenceEnergy ReferenceStepper::energy() const {

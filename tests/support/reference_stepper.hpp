@@ -44,7 +44,8 @@ struct ReferenceCase {
   int interval = 1;  ///< steps; FLIP in between
   /// The critical step, in units of a wave's crossing time of a cell.
   double wave_limit = 1;
-  double dt_factor = 0.5;                                       ///< of the critical step
+  bool average = false;    ///< volume changes and pressures over the particles of a site
+  double dt_factor = 0.5;  ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
   /// USL only: for the strain rate a node's internal force is divided by at least this times rho_0 * cell
   /// volume. On the Taylor bar 0.02 diverges and 0.05 is marginal; towards 1 it becomes an unstable Euler.
@@ -122,7 +123,9 @@ class ReferenceStepper {
   template <class Support>
   void particles_to_grid();
   template <class Support>
-  void add_force(const ReferenceParticle& particle, const Support& at);
+  void add_force(const ReferenceParticle& particle, double pressure, const Support& at);
+  /// p + q of every particle, or its mean over the particle's site.
+  std::vector<double> acting_pressures() const;
   void initial_velocities();
   void integrate_momentum(double dt);
   /// Whether this step is one of XPIC or FMPM.
@@ -141,6 +144,8 @@ class ReferenceStepper {
   void final_velocities();
   template <class Support>
   void update_stresses(double dt);
+  /// Replaces values of the particles by their means over sites, weighted by volume.
+  void average(std::vector<double>& values) const;
 
   ReferenceCase case_;
   Index nodes_{};          ///< along each axis

@@ -208,6 +208,7 @@ struct SmallRun {
     scene->solution.transfer = transfer_of(c.transfer);
     scene->solution.xpic_order = c.order;
     scene->solution.xpic_interval = c.interval;
+    if (c.average) scene->solution.averaging = core::VolumeAveraging::cell;
     scene->solution.end_time = 1e30;
     scene->solution.time_step.factor = c.dt_factor;
     scene->solution.gravity = {c.gravity[0], c.gravity[1], c.gravity[2]};

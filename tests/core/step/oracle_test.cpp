@@ -171,6 +171,23 @@ TEST_CASE("XPIC and FMPM: a block flies, hits walls and leaves them as the naive
   }
 }
 
+TEST_CASE("Volume changes are averaged as the naive stepper averages them") {
+  for (const ReferenceShape shape : reference_shapes) {
+    for (const ReferenceScheme scheme : schemes) {
+      INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
+      ReferenceCase c = shrinking_block(shape, scheme, 2);
+      c.average = true;
+      for (ReferenceParticle& p : c.particles) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
+      run_both(c, 30, 1e-9);
+      ReferenceCase bar = taylor_bar(1.27);
+      bar.shape = shape;
+      bar.scheme = scheme;
+      bar.average = true;
+      run_both(bar, 20, 1e-9);
+    }
+  }
+}
+
 TEST_CASE("A plate one cell thick between two walls moves as the naive stepper moves it") {
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {

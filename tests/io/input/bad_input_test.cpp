@@ -444,6 +444,13 @@ TEST_CASE("solution and output") {
       {"<EndTime",
        "<Volume min=\"2\" max=\"1\"/><EndTime",
        {"line 25: <Volume max=\"1\">: expected more than min, 2"}},
+      {"<EndTime",
+       "<Volumetric averaging=\"brick\"/><EndTime",
+       {"line 25: <Volumetric averaging=\"brick\">: expected one of none, cell"}},
+      {"<EndTime",
+       "<Volumetric averaging=\"cell\"/><Volume update_type=\"1\"/><EndTime",
+       {"line 25: <Volumetric averaging=\"cell\">: does not go with <Volume update_type=\"1\">, which takes "
+        "the volume change from the cell's nodes: expected none, or another update_type"}},
       {"</PeneBlast>",
        "<Output><TimeHistory var='pres'/></Output></PeneBlast>",
        {"line 26: <TimeHistory>: expected at least one <Particle> or <Point>"}},

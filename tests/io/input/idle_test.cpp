@@ -225,6 +225,9 @@ TEST_CASE("rigid bodies by themselves") {
         std::vector<std::string>{"line 25: <LimitVelocity>: no effect: it does not apply to rigid bodies"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<DynamicRelax damping='1'/><EndTime")) ==
         std::vector<std::string>{"line 25: <DynamicRelax>: no effect: it does not apply to rigid bodies"});
+  CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<Volumetric averaging='cell'/><EndTime")) ==
+        std::vector<std::string>{
+            "line 25: <Volumetric averaging=\"cell\">: no effect: rigid bodies keep their volume"});
 }
 
 /// A second body beside the rod, of the rod's component or of one of its own.
