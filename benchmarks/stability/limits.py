@@ -26,7 +26,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(os.environ.get("MPM_BIN", ROOT / "build/release/bin"))
-SHAPES = ["linear", "SGMP", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline"]
+SHAPES = ["linear", "SGMP", "DDMP", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline"]
 SCHEMES = ["MUSL", "USF", "USL"]
 GROWTH = 0.05
 

@@ -74,6 +74,7 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   ghosts_ = std::move(ghosts);
   slot_ = std::move(slot);
   extra_begin_.clear();
+  cells_around_.clear();
   allocate_nodes(bricks_.size() + ghosts_.size());
   ++revision_;
 }

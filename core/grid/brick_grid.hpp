@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/grid/brick.hpp"
+#include "core/grid/cells_around.hpp"
 #include "core/grid/node_fields.hpp"
 #include "core/pages.hpp"
 #include "core/particles/block_pool.hpp"
@@ -99,6 +100,15 @@ class BrickGrid {
                                       extra_begin_[static_cast<std::size_t>(s)];
   }
 
+  /// Of an owned brick, in this step; null unless the shape functions ask for them
+  /// (core/step/cells_in_use.hpp).
+  const CellsAround* cells_in_use(Slot s) const {
+    return cells_around_.empty() ? nullptr : &cells_around_[static_cast<std::size_t>(s)];
+  }
+  CellsAround& cells_around(Slot s) { return cells_around_[static_cast<std::size_t>(s)]; }
+  /// None in use, for every owned brick.
+  void reset_cells_around() { cells_around_.assign(bricks_.size(), {}); }
+
   /// Incremented whenever the set of bricks changes; communication plans are then rebuilt.
   std::uint64_t revision() const { return revision_; }
 
@@ -124,6 +134,7 @@ class BrickGrid {
   std::array<AlignedDoubles, node_arrays.size()> nodes_;
   std::vector<Slot>
       extra_begin_;  ///< by slot: index of its first extra block; empty while all have one field
+  std::vector<CellsAround> cells_around_;  ///< by owned slot, or empty
   int boundary_ = 0;
   std::uint64_t revision_ = 0;
 };

@@ -48,6 +48,8 @@ inline constexpr NodeFields mass{NodeArray::first, 3, 1};
 inline constexpr NodeFields force{NodeArray::first, 4, 3};
 inline constexpr NodeFields second_momentum{NodeArray::second, 0, 3};
 inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
+// Cells in use (core/step/cells_in_use.hpp), where no other field is.
+inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
 // Momentum of an order of XPIC or FMPM.
 inline constexpr NodeFields correction{NodeArray::third, 0, 3};
 // Heat conduction (conduction.hpp).
@@ -67,6 +69,7 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"force", node_field::force},
     NamedNodeFields{"second momentum", node_field::second_momentum},
     NamedNodeFields{"second mass", node_field::second_mass},
+    NamedNodeFields{"cells in use", node_field::cells_in_use},
     NamedNodeFields{"correction", node_field::correction},
     NamedNodeFields{"heat capacity", node_field::heat_capacity},
     NamedNodeFields{"heat", node_field::heat},
@@ -82,6 +85,7 @@ inline constexpr NodeFields force = node_field::force;  ///< momentum and mass o
 inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_field::second_mass;
 inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
 inline constexpr NodeFields correction = node_field::correction;
+inline constexpr NodeFields cells_in_use = node_field::cells_in_use;
 inline constexpr NodeFields heat = node_field::heat_capacity | node_field::heat;
 inline constexpr NodeFields heat_flow = node_field::heat_flow | node_field::unresolved_heat;
 }  // namespace mapped

@@ -20,6 +20,9 @@ enum class Boundary {
   rigid_wall = 4,  ///< no penetration, free to leave
 };
 
+/// Whether the face holds nodes; the material does not go on beyond it.
+constexpr bool is_constrained(Boundary b) { return b != Boundary::free && b != Boundary::nonreflecting; }
+
 enum class ShapeFunction {
   linear,
   uniform_gimp,

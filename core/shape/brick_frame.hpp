@@ -1,7 +1,7 @@
 // The coordinates of one brick, in which its particles are located.
 #pragma once
 
-#include "core/grid/brick.hpp"
+#include "core/grid/brick_grid.hpp"
 
 namespace mpm::core {
 
@@ -11,7 +11,12 @@ struct BrickFrame {
   Vec3<double> last_site;   ///< highest site that a particle can be in, relative to the brick's first
   /// Range of the brick inside the grid, in cells from first_site.
   Vec3<double> lowest, beyond;
+  const CellsAround* cells = nullptr;  ///< in use, for shape functions that ask for them
 
+  /// Of an owned brick.
+  BrickFrame(const BrickGrid& grid, Slot s) : BrickFrame(grid.geometry(), grid.brick(s).coord) {
+    cells = grid.cells_in_use(s);
+  }
   BrickFrame(const GridGeometry& g, BrickCoord b) : origin(g.origin), inverse_cell(g.inverse_cell) {
     const std::int32_t coord[3] = {b.x, b.y, b.z};
     for (int a = 0; a < 3; ++a) {

@@ -8,6 +8,7 @@
 #include "core/scene/grid.hpp"
 #include "core/shape/bspline.hpp"
 #include "core/shape/cpdi.hpp"
+#include "core/shape/ddmp.hpp"
 #include "core/shape/gimp.hpp"
 #include "core/shape/linear.hpp"
 #include "core/shape/sgmp.hpp"
@@ -15,7 +16,7 @@
 namespace mpm::core {
 
 using Shapes =
-    std::tuple<Linear, Sgmp, UniformGimp, ContiguousGimp, Cpdi, Cpdi2, QuadraticBSpline, CubicBSpline>;
+    std::tuple<Linear, Sgmp, Ddmp, UniformGimp, ContiguousGimp, Cpdi, Cpdi2, QuadraticBSpline, CubicBSpline>;
 
 /// f(std::type_identity<S>()) with the policy of `shape`.
 template <class F>
@@ -23,14 +24,15 @@ auto with_shape(ShapeFunction shape, F f) {
   switch (shape) {
     case ShapeFunction::linear: return f(std::type_identity<Linear>());
     case ShapeFunction::sgmp: return f(std::type_identity<Sgmp>());
+    case ShapeFunction::ddmp: return f(std::type_identity<Ddmp>());
     case ShapeFunction::uniform_gimp: return f(std::type_identity<UniformGimp>());
     case ShapeFunction::contiguous_particle_gimp: return f(std::type_identity<ContiguousGimp>());
     case ShapeFunction::cpdi: return f(std::type_identity<Cpdi>());
     case ShapeFunction::cpdi2: return f(std::type_identity<Cpdi2>());
     case ShapeFunction::quadratic_bspline: return f(std::type_identity<QuadraticBSpline>());
     case ShapeFunction::cubic_bspline: return f(std::type_identity<CubicBSpline>());
-    default: throw std::logic_error("a shape function without a policy");
   }
+  throw std::logic_error("a shape function without a policy");
 }
 
 }  // namespace mpm::core

@@ -20,6 +20,9 @@
 //   nodes_per_axis, lowest_node   the nodes of a particle along an axis
 //   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: infrequent
 //   terms
+//   for_each_weight     optional: the same without the gradient, where that costs much
+//   momentum_block      optional: the nodes that momentum and mass reach, where forces reach more
+//   asks_for_cells      optional: whether BrickFrame::cells must be there
 //
 // Kernels identify a node by its number in the brick's node block and read records of node_doubles.
 #pragma once
@@ -47,16 +50,39 @@ concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layo
   requires std::constructible_from<typename S::Interpolation, const typename S::Place&, const double*>;
 };
 
+/// A node of a particle's support, relative to the lowest one.
+struct NodeOffset {
+  int along[3];
+};
+
+/// Whether the shape functions need to know which cells hold particles.
+template <class S>
+inline constexpr bool asks_for_cells = requires {
+  requires S::asks_for_cells;
+};
+
+/// The nodes that the momentum and mass of a brick's particles reach.
+template <class S>
+inline constexpr NodeBlockShape momentum_block = [] {
+  if constexpr (requires { S::momentum_block; }) return S::momentum_block;
+  return S::node_block;
+}();
+
+/// f(node, S_i) for one particle.
+template <ShapePolicy S, class F>
+void for_each_weight(const typename S::Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
+  if constexpr (requires { S::for_each_weight(place, lane, f); })
+    S::for_each_weight(place, lane, f);
+  else
+    S::for_each_node(place, lane, inverse_cell,
+                     [&](int node, const NodeOffset&, double shape, const Vec3<double>&) { f(node, shape); });
+}
+
 /// Values that the particles of a block map to the grid, by lane.
 struct MappedRows {
   alignas(64) double mass[block_lanes];
   alignas(64) double momentum[3][block_lanes];
   alignas(64) double stress[6][block_lanes];  ///< V sigma: xx, yy, zz, xy, yz, xz
-};
-
-/// A node of a particle's support, relative to the lowest one.
-struct NodeOffset {
-  int along[3];
 };
 
 }  // namespace mpm::core

@@ -97,7 +97,8 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
   sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
   // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
-  if (scheme_ == Scheme::usf) sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
+  if (scheme_ == Scheme::usf)
+    sum_contributions<NodeArray::second>(grid, momentum_shared_, s, at.nodes.data());
   update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
 }
 

@@ -68,7 +68,7 @@ template <class F>
 void ConductionWith<S>::for_each_block(Slot s, F f) const {
   const BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
-  const BrickFrame frame(grid.geometry(), brick.coord);
+  const BrickFrame frame(grid, s);
   for (const ParticleBlock& block : blocks_of(model_, brick)) {
     const Body& body = model_.bodies[static_cast<std::size_t>(block.body)];
     if (conducts(body))
@@ -89,11 +89,10 @@ void ConductionWith<S>::map_heat() {
       for (int l = 0; l < used; ++l) {
         const double capacity = c * block[layout.offset(Column::mass) + l];
         const double heat = capacity * block[layout.offset(Column::temperature) + l];
-        S::for_each_node(place, l, grid.geometry().inverse_cell,
-                         [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
-                           to[heat_doubles * node] += shape * capacity;
-                           to[heat_doubles * node + 1] += shape * heat;
-                         });
+        for_each_weight<S>(place, l, grid.geometry().inverse_cell, [&](int node, double shape) {
+          to[heat_doubles * node] += shape * capacity;
+          to[heat_doubles * node + 1] += shape * heat;
+        });
       }
     });
     faces(s).fold(mapped::heat, to);
@@ -171,11 +170,10 @@ void ConductionWith<S>::update_temperatures(double dt) {
       const double per_volume = body.model->reference_density() * body.model->specific_heat();
       for (int l = 0; l < used; ++l) {
         double rise = 0, unseen = block[layout.offset(Column::temperature) + l];
-        S::for_each_node(place, l, grid.geometry().inverse_cell,
-                         [&](int node, const NodeOffset&, double shape, const Vec3<double>&) {
-                           rise += shape * flux[node_doubles * node];
-                           unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
-                         });
+        for_each_weight<S>(place, l, grid.geometry().inverse_cell, [&](int node, double shape) {
+          rise += shape * flux[node_doubles * node];
+          unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
+        });
         rise -= std::min(diffusivity(body, block, l) * curvature * dt, 1.0) * unseen;
         block[layout.offset(Column::temperature) + l] += rise;
         block[layout.offset(Column::internal_energy) + l] += per_volume * rise;

@@ -24,7 +24,7 @@ void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int o
     if (order == 1)
       return begin_correction(!transfer_.of_end, faces(s), shared_.nodes(), at.nodes.data(),
                               corrected_nodes(s));
-    sum_contributions<NodeArray::third>(*model_.grid, shared_, s, at.sums.data());
+    sum_contributions<NodeArray::third>(*model_.grid, momentum_shared_, s, at.sums.data());
     continue_correction(faces(s), at.sums.data(), shared_.nodes(), corrected_nodes(s));
   }
 }

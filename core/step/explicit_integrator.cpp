@@ -27,6 +27,11 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     }
   };
 
+  if (cells_) {
+    then("cells in use", [&] { cells_->find(); });
+    then("exchange cells", [&] { cells_->finish_exchange(); });
+  }
+
   if (heat.any()) {
     then("heat to grid", [&] { heat.map_heat(); });
     then("exchange heat", [&] { heat.finish_exchange(); });
@@ -64,6 +69,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
 
 ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communication)
     : model_(model),
+      cells_(make_cells_in_use(model, communication.halo)),
       heat_(make_conduction(model, communication.halo)),
       passes_(make_passes(model, communication.halo)) {}
 

@@ -1,6 +1,7 @@
 // The explicit schemes MUSL, USF and USL as lists of phases (explicit_integrator.cpp).
 #pragma once
 
+#include "core/step/cells_in_use.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/integrator.hpp"
 #include "core/step/passes.hpp"
@@ -24,6 +25,7 @@ class ExplicitIntegrator final : public Integrator {
 
  private:
   Model& model_;
+  std::unique_ptr<CellsInUse> cells_;  ///< null where nobody asks for them
   std::unique_ptr<Conduction> heat_;
   std::unique_ptr<Passes> passes_;
 };

@@ -62,10 +62,9 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
     }
     if (!dashpots && mine.surfaces.empty()) {
       // Without the gradients; the zero rounds the product as the sum with them does, to the same bits.
-      S::for_each_node(place, l, g.inverse_cell,
-                       [&](int node, const NodeOffset&, double shape_value, const Vec3<double>&) {
-                         f(node, shape_value * per_shape + Vec3<double>{});
-                       });
+      for_each_weight<S>(place, l, g.inverse_cell, [&](int node, double shape_value) {
+        f(node, shape_value * per_shape + Vec3<double>{});
+      });
       continue;
     }
     // One dashpot per grid face in the particle's reach, acting on the face's nodes.

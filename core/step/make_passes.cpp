@@ -24,8 +24,7 @@ ColumnSet transfer_columns(const Scene& scene) {
 }
 
 bool affine_transfers_go_with(ShapeFunction shape) {
-  return shape != ShapeFunction::ddmp &&
-         with_shape(shape, []<class S>(std::type_identity<S>) { return affine_with<S>; });
+  return with_shape(shape, []<class S>(std::type_identity<S>) { return affine_with<S>; });
 }
 
 Site site_of(const Scene& scene) {

@@ -12,10 +12,10 @@ using Record = Lanes<8>;
 using Half = Lanes<4>;
 }  // namespace
 
-SharedNodes::SharedNodes(const NodeBlockShape& shape) : nodes_(shape.nodes()) {
+SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached) : nodes_(shape.nodes()) {
   require_few_layers(shape);
   const int low = shape.lowest(), high = shape.highest();
-  const auto within = [&](int i) { return low <= i && i <= high; };
+  const auto within = [&](int i) { return reached.lowest() <= i && i <= reached.highest(); };
   std::array<std::vector<Share>, 9> by_count;
   std::array<std::vector<int>, 9> nodes;
   for (int k = low; k <= high; ++k) {
@@ -71,10 +71,9 @@ BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape&
     const Boundary lower = geometry.boundary[static_cast<std::size_t>(2 * axis)];
     const Boundary upper = geometry.boundary[static_cast<std::size_t>(2 * axis + 1)];
     const std::int64_t last = geometry.cells[static_cast<std::size_t>(axis)] - first[axis];
-    const auto constrains = [](Boundary b) { return b != Boundary::free && b != Boundary::nonreflecting; };
-    if (constrains(lower) && -first[axis] >= shape.lowest())
+    if (is_constrained(lower) && -first[axis] >= shape.lowest())
       face_[count_++] = {axis, -first[axis], -1, lower};
-    if (constrains(upper) && last <= shape.highest())
+    if (is_constrained(upper) && last <= shape.highest())
       face_[count_++] = {axis, static_cast<int>(last), 1, upper};
   }
 }

@@ -13,7 +13,9 @@ namespace mpm::core {
 class SharedNodes {
  public:
   /// Throws std::logic_error for more than most_layers of nodes beyond the brick.
-  explicit SharedNodes(const NodeBlockShape& shape);
+  explicit SharedNodes(const NodeBlockShape& shape) : SharedNodes(shape, shape) {}
+  /// A brick contributes to the nodes of the smaller block `reached` alone.
+  SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached);
 
   struct Share {
     int neighbour;  ///< 0..26

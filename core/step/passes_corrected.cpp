@@ -8,6 +8,7 @@ namespace mpm::core {
 
 template std::unique_ptr<Passes> make_passes_with<Linear, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<Sgmp, Corrected>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Ddmp, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<UniformGimp, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Corrected>(Model&, NodeHalo&);
 template std::unique_ptr<Passes> make_passes_with<Cpdi, Corrected>(Model&, NodeHalo&);

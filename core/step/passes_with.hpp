@@ -143,12 +143,17 @@ class PassesWith final : public Passes {
   }
   bool averages_volume_change() const { return model_.scene->solution.averaging == VolumeAveraging::cell; }
   BoundaryFaces faces(Slot s) const { return {*model_.grid, s}; }
-  BrickFrame frame(Slot s) const { return {model_.grid->geometry(), model_.grid->brick(s).coord}; }
+  BrickFrame frame(Slot s) const { return {*model_.grid, s}; }
   /// Prefetches the contributions to the next brick's nodes while this brick's blocks are processed.
   template <NodeArray of>
   [[gnu::always_inline]] ContributionPrefetch<of> prefetch_nodes(Slot s) const {
     const BrickGrid& grid = *model_.grid;
-    return {grid, shared_, s + 1, block_count(grid.brick(s))};
+    return {grid, shared<of>(), s + 1, block_count(grid.brick(s))};
+  }
+  /// Only the first array holds forces.
+  template <NodeArray of>
+  const SharedNodes& shared() const {
+    return of == NodeArray::first ? shared_ : momentum_shared_;
   }
   int motion_doubles() const { return motion_width * shared_.nodes(); }
   double* motion(Slot s) {
@@ -163,6 +168,7 @@ class PassesWith final : public Passes {
   Model& model_;
   NodeHalo& halo_;
   SharedNodes shared_;
+  SharedNodes momentum_shared_;
   NodeForces forces_;
   Loads loads_;
   T transfer_;
@@ -193,6 +199,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
     : model_(model),
       halo_(halo),
       shared_(model.grid->shape()),
+      momentum_shared_(model.grid->shape(), momentum_block<S>),
       loads_(model),
       transfer_(model.scene->solution),
       scheme_(model.scene->solution.scheme),
@@ -340,7 +347,7 @@ void PassesWith<S, T>::update_stress_and_move() {
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     recall_motion(shared_.nodes(), motion(s), at.nodes.data());
-    sum_contributions<NodeArray::second>(grid, shared_, s, at.sums.data());
+    sum_contributions<NodeArray::second>(grid, momentum_shared_, s, at.sums.data());
     second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
     at.field.take_motion(at.nodes.data());
     at.field.take_strain(frame(s), at.nodes.data());
@@ -358,7 +365,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
   const BrickGrid& grid = *model_.grid;
   critical_.resize(static_cast<std::size_t>(grid.owned()));
   map_bricks<mapped::force>([&](Slot s, Scratch& at) {
-    sum_contributions<NodeArray::second>(grid, shared_, s, at.nodes.data());
+    sum_contributions<NodeArray::second>(grid, momentum_shared_, s, at.nodes.data());
     second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
                       at.nodes.data());
     at.field.take_strain(frame(s), at.nodes.data());

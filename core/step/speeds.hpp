@@ -20,6 +20,7 @@ namespace mpm::core {
 ///                 MUSL                USF                 USL
 ///   linear        0.91 1.0  1.3       0.95 0.91 1.2       0.67 0.64 0.70      block, fluid, bar
 ///   SGMP          1.5  1.3  2.2       1.3  1.1  2.3       1.0  0.80 1.2
+///   DDMP          1.5  1.0  1.7       0.64 0.95 1.7       0.99 0.77 1.1
 ///   uGIMP         1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.73 0.77
 ///   cpGIMP        1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.77 0.77
 ///   CPDI, CPDI2   1.6  1.0  1.6       0.80 1.2  1.7       0.80 0.77 0.77
@@ -46,6 +47,7 @@ inline double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) 
   }
   switch (shape) {
     case ShapeFunction::sgmp: return by_scheme(1.25, 1.1, 0.75);
+    case ShapeFunction::ddmp: return by_scheme(1, 0.62, 0.73);
     case ShapeFunction::uniform_gimp:
     case ShapeFunction::contiguous_particle_gimp:
     case ShapeFunction::cpdi:

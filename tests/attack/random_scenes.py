@@ -16,7 +16,7 @@ import bits_laws
 
 STEPS = 200
 CELL = bits_laws.CELL
-SHAPES = ["linear", "SGMP", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline"]
+SHAPES = ["linear", "SGMP", "DDMP", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline"]
 AFFINE_SHAPES = ["uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline"]
 TRANSFERS = ['transfer="FLIP"', 'transfer="FLIP" flip_fraction="0.95"', 'transfer="PIC"', 'transfer="XPIC" xpic_order="3"',
              'transfer="FMPM" xpic_order="2" xpic_interval="3"']

@@ -100,6 +100,7 @@ ShapeOnAxis shape_on_axis(ReferenceShape shape, double r, double half_size) {
       const double l = half_size;
       return {(area_of_hat(r + l) - area_of_hat(r - l)) / (2 * l), (hat(r + l) - hat(r - l)) / (2 * l)};
     }
+    case ReferenceShape::ddmp:
     case ReferenceShape::cpdi:
     case ReferenceShape::cpdi2: break;  // no products
   }
@@ -216,10 +217,168 @@ WideSupport corner_support(const ReferenceGrid& grid, const Vector& x) {
   return result;
 }
 
+/// Whether a cell counts for ddmp: beyond a wall, as its mirror image does.
+bool in_use(const ReferenceGrid& grid, std::array<int, 3> cell) {
+  if (grid.in_use.empty()) return true;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int last = grid.cells[a] - 1;
+    if (cell[a] < 0 && grid.boundary[2 * a] != 0) cell[a] = -1 - cell[a];
+    if (cell[a] > last && grid.boundary[2 * a + 1] != 0) cell[a] = 2 * last + 1 - cell[a];
+    if (cell[a] < 0 || cell[a] > last) return false;
+  }
+  return grid.in_use[static_cast<std::size_t>(cell[0] + grid.cells[0] * (cell[1] + grid.cells[1] * cell[2]))];
+}
+
+/// Trilinear function of node `i`, or its gradient, at x in `cell`.
+double trilinear(const ReferenceGrid& grid, const std::array<int, 3>& i, const Vector& x, int derivative) {
+  double product = 1;
+  for (int a = 0; a < 3; ++a) {
+    const auto b = static_cast<std::size_t>(a);
+    const double r = (x[b] - grid.origin[b]) / grid.cell[b] - i[b];
+    product *= a == derivative ? (r < 0 ? 1 : -1) / grid.cell[b] : hat(r);
+  }
+  return product;
+}
+
+/// Mean of grad S_i over the cells in use around node j, weighted with S_j: products over the axes of the
+/// integrals over a cell of hat_j hat_i (h/3 or h/6) and hat_j hat_i' (+-1/2).
+Vector averaged_gradient(const ReferenceGrid& grid, const std::array<int, 3>& i,
+                         const std::array<int, 3>& j) {
+  Vector sum{};
+  double weight = 0;
+  for (int c = 0; c < 8; ++c) {
+    const std::array<int, 3> cell = {j[0] - (c & 1), j[1] - (c >> 1 & 1), j[2] - (c >> 2)};
+    if (!in_use(grid, cell)) continue;
+    weight += grid.cell[0] * grid.cell[1] * grid.cell[2] / 8;
+    bool corner = true;
+    for (std::size_t a = 0; a < 3; ++a) corner = corner && (i[a] == cell[a] || i[a] == cell[a] + 1);
+    if (!corner) continue;
+    for (std::size_t b = 0; b < 3; ++b) {
+      double integral = 1;
+      for (std::size_t a = 0; a < 3; ++a)
+        integral *= a == b ? (i[a] == cell[a] ? -0.5 : 0.5) : grid.cell[a] / (i[a] == j[a] ? 3 : 6);
+      sum[b] += integral;
+    }
+  }
+  for (double& component : sum) component = weight > 0 ? component / weight : 0;
+  return sum;
+}
+
+/// Number of the node i next to node j, 0 to 26, or -1.
+int next_to(const std::array<int, 3>& i, const std::array<int, 3>& j) {
+  int number = 0;
+  for (std::size_t a = 3; a-- > 0;) {
+    if (std::abs(i[a] - j[a]) > 1) return -1;
+    number = 3 * number + i[a] - j[a] + 1;
+  }
+  return number;
+}
+
+std::size_t number_of(const ReferenceGrid& grid, const std::array<int, 3>& node) {
+  return static_cast<std::size_t>(node[0] + (grid.cells[0] + 1) * (node[1] + (grid.cells[1] + 1) * node[2]));
+}
+
+/// Nodes beyond walls give way to those that determine their velocities, one axis after the other.
+WideSupport with_walls(const ReferenceGrid& grid, WideSupport support) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    WideSupport result;
+    const auto at = [&](const std::array<int, 3>& node) -> WideSupport::Entry& {
+      for (std::size_t n = 0; n < result.count; ++n)
+        if (result.entry[n].node == node) return result.entry[n];
+      result.entry.at(result.count) = {};
+      result.entry[result.count].node = node;
+      return result.entry[result.count++];
+    };
+    const auto add = [](WideSupport::Entry& to, const WideSupport::Entry& from, std::size_t c,
+                        double factor) {
+      to.value[c] += factor * from.value[c];
+      for (std::size_t b = 0; b < 3; ++b) to.slope[c][b] += factor * from.slope[c][b];
+    };
+    for (std::size_t n = 0; n < support.count; ++n) {
+      const WideSupport::Entry& from = support.entry[n];
+      const int last = grid.cells[axis], place = from.node[axis];
+      const int kind = grid.boundary[2 * axis + (place < 0 ? 0 : 1)];
+      std::array<int, 3> wall = from.node, mirror = from.node;
+      wall[axis] = place < 0 ? 0 : last;
+      mirror[axis] = 2 * wall[axis] - place;
+      if ((place >= 0 && place <= last) || kind == 0) mirror[axis] = place;
+      const bool turns = mirror[axis] != place;
+      at(mirror).mass += turns && kind == 4 ? -from.mass : from.mass;
+      for (std::size_t c = 0; c < 3; ++c)
+        add(at(mirror), from, c, turns && (kind != 2 || c == axis) ? -1 : 1);
+      if (!turns || kind != 4) continue;
+      at(wall).mass += 2 * from.mass;
+      for (std::size_t c = 0; c < 3; ++c) add(at(wall), from, c, 2);
+    }
+    support = result;
+  }
+  return support;
+}
+
+WideSupport dual_domain_support(const ReferenceGrid& grid, const Vector& x) {
+  const std::array<int, 3> cell = cell_at(grid, x);
+  double alpha = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double f = (x[a] - grid.origin[a]) / grid.cell[a] - cell[a];
+    alpha *= 4 * f * (1 - f);
+  }
+  WideSupport result;
+  for (int n = 0; n < 64; ++n) {
+    WideSupport::Entry& entry = result.entry[result.count++];
+    entry = {};
+    entry.node = {cell[0] - 1 + n % 4, cell[1] - 1 + n / 4 % 4, cell[2] - 1 + n / 16};
+    const std::array<int, 3>& i = entry.node;
+    bool corner = true;
+    for (std::size_t a = 0; a < 3; ++a) corner = corner && (i[a] == cell[a] || i[a] == cell[a] + 1);
+    Vector gradient{};
+    if (corner) {
+      entry.mass = trilinear(grid, i, x, -1);
+      for (std::size_t a = 0; a < 3; ++a) {
+        double slope = (i[a] == cell[a] ? -1 : 1) / grid.cell[a];
+        for (std::size_t b = 0; b < 3; ++b)
+          if (b != a) slope *= hat((x[b] - grid.origin[b]) / grid.cell[b] - i[b]);
+        gradient[a] = alpha * slope;
+      }
+    }
+    for (int m = 0; m < 8; ++m) {
+      const std::array<int, 3> j = {cell[0] + (m & 1), cell[1] + (m >> 1 & 1), cell[2] + (m >> 2)};
+      const int n_ij = next_to(i, j);
+      if (n_ij < 0) continue;
+      const Vector mean = grid.averaged.empty()
+                              ? averaged_gradient(grid, i, j)
+                              : grid.averaged[number_of(grid, j)][static_cast<std::size_t>(n_ij)];
+      for (std::size_t a = 0; a < 3; ++a) gradient[a] += (1 - alpha) * trilinear(grid, j, x, -1) * mean[a];
+    }
+    entry.value.fill(entry.mass);
+    entry.slope.fill(gradient);
+  }
+  return with_walls(grid, result);
+}
+
 }  // namespace
+
+std::array<int, 3> cell_at(const ReferenceGrid& grid, const Vector& x) {
+  std::array<int, 3> cell{};
+  for (std::size_t a = 0; a < 3; ++a)
+    cell[a] = std::min(static_cast<int>(std::floor((x[a] - grid.origin[a]) * (1 / grid.cell[a]))),
+                       grid.cells[a] - 1);
+  return cell;
+}
+
+void average_gradients(ReferenceGrid& grid) {
+  grid.averaged.assign(number_of(grid, grid.cells) + 1, {});
+  for (int n = 0; n < static_cast<int>(grid.averaged.size()); ++n) {
+    const int x = grid.cells[0] + 1, y = grid.cells[1] + 1;
+    const std::array<int, 3> j = {n % x, n / x % y, n / (x * y)};
+    for (int m = 0; m < 27; ++m)
+      grid.averaged[static_cast<std::size_t>(n)][static_cast<std::size_t>(m)] =
+          averaged_gradient(grid, {j[0] + m % 3 - 1, j[1] + m / 3 % 3 - 1, j[2] + m / 9 - 1}, j);
+  }
+}
 
 WideSupport wide_support(const ReferenceGrid& grid, const Vector& x) {
   if (has_corners(grid.shape)) return corner_support(grid, x);
+  if (grid.shape == ReferenceShape::ddmp) return dual_domain_support(grid, x);
   const AxisSupport along[3] = {axis_support(grid, x[0], 0), axis_support(grid, x[1], 1),
                                 axis_support(grid, x[2], 2)};
   WideSupport result;

@@ -15,12 +15,17 @@
 //                     (Sadeghirad et al., IJNME 86 (2011) 1435 and 95 (2013) 928)
 //   sgmp              S = sum of hat(x - x_c)/2 over the two cell centres c beside the node,     3
 //                     G = sum of +-hat(x - x_c), + for the centre below (Liang et al., CMAME 352 (2019) 85)
-// S and G of a node are products over the axes, but for cpdi and cpdi2. All S are positive, add up to 1 and
-// reproduce linear fields.
+//   ddmp              S = hat(r); grad w_i = alpha grad S_i + (1 - alpha) sum_j S_j <grad S_i>_j,
+//                     alpha = product of 4 f (1 - f), f the position in the cell, and <>_j the mean, weighted
+//                     with S_j, over the cells in use around node j
+//                     (Zhang, Ma and Giguere, J. Comput. Phys. 230 (2011) 6379)
+// S and G of a node are products over the axes, but for cpdi, cpdi2 and ddmp. All S are positive, add up to 1
+// and reproduce linear fields.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace mpm::tests {
 
@@ -28,7 +33,17 @@ using Vector = std::array<double, 3>;
 /// [row][column]; a velocity gradient has dv_row/dx_column.
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-enum class ReferenceShape { linear, sgmp, quadratic_bspline, cubic_bspline, ugimp, cpgimp, cpdi, cpdi2 };
+enum class ReferenceShape {
+  linear,
+  sgmp,
+  ddmp,
+  quadratic_bspline,
+  cubic_bspline,
+  ugimp,
+  cpgimp,
+  cpdi,
+  cpdi2
+};
 constexpr bool has_corners(ReferenceShape s) {
   return s == ReferenceShape::cpdi || s == ReferenceShape::cpdi2;
 }
@@ -66,6 +81,11 @@ struct ReferenceGrid {
   std::array<int, 6> boundary{};  ///< as ReferenceCase's
   Vector half_size{};             ///< ugimp, length
   DomainCorners corner{};         ///< cpdi and cpdi2, from the particle; at most a cell from it on each axis
+  /// ddmp: the cells, i + cells[0] (j + cells[1] k), that hold particles; none beyond free faces. Empty: all
+  /// are in use, those beyond the faces, too.
+  std::vector<bool> in_use{};
+  /// ddmp: of every node j, <grad S_i>_j of the nodes i around it; found when needed where this is empty.
+  std::vector<std::array<Vector, 27>> averaged{};
 };
 
 /// A particle's shape functions of any width, with the walls in them. Nodes have indices -1 .. cells + 1
@@ -92,6 +112,10 @@ struct WideSupport {
   std::array<Entry, 64> entry;
   std::size_t count = 0;
 };
+/// Sets ReferenceGrid::averaged.
+void average_gradients(ReferenceGrid& grid);
+/// The cell, along each axis, that holds x; on a face the upper one, but the last one on the grid's.
+std::array<int, 3> cell_at(const ReferenceGrid& grid, const Vector& x);
 /// x lies in the grid; for linear functions, at most a cell outside.
 WideSupport wide_support(const ReferenceGrid& grid, const Vector& x);
 

@@ -77,6 +77,7 @@ void ReferenceStepper::step_with() {
   const double dt = this->dt();
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
   const bool usf = case_.scheme == ReferenceScheme::usf;
+  if (case_.shape == ReferenceShape::ddmp) find_cells_in_use();
   particles_to_grid<Support>();
   if (usf) {
     initial_velocities();
@@ -133,10 +134,21 @@ ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& 
     if (!(position >= 0 && position <= case_.cells[a])) report_outside(x);
   }
   AnySupport result;
-  result.wide = wide_support(grid_of(particle), x);
+  result.wide = case_.shape == ReferenceShape::ddmp ? wide_support(geometry_, x)  // no copy of its tables
+                                                    : wide_support(grid_of(particle), x);
   result.count = result.wide.count;
   for (std::size_t n = 0; n < result.count; ++n) result.node[n] = number(result.wide.entry[n].node);
   return result;
+}
+
+void ReferenceStepper::find_cells_in_use() {
+  const auto& cells = case_.cells;
+  geometry_.in_use.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]), false);
+  for (const auto& particle : case_.particles) {
+    const std::array<int, 3> c = cell_at(geometry_, particle.x);
+    geometry_.in_use[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))] = true;
+  }
+  average_gradients(geometry_);
 }
 
 /// With the particle's domain.

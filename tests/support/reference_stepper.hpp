@@ -112,6 +112,8 @@ class ReferenceStepper {
 
   template <class Support>
   Support support(const ReferenceParticle& particle) const;
+  /// By their particles at the start of the step.
+  void find_cells_in_use();
   ReferenceGrid grid_of(const ReferenceParticle& particle) const;
   std::size_t number(const std::array<int, 3>& node) const;
   Stop stop(const Index& node, std::size_t axis, double velocity) const;

@@ -13,10 +13,10 @@ using namespace mpm::tests;
 
 namespace {
 
-constexpr ReferenceShape shapes[] = {
-    ReferenceShape::linear,        ReferenceShape::sgmp,  ReferenceShape::quadratic_bspline,
-    ReferenceShape::cubic_bspline, ReferenceShape::ugimp, ReferenceShape::cpdi,
-    ReferenceShape::cpdi2};
+constexpr ReferenceShape shapes[] = {ReferenceShape::linear,        ReferenceShape::sgmp,
+                                     ReferenceShape::ddmp,          ReferenceShape::quadratic_bspline,
+                                     ReferenceShape::cubic_bspline, ReferenceShape::ugimp,
+                                     ReferenceShape::cpdi,          ReferenceShape::cpdi2};
 
 double hat(double r) { return std::max(0.0, 1 - std::abs(r)); }
 

@@ -146,6 +146,7 @@ inline core::ShapeFunction shape_function_of(ReferenceShape s) {
   switch (s) {
     case ReferenceShape::linear: return core::ShapeFunction::linear;
     case ReferenceShape::sgmp: return core::ShapeFunction::sgmp;
+    case ReferenceShape::ddmp: return core::ShapeFunction::ddmp;
     case ReferenceShape::quadratic_bspline: return core::ShapeFunction::quadratic_bspline;
     case ReferenceShape::cubic_bspline: return core::ShapeFunction::cubic_bspline;
     case ReferenceShape::ugimp: return core::ShapeFunction::uniform_gimp;
@@ -159,6 +160,7 @@ inline core::ShapeFunction shape_function_of(ReferenceShape s) {
 /// The oracle's shape of a policy. A policy without one does not compile: add it here.
 constexpr ReferenceShape reference_shape(std::type_identity<core::Linear>) { return ReferenceShape::linear; }
 constexpr ReferenceShape reference_shape(std::type_identity<core::Sgmp>) { return ReferenceShape::sgmp; }
+constexpr ReferenceShape reference_shape(std::type_identity<core::Ddmp>) { return ReferenceShape::ddmp; }
 constexpr ReferenceShape reference_shape(std::type_identity<core::UniformGimp>) {
   return ReferenceShape::ugimp;
 }

@@ -143,6 +143,7 @@ struct TransferCase {
   core::BrickCoord brick;
   core::BlockPool pool{core::ColumnLayout(columns())};
   core::ParticleTile tile;
+  core::CellsAround cells;
   std::vector<std::vector<double>> particles;  ///< their columns, in the order of ColumnSet::mechanics()
 
   TransferCase(core::BrickCoord b, int count, unsigned seed) : brick(b) {
@@ -174,9 +175,14 @@ struct TransferCase {
       }
       append(pool, tile, p.data());
     }
+    use_cells(count, random);
   }
 
-  core::BrickFrame frame() const { return {geometry, brick}; }
+  core::BrickFrame frame() const {
+    core::BrickFrame f(geometry, brick);
+    f.cells = &cells;
+    return f;
+  }
   typename S::Place block_place(const double* block) const { return {frame(), pool.layout(), block}; }
 
   /// Position in cells from node 0 of the brick, and the particle's lowest node. A point that round-off puts
@@ -208,6 +214,8 @@ struct TransferCase {
   void for_each_node(const std::vector<double>& p, F f) const {
     if constexpr (through_corners<S>)
       for_each_node_of_corners(p, f);
+    else if constexpr (core::asks_for_cells<S>)
+      for_each_node_of_cells(p, f);
     else
       for_each_node_of_axes(p, f);
   }
@@ -256,6 +264,46 @@ struct TransferCase {
         slope = slope + hats * core::Vec3<double>{means.slope[c][0], means.slope[c][1], means.slope[c][2]};
       }
       f(shape.index(node[0], node[1], node[2]), value, slope);
+    }
+  }
+
+  /// Those with particles, both where a particle is on a face between two, and some others; or all.
+  template <class Random>
+  void use_cells(int count, Random& random) {
+    const int last = core::brick_cells;
+    for (int k = -1; k <= last; ++k)
+      for (int j = -1; j <= last; ++j)
+        for (int i = -1; i <= last; ++i)
+          if (count % 3 == 2 || random() % 2 == 0) cells.add(i, j, k);
+    for (const std::vector<double>& p : particles) {
+      for (int n = 0; n < 8; ++n) {
+        int c[3];
+        for (int a = 0; a < 3; ++a) {
+          const auto i = static_cast<std::size_t>(a);
+          const double s = (p[i] - geometry.origin[a]) / geometry.cell[a] - first_node(a);
+          c[a] = std::min(static_cast<int>(std::floor(s + ((n >> a & 1) != 0 ? 1e-9 : -1e-9))), last);
+        }
+        cells.add(std::max(c[0], -1), std::max(c[1], -1), std::max(c[2], -1));
+      }
+    }
+  }
+  template <class F>
+  void for_each_node_of_cells(const std::vector<double>& p, F f) const {
+    constexpr int n = core::CellsAround::side;
+    ReferenceGrid grid{.shape = ReferenceShape::ddmp, .cells = {n, n, n}};
+    for (int a = 0; a < 3; ++a) {
+      grid.cell[static_cast<std::size_t>(a)] = geometry.cell[a];
+      grid.origin[static_cast<std::size_t>(a)] = geometry.origin[a] + geometry.cell[a] * (first_node(a) - 1);
+    }
+    for (int c = 0; c < n * n * n; ++c)
+      grid.in_use.push_back(cells.has(c % n - 1, c / n % n - 1, c / (n * n) - 1));
+    const WideSupport support = wide_support(grid, {p[0], p[1], p[2]});
+    for (std::size_t i = 0; i < support.count; ++i) {
+      const WideSupport::Entry& entry = support.entry[i];
+      const Vector& g = entry.slope[0];
+      if (entry.mass == 0 && g == Vector{}) continue;  // beyond the cells
+      const std::array<int, 3>& node = entry.node;
+      f(shape.index(node[0] - 1, node[1] - 1, node[2] - 1), entry.mass, core::Vec3<double>{g[0], g[1], g[2]});
     }
   }
 

@@ -1,0 +1,47 @@
+// Which of the cells in a brick and one layer around it are in use, for shape functions that need to know
+// (core/shape/ddmp.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/grid/brick.hpp"
+
+namespace mpm::core {
+
+/// Cells (i, j, k), -1 .. brick_cells, counted from the brick's first. Its own cells are in use where they
+/// hold particles, as are those of its neighbours; beyond a constrained face of the grid, the mirror images
+/// of cells in use.
+class CellsAround {
+ public:
+  static constexpr int side = brick_cells + 2;
+
+  bool has(int i, int j, int k) const { return (row(j, k) >> (i + 1) & 1) != 0; }
+  void add(int i, int j, int k) { row_[index(j, k)] |= static_cast<std::uint8_t>(1u << (i + 1)); }
+  /// Cells by bits, as row() returns them.
+  void add_row(int j, int k, unsigned cells) { row_[index(j, k)] |= static_cast<std::uint8_t>(cells); }
+  /// Cell i of the row in bit i + 1.
+  unsigned row(int j, int k) const { return row_[index(j, k)]; }
+  /// The eight cells around point (i, j, k), the lowest one of cell (i, j, k): how many are in use.
+  int beside(int i, int j, int k) const {
+    int n = 0;
+    for (int c = 0; c < 8; ++c) n += has(i - (c & 1), j - (c >> 1 & 1), k - (c >> 2)) ? 1 : 0;
+    return n;
+  }
+  /// All cells, in bricks far from the body's surface.
+  bool full() const { return row_ == all_; }
+
+ private:
+  static constexpr std::size_t index(int j, int k) {
+    return static_cast<std::size_t>(j + 1 + side * (k + 1));
+  }
+  using Rows = std::array<std::uint8_t, side * side>;
+  static constexpr Rows all_ = [] {
+    Rows rows{};
+    for (std::uint8_t& row : rows) row = (1u << side) - 1;
+    return rows;
+  }();
+  Rows row_{};
+};
+
+}  // namespace mpm::core

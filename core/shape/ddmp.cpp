@@ -1,0 +1,348 @@
+// Averages over the cells of a brick, a row of nodes or cells in the lanes. Over a cell of edges h,
+//   int S_j dS_i/dx dV / (V/8) = sign_i/(9 h) (2 or 1 along y) (2 or 1 along z),   2 where i and j agree;
+// where all cells are in use, the sums over the eight cells become products over the axes of (1, 4, 1)/6 and
+// (-1, 0, 1)/(2 h).
+#include "core/shape/ddmp.hpp"
+
+namespace mpm::core {
+
+namespace ddmp {
+
+namespace {
+
+constexpr int side = node_block.side();  // rows of nodes along an axis; the lattice's are 1 .. side - 2
+constexpr int cells = side - 1;          // rows of cells: cell c between the nodes c and c + 1
+static_assert(cells == CellsAround::side);
+constexpr int points = lattice_points.side();
+
+/// What the next lane holds, or the previous one.
+inline Row next(Row a) { return __builtin_shufflevector(a.v, a.v, 1, 2, 3, 4, 5, 6, 7, 7); }
+inline Row previous(Row a) {
+  const Row::vector zero{};
+  return __builtin_shufflevector(a.v, zero, 8, 0, 1, 2, 3, 4, 5, 6);
+}
+
+/// Rows of zeros and ones by the bits of a row of cells.
+struct BitRows {
+  alignas(64) double row[1 << cells][row_doubles];
+};
+constexpr BitRows bit_rows = [] {
+  BitRows r{};
+  for (int bits = 0; bits < 1 << cells; ++bits) {
+    for (int i = 0; i < cells; ++i) r.row[bits][i] = bits >> i & 1;
+  }
+  return r;
+}();
+
+/// The cells in use, and 1/n_j.
+struct CellWeights {
+  Row lower[cells * cells], upper[cells * cells];  ///< row j + 6 k; in the lanes of its lower and upper nodes
+  Row share[points * points];
+
+  explicit CellWeights(const CellsAround& around) {
+    Row both[cells * cells];
+    for (int k = 0; k < cells; ++k) {
+      for (int j = 0; j < cells; ++j) {
+        const int n = j + cells * k;
+        lower[n] = load<Row>(bit_rows.row[around.row(j - 1, k - 1)]);
+        upper[n] = previous(lower[n]);
+        both[n] = lower[n] + upper[n];
+      }
+    }
+    for (int k = 0; k < points; ++k) {
+      for (int j = 0; j < points; ++j) {
+        const Row* at = both + j + cells * k;
+        share[j + points * k] = Row(1.0) / max(at[0] + at[1] + at[cells] + at[cells + 1],
+                                               Row(1.0));  // unread where there are none
+      }
+    }
+  }
+};
+
+/// f(cell row, the other row of nodes beside it) for the rows of cells beside row `r` of nodes.
+template <class F>
+[[gnu::always_inline]] inline void beside(int r, F f) {
+  if (r > 0) f(r - 1, r - 1);
+  if (r < cells) f(r, r + 1);
+}
+
+/// Row (j, k): sum over the four cells beside it in use of (2 or 1 along y) (2 or 1 along z) a, a given on
+/// the cells' edges along x. In the cells' lanes.
+[[gnu::always_inline]] inline Row across(const Row* a, const CellWeights& weights, int j, int k) {
+  Row sum(0.0);
+  beside(k, [&](int cell_k, int other_k) {
+    const Row *near = a + side * k, *far = a + side * other_k;
+    const Row here = Row(2.0) * near[j] + far[j];
+    beside(j, [&](int cell_j, int other_j) {
+      sum += weights.lower[cell_j + cells * cell_k] *
+             (Row(2.0) * here + (Row(2.0) * near[other_j] + far[other_j]));
+    });
+  });
+  return sum;
+}
+
+/// Row `r` along an axis of a plane of cells across another one, of `n` edges along that: sum over the cells
+/// beside it in use of (2 or 1 along x) (2 or 1 along the axis) a, in the nodes' lanes. a: rows of edges
+/// along the axis; `cell`: the first cell's number, `stride` to the next.
+[[gnu::always_inline]] inline Row along(const Row* a, const CellWeights& weights, int r, int cell,
+                                        int stride) {
+  Row sum(0.0);
+  beside(r, [&](int cell_r, int other) {
+    const int n = cell + stride * cell_r;
+    const Row m = Row(2.0) * a[r] + a[other], twice = Row(2.0) * m;
+    sum += weights.lower[n] * (twice + ddmp::next(m)) + weights.upper[n] * (twice + previous(m));
+  });
+  return sum;
+}
+
+/// v: rows of a component; d: of its derivatives along the axes at the lattice's points.
+void derivatives(const CellWeights& weights, const Vec3<double>& inverse_cell, const double* velocity,
+                 double* const (&d)[3]) {
+  Row v[side * side], edges[side * side];
+  for (int n = 0; n < side * side; ++n) {
+    v[n] = load<Row>(velocity + row_doubles * n);
+    edges[n] = ddmp::next(v[n]) - v[n];
+  }
+  const auto put = [&](int axis, int j, int k, Row sum) {
+    const int n = j - 1 + points * (k - 1);
+    store(d[axis] + row_doubles * n, Row(inverse_cell[axis] * (1.0 / 9)) * (weights.share[n] * sum));
+  };
+  for (int k = 1; k <= points; ++k) {
+    for (int j = 1; j <= points; ++j) {
+      const Row sum = across(edges, weights, j, k);
+      put(0, j, k, sum + previous(sum));
+    }
+  }
+  // Along y and z: planes of cells across the axis, and what their edges give the nodes on both sides.
+  for (int axis = 1; axis < 3; ++axis) {
+    const int stride = axis == 1 ? 1 : side, row_stride = axis == 1 ? side : 1;
+    const int cell_stride = axis == 1 ? 1 : cells, cell_row_stride = axis == 1 ? cells : 1;
+    Row below[side] = {};
+    for (int plane = 0; plane < cells; ++plane) {
+      Row difference[side];
+      for (int r = 0; r < side; ++r) {
+        const Row* at = v + stride * plane + row_stride * r;
+        difference[r] = at[stride] - at[0];
+      }
+      for (int r = 1; r <= points; ++r) {
+        const Row sum = along(difference, weights, r, cell_stride * plane, cell_row_stride);
+        if (plane > 0) put(axis, axis == 1 ? plane : r, axis == 1 ? r : plane, below[r] + sum);
+        below[r] = sum;
+      }
+    }
+  }
+}
+
+/// The same where all cells are in use.
+void derivatives(const Vec3<double>& inverse_cell, const double* velocity, double* const (&d)[3]) {
+  Row slope[side * side], mean[side * side];
+  for (int n = 0; n < side * side; ++n) {
+    const Row v = load<Row>(velocity + row_doubles * n), up = ddmp::next(v), down = previous(v);
+    slope[n] = up - down;
+    mean[n] = Row(4.0) * v + (up + down);
+  }
+  const Row scale[3] = {Row(inverse_cell.x / 72), Row(inverse_cell.y / 72), Row(inverse_cell.z / 72)};
+  for (int k = 1; k <= points; ++k) {
+    Row x[side], y[side], z[side];  // means along z of the slopes, means and slopes along z of the means
+    for (int j = 0; j < side; ++j) {
+      const int n = j + side * k;
+      x[j] = Row(4.0) * slope[n] + (slope[n + side] + slope[n - side]);
+      y[j] = Row(4.0) * mean[n] + (mean[n + side] + mean[n - side]);
+      z[j] = mean[n + side] - mean[n - side];
+    }
+    for (int j = 1; j <= points; ++j) {
+      const int at = row_doubles * (j - 1 + points * (k - 1));
+      store(d[0] + at, scale[0] * (Row(4.0) * x[j] + (x[j + 1] + x[j - 1])));
+      store(d[1] + at, scale[1] * (y[j + 1] - y[j - 1]));
+      store(d[2] + at, scale[2] * (Row(4.0) * z[j] + (z[j + 1] + z[j - 1])));
+    }
+  }
+}
+
+/// The adjoint: forces of a component from t[axis], rows of a column of T_j at all nodes, zero but at the
+/// lattice's points.
+void forces(const CellWeights& weights, const Vec3<double>& inverse_cell, const Row* const (&t)[3],
+            Row* force) {
+  const Row scale[3] = {Row(inverse_cell.x / 9), Row(inverse_cell.y / 9), Row(inverse_cell.z / 9)};
+  Row edges[side * side];
+  for (int n = 0; n < side * side; ++n) edges[n] = t[0][n] + ddmp::next(t[0][n]);
+  for (int k = 0; k < side; ++k) {
+    for (int j = 0; j < side; ++j) {
+      const Row sum = across(edges, weights, j, k);
+      force[j + side * k] = scale[0] * (sum - previous(sum));
+    }
+  }
+  for (int axis = 1; axis < 3; ++axis) {
+    const int stride = axis == 1 ? 1 : side, row_stride = axis == 1 ? side : 1;
+    const int cell_stride = axis == 1 ? 1 : cells, cell_row_stride = axis == 1 ? cells : 1;
+    for (int plane = 0; plane < cells; ++plane) {
+      Row both[side];
+      for (int r = 0; r < side; ++r) {
+        const Row* at = t[axis] + stride * plane + row_stride * r;
+        both[r] = at[0] + at[stride];
+      }
+      for (int r = 0; r < side; ++r) {
+        const Row sum = scale[axis] * along(both, weights, r, cell_stride * plane, cell_row_stride);
+        Row* at = force + stride * plane + row_stride * r;
+        at[0] += sum;
+        at[stride] -= sum;
+      }
+    }
+  }
+}
+
+/// The same where all cells are in use.
+void forces(const Vec3<double>& inverse_cell, const Row* const (&t)[3], Row* force) {
+  const Row scale[3] = {Row(inverse_cell.x / 72), Row(inverse_cell.y / 72), Row(inverse_cell.z / 72)};
+  // Rows -1 .. side around each row, as far as they are not zero.
+  Row sums[side][side + 2] = {}, slopes[side][side + 2] = {};
+  for (int k = 1; k <= points; ++k) {
+    Row x[side + 2] = {}, y[side + 2] = {}, z[side + 2] = {};
+    for (int j = 1; j <= points; ++j) {
+      const int n = j + side * k;
+      x[j + 1] = scale[0] * (ddmp::next(t[0][n]) - previous(t[0][n]));
+      y[j + 1] = scale[1] * (Row(4.0) * t[1][n] + (ddmp::next(t[1][n]) + previous(t[1][n])));
+      z[j + 1] = scale[2] * (Row(4.0) * t[2][n] + (ddmp::next(t[2][n]) + previous(t[2][n])));
+    }
+    for (int j = 0; j < side; ++j) {
+      sums[j][k + 1] = Row(4.0) * x[j + 1] + (x[j + 2] + x[j]) + (y[j + 2] - y[j]);
+      slopes[j][k + 1] = Row(4.0) * z[j + 1] + (z[j + 2] + z[j]);
+    }
+  }
+  for (int k = 0; k < side; ++k) {
+    for (int j = 0; j < side; ++j)
+      force[j + side * k] =
+          Row(4.0) * sums[j][k + 1] + (sums[j][k + 2] + sums[j][k]) + (slopes[j][k + 2] - slopes[j][k]);
+  }
+}
+
+/// f(number of the node, of the point) for the nodes that are points of the lattice.
+template <class F>
+inline void for_each_point(F f) {
+  for (int k = 0; k < points; ++k) {
+    for (int j = 0; j < points; ++j) {
+      for (int i = 0; i < points; ++i) f(node_block.index(i, j, k), lattice_points.index(i, j, k));
+    }
+  }
+}
+
+}  // namespace
+
+void sums_to_nodes(const double* sums, double* nodes) {
+  using Half = Lanes<4>;
+  for_each_point([&](int node, int point) {
+    store(nodes + 4 * node, load<Half>(nodes + 4 * node) + load<Half>(sums + 4 * point));
+  });
+}
+
+void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes) {
+  using Record = Lanes<node_doubles>;
+  constexpr int components = 6;
+  Row t[components][side * side];
+  alignas(64) double rows[components][NodeRows::doubles] = {};
+  for_each_point([&](int node, int point) {
+    const double* from = sums + sum_doubles * point;
+    double* to = nodes + node_doubles * node;
+    store(to, load<Record>(to) + load<Record>(from));
+    const int at = NodeRows::index(point);
+    for (int c = 0; c < components; ++c) rows[c][at] = from[node_doubles + c];
+  });
+  for (int c = 0; c < components; ++c) {
+    for (int n = 0; n < side * side; ++n) t[c][n] = load<Row>(rows[c] + row_doubles * n);
+  }
+  Row force[3][side * side];
+  const Row* const column[3][3] = {{t[0], t[3], t[5]}, {t[3], t[1], t[4]}, {t[5], t[4], t[2]}};
+  if (frame.cells->full()) {
+    for (int a = 0; a < 3; ++a) forces(frame.inverse_cell, column[a], force[a]);
+  } else {
+    const CellWeights weights(*frame.cells);
+    for (int c = 0; c < components; ++c) {
+      for (int k = 0; k < points; ++k) {
+        for (int j = 0; j < points; ++j) t[c][j + 1 + side * (k + 1)] *= weights.share[j + points * k];
+      }
+    }
+    for (int a = 0; a < 3; ++a) forces(weights, frame.inverse_cell, column[a], force[a]);
+  }
+  for (int n = 0; n < side * side; ++n) {
+    Row r[4] = {force[0][n], force[1][n], force[2][n], Row(0.0)};
+    transpose_half(r);
+    double* at = nodes + node_doubles * side * n + node_field::force.first;
+    for (int i = 0; i < side; ++i, at += node_doubles)
+      store(at, load<Lanes<4>>(at) + half_of(r[i / 2], i % 2));
+  }
+}
+
+void nodes_to_lattice(const double* nodes, double* lattice) {
+  using Record = Lanes<node_doubles>;
+  for_each_point([&](int node, int point) {
+    store(lattice + node_doubles * point, load<Record>(nodes + node_doubles * node));
+  });
+}
+
+void velocity_rows(const double* nodes, double* velocity) {
+  for (int n = 0; n < side * side; ++n) {
+    for (int c = 0; c < 3; ++c) {
+      double* row = velocity + NodeRows::doubles * c + row_doubles * n;
+      const double* from = nodes + node_doubles * side * n + Motion::strain_velocity_at + c;
+      for (int i = 0; i < side; ++i) row[i] = from[node_doubles * i];
+      row[side] = 0;
+    }
+  }
+}
+
+void averaged_gradients(const BrickFrame& frame, const double* velocity, double* gradient) {
+  const auto each = [&](auto derive) {
+    for (int c = 0; c < 3; ++c) {
+      double* const to = gradient + 3 * LatticeRows::doubles * c;
+      double* const d[3] = {to, to + LatticeRows::doubles, to + 2 * LatticeRows::doubles};
+      derive(velocity + NodeRows::doubles * c, d);
+    }
+  };
+  if (frame.cells->full()) {
+    each([&](const double* v, double* const(&d)[3]) { derivatives(frame.inverse_cell, v, d); });
+    return;
+  }
+  const CellWeights weights(*frame.cells);
+  each([&](const double* v, double* const(&d)[3]) { derivatives(weights, frame.inverse_cell, v, d); });
+}
+
+}  // namespace ddmp
+
+void Ddmp::shape_and_gradient(const Place& place, int lane, const Vec3<double>& inverse_cell,
+                              double (&shape)[64], Vec3<double> (&gradient)[64]) {
+  const auto number = [](int i, int j, int k) { return i + 1 + 4 * (j + 1 + 4 * (k + 1)); };
+  std::fill_n(shape, 64, 0.0);
+  std::fill_n(gradient, 64, Vec3<double>{});
+  const int side = lattice_points.side(), point = place.node[lane];
+  const int cell[3] = {point % side, point / side % side, point / (side * side)};
+  const double alpha = place.alpha[lane];
+  for (int n = 0; n < 8; ++n) {
+    const int c[3] = {n & 1, n >> 1 & 1, n >> 2};
+    const double s = weight(place, lane, n);
+    shape[number(c[0], c[1], c[2])] = s;
+    for (int a = 0; a < 3; ++a) {
+      double slope = (c[a] == 1 ? 1 : -1) * inverse_cell[a];
+      for (int b = 0; b < 3; ++b) {
+        if (b != a) slope *= c[b] == 1 ? place.f[b][lane] : 1 - place.f[b][lane];
+      }
+      gradient[number(c[0], c[1], c[2])][a] += alpha * slope;
+    }
+    // Node n's share of the averaged gradients, from the cells around it.
+    const int beside = place.cells->beside(cell[0] + c[0], cell[1] + c[1], cell[2] + c[2]);
+    const double share = (1 - alpha) * s / (9.0 * std::max(beside, 1));
+    for (int m = 0; m < 8; ++m) {  // of cell m around it, n is the corner m, too
+      const int lowest[3] = {c[0] - (m & 1), c[1] - (m >> 1 & 1), c[2] - (m >> 2)};
+      if (!place.cells->has(cell[0] + lowest[0], cell[1] + lowest[1], cell[2] + lowest[2])) continue;
+      for (int i = 0; i < 8; ++i) {
+        const double agree[3] = {(i & 1) == (m & 1) ? 2.0 : 1.0, (i >> 1 & 1) == (m >> 1 & 1) ? 2.0 : 1.0,
+                                 i >> 2 == m >> 2 ? 2.0 : 1.0};
+        const double g[3] = {agree[1] * agree[2], agree[0] * agree[2], agree[0] * agree[1]};
+        Vec3<double>& to =
+            gradient[number(lowest[0] + (i & 1), lowest[1] + (i >> 1 & 1), lowest[2] + (i >> 2))];
+        for (int a = 0; a < 3; ++a) to[a] += ((i >> a & 1) != 0 ? share : -share) * inverse_cell[a] * g[a];
+      }
+    }
+  }
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,322 @@
+// Dual domain material point method (DDMP; Zhang, Ma and Giguere, J. Comput. Phys. 230 (2011) 6379): values
+// with the trilinear S_i, gradients with a blend of two,
+//   grad w_i(x) = alpha grad S_i(x) + (1 - alpha) sum_j S_j(x) G_ji,   alpha = product of 4 f (1 - f) over
+// the axes, f the position in the cell. alpha vanishes on the cells' faces, so that forces are continuous.
+// G_ji is the mean gradient of S_i at node j. Here it is a mean over the cells around j that are in use,
+//   G_ji = sum_c int_c S_j grad S_i dV / (n_j V/8),   n_j their number, V the volume of a cell,
+// so that no force reaches a node without mass at a free surface, and linear fields stay exact there.
+// Particles to grid is the adjoint: f_i = -sum_p V_p alpha sigma_p grad S_i - sum_j G_ji T_j, with T_j =
+// sum_p (1 - alpha) S_j V_p sigma_p.
+//
+// A cell is in use where it holds particles. Beyond a free or nonreflecting face of the grid none is.
+// Beyond a fixed, symmetry or rigid face the mirror images of cells in use are, and the outer nodes follow
+// the rules of BoundaryFaces: half a body at a symmetry face moves as half of the whole.
+//
+// Limits: a particle exactly on the face of a cell that holds no other one maps force to nodes that get no
+// mass of it, as with trilinear functions.
+#pragma once
+
+#include "core/shape/linear.hpp"
+
+namespace mpm::core {
+
+namespace ddmp {
+
+/// Rows of nodes along x, in lanes; nodes -1 .. brick_cells + 1 along each axis, lane 7 out of use. A cell
+/// has the lane of its lower node.
+using Row = Lanes<8>;
+inline constexpr NodeBlockShape node_block{1, 1};
+inline constexpr int row_doubles = 8;
+static_assert(node_block.side() < row_doubles);
+
+/// One component of all nodes, or of the points of the lattice, row by row along y and z; x_0 in lane 1.
+template <NodeBlockShape shape>
+struct Rows {
+  static constexpr int side = shape.side(), doubles = row_doubles * side * side;
+  static constexpr int index(int i, int j, int k) {
+    return i + 1 + row_doubles * (j + shape.below + side * (k + shape.below));
+  }
+  /// Of a point of lattice_points.
+  static constexpr int index(int point) {
+    const int n = lattice_points.side();
+    return index(point % n, point / n % n, point / (n * n));
+  }
+  /// Corner number `n` = i + 2 j + 4 k of a cell, relative to its lowest one.
+  static constexpr int corner(int n) { return (n & 1) + row_doubles * ((n >> 1 & 1) + side * (n >> 2)); }
+};
+using NodeRows = Rows<node_block>;
+using LatticeRows = Rows<lattice_points>;
+
+/// A point's sums: momentum, mass and the force of the direct gradients, as a node's record; T_j.
+inline constexpr int sum_doubles = 16;
+
+/// Sums over the particles of one cell, point i + 2 j + 4 k in lane i + 2 j + 4 k.
+template <NodeFields what>
+struct CellSums {
+  linear::Nodes px, py, pz, m;
+  linear::Nodes direct[6], averaged[6];  ///< V sigma times S alpha and S (1 - alpha): xx yy zz xy yz xz
+
+  void clear() {
+    px = py = pz = m = linear::Nodes(0.0);
+    for (int i = 0; i < 6; ++i) direct[i] = averaged[i] = linear::Nodes(0.0);
+  }
+};
+
+}  // namespace ddmp
+
+/// Position in the cells, and alpha.
+struct DdmpPlace : LinearPlace {
+  alignas(64) double alpha[block_lanes];
+  const CellsAround* cells = nullptr;
+
+  DdmpPlace() = default;
+  DdmpPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+    find(frame, layout, block);
+  }
+  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+    using R = Lanes<8>;
+    LinearPlace::find(frame, layout, block);
+    cells = frame.cells;
+    R product(64.0);
+    for (int a = 0; a < 3; ++a) product *= load<R>(f[a]) * (R(1.0) - load<R>(f[a]));
+    store(alpha, product);
+  }
+};
+
+/// As CellScatter, to records of `width` doubles of the lattice's points.
+template <NodeFields what>
+struct DdmpScatter {
+  static constexpr int width = maps_force(what) ? ddmp::sum_doubles : 4;
+  ddmp::CellSums<what> sums;
+  int node = -1;
+
+  void clear() { sums.clear(); }
+  [[gnu::always_inline]] void add(const BrickFrame& frame, const DdmpPlace& place, int i,
+                                  const MappedRows& rows, double* records) {
+    using N = linear::Nodes;
+    if (place.node[i] != node) {
+      flush(frame, records);
+      clear();
+      node = place.node[i];
+    }
+    const N wx = linear::one_x() + linear::sign_x() * N(place.f[0][i]),
+            wy = linear::one_y() + linear::sign_y() * N(place.f[1][i]),
+            wz = linear::one_z() + linear::sign_z() * N(place.f[2][i]);
+    const N w = wx * wy * wz;
+    if constexpr (maps_momentum(what)) {
+      if constexpr (maps_mass(what)) sums.m += w * N(rows.mass[i]);
+      sums.px += w * N(rows.momentum[0][i]);
+      sums.py += w * N(rows.momentum[1][i]);
+      sums.pz += w * N(rows.momentum[2][i]);
+    }
+    if constexpr (maps_force(what)) {
+      const N direct = N(place.alpha[i]) * w, averaged = w - direct;
+      for (int c = 0; c < 6; ++c) {
+        const N stress(rows.stress[c][i]);
+        sums.direct[c] += direct * stress;
+        sums.averaged[c] += averaged * stress;
+      }
+    }
+  }
+  [[gnu::always_inline]] void flush(const BrickFrame& frame, double* records) {
+    if (node >= 0) write(frame, records + width * node);
+  }
+
+ private:
+  /// The direct gradients as in NodeStore.
+  [[gnu::always_inline]] void write(const BrickFrame& frame, double* lowest) const {
+    using N = linear::Nodes;
+    using namespace linear;
+    const ddmp::CellSums<what>& s = sums;
+    if constexpr (maps_force(what)) {
+      const N gx = sign_x() * N(-frame.inverse_cell.x), gy = sign_y() * N(-frame.inverse_cell.y),
+              gz = sign_z() * N(-frame.inverse_cell.z);
+      const N(&d)[6] = s.direct;
+      N node_sums[8] = {s.px,
+                        s.py,
+                        s.pz,
+                        s.m,
+                        gx * along_x(d[0]) + gy * along_y(d[3]) + gz * along_z(d[5]),
+                        gx * along_x(d[3]) + gy * along_y(d[1]) + gz * along_z(d[4]),
+                        gx * along_x(d[5]) + gy * along_y(d[4]) + gz * along_z(d[2]),
+                        N(0.0)};
+      add_to_corners<width>(node_sums, lowest);
+      N stress[8] = {s.averaged[0], s.averaged[1], s.averaged[2], s.averaged[3],
+                     s.averaged[4], s.averaged[5], N(0.0),        N(0.0)};
+      add_to_corners<width>(stress, lowest + 8);
+    } else {
+      N momentum[4] = {s.px, s.py, s.pz, s.m};
+      add_half_to_corners(momentum, lowest);
+    }
+  }
+};
+
+namespace ddmp {
+
+/// Adds to the nodes of a brick the momentum, mass and direct forces of the lattice's points, and
+/// -sum_j G_ji T_j. `sums`: records of sum_doubles; `nodes`: contributions to the first array.
+void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes);
+/// Momentum and mass alone: records of four doubles.
+void sums_to_nodes(const double* sums, double* nodes);
+/// The records of the lattice's points among those of the nodes.
+void nodes_to_lattice(const double* nodes, double* lattice);
+/// The strain velocities of nodes' records in rows, three components.
+void velocity_rows(const double* nodes, double* velocity);
+/// D_j = sum_i v_i (x) G_ji in rows, nine components in the order of Mat3, for the points of the lattice.
+void averaged_gradients(const BrickFrame& frame, const double* velocity, double* gradient);
+
+}  // namespace ddmp
+
+struct Ddmp {
+  static constexpr std::string_view name = "DDMP";
+  static constexpr Site site = Site::cell;
+  static constexpr NodeBlockShape node_block = ddmp::node_block;
+  static constexpr NodeBlockShape momentum_block = lattice_points;
+  static constexpr int nodes_per_axis = 4;
+  static constexpr bool asks_for_cells = true;
+  static ColumnSet columns() { return {}; }
+  using NodeRows = ddmp::NodeRows;
+  using LatticeRows = ddmp::LatticeRows;
+  using Place = DdmpPlace;
+  using Interpolation = LinearInterpolation;
+  template <NodeFields what>
+  using Scatter = DdmpScatter<what>;
+
+  /// Sums at the lattice's points.
+  template <NodeFields what>
+  class Sums {
+   public:
+    explicit Sums(double* contributions) : records(lattice_), contributions_(contributions) {}
+    void finish(const BrickFrame& frame) {
+      if constexpr (maps_force(what))
+        ddmp::sums_to_nodes(frame, lattice_, contributions_);
+      else
+        ddmp::sums_to_nodes(lattice_, contributions_);
+    }
+    double* records;
+
+   private:
+    alignas(64) double lattice_[Scatter<what>::width * lattice_points.nodes()] = {};
+    double* contributions_;
+  };
+
+  /// Motion of the lattice's points; strain velocities of all nodes and their averaged gradients.
+  class Field {
+   public:
+    void take_motion(const double* nodes) { ddmp::nodes_to_lattice(nodes, motion_); }
+    void take_strain(const BrickFrame& frame, const double* nodes) {
+      ddmp::velocity_rows(nodes, velocity_);
+      ddmp::averaged_gradients(frame, velocity_, gradient_);
+    }
+    const double* velocity() const { return motion_ + Motion::velocity_at; }
+    const double* increment() const { return motion_ + Motion::increment_at; }
+    /// In rows.
+    const double* strain_velocity() const { return velocity_; }
+    const double* averaged_gradient() const { return gradient_; }
+
+   private:
+    alignas(64) double motion_[node_doubles * lattice_points.nodes()];
+    alignas(64) double velocity_[3 * ddmp::NodeRows::doubles];
+    alignas(64) double gradient_[9 * ddmp::LatticeRows::doubles];
+  };
+
+  template <class Rows>
+  static void gradient(const BrickFrame& frame, const Place& place, const Field& field, Rows& rows, int at) {
+    using R = Lanes<8>;
+    const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
+    const R alpha = load<R>(place.alpha), rest = R(1.0) - alpha;
+    const R scale[3] = {alpha * R(frame.inverse_cell.x), alpha * R(frame.inverse_cell.y),
+                        alpha * R(frame.inverse_cell.z)};
+    const LinearWeights weight(place);
+    R gradient[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    for_each_cell(place, [&](int point, auto here) {
+      const int lowest_node = NodeRows::index(point), lowest_point = LatticeRows::index(point);
+      for (int i = 0; i < 3; ++i) {
+        const double* v = field.strain_velocity() + NodeRows::doubles * i + lowest_node;
+        R direct[3];
+        differences(v, x, y, z, direct);
+        for (int j = 0; j < 3; ++j) {
+          const double* d = field.averaged_gradient() + LatticeRows::doubles * (3 * i + j) + lowest_point;
+          R averaged = weight[0] * R(d[0]);
+          for (int n = 1; n < 8; ++n) averaged += weight[n] * R(d[LatticeRows::corner(n)]);
+          R& g = gradient[3 * i + j];
+          g = select(here, scale[j] * direct[j] + rest * averaged, g);
+        }
+      }
+    });
+    for (int i = 0; i < 9; ++i) store(rows[i] + at, gradient[i]);
+  }
+
+  /// Of the trilinear functions.
+  static void cell_divergence(const BrickFrame& frame, const Place& place, const Field& field, double factor,
+                              double* row, int at) {
+    for_each_cell(place, [&](int point, auto here) {
+      double divergence = 0;
+      for (int a = 0; a < 3; ++a) {
+        const double* v = field.strain_velocity() + NodeRows::doubles * a + NodeRows::index(point);
+        double difference = 0;
+        for (int n = 0; n < 8; ++n)
+          difference += (n >> a & 1) != 0 ? v[NodeRows::corner(n)] : -v[NodeRows::corner(n)];
+        divergence += 0.25 * frame.inverse_cell[a] * difference;
+      }
+      store(row + at, select(here, Lanes<8>(divergence * factor), load<Lanes<8>>(row + at)));
+    });
+  }
+
+  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
+    return g.cell_index(x, axis) - 1;
+  }
+  template <class F>
+  static void for_each_weight(const Place& place, int lane, F f) {
+    const int lowest = lowest_of_cell(place, lane);
+    for (int n = 0; n < 8; ++n)
+      f(lowest + node_block.index(n & 1, n >> 1 & 1, n >> 2) - node_block.index(0, 0, 0),
+        weight(place, lane, n));
+  }
+  template <class F>
+  static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
+    double shape[64];
+    Vec3<double> gradient[64];
+    shape_and_gradient(place, lane, inverse_cell, shape, gradient);
+    const int lowest = lowest_of_cell(place, lane) - node_block.index(0, 0, 0);
+    for (int n = 0; n < 64; ++n) {
+      const int i = n % 4, j = n / 4 % 4, k = n / 16;
+      f(lowest + node_block.index(i - 1, j - 1, k - 1), NodeOffset{{i, j, k}}, shape[n], gradient[n]);
+    }
+  }
+
+ private:
+  /// Of the lowest node of a particle's cell.
+  static int lowest_of_cell(const Place& place, int lane) {
+    const int side = lattice_points.side(), point = place.node[lane];
+    return node_block.index(point % side, point / side % side, point / (side * side));
+  }
+  static double weight(const Place& place, int lane, int corner) {
+    double w = 1;
+    for (int a = 0; a < 3; ++a) w *= (corner >> a & 1) != 0 ? place.f[a][lane] : 1 - place.f[a][lane];
+    return w;
+  }
+  /// On the nodes i + 4 j + 16 k around the particle's cell.
+  static void shape_and_gradient(const Place& place, int lane, const Vec3<double>& inverse_cell,
+                                 double (&shape)[64], Vec3<double> (&gradient)[64]);
+
+  /// Differences of the trilinear interpolation of v along the axes.
+  [[gnu::always_inline]] static void differences(const double* v, Lanes<8> x, Lanes<8> y, Lanes<8> z,
+                                                 Lanes<8> (&result)[3]) {
+    using R = Lanes<8>;
+    const auto at = [&](int n) { return R(v[NodeRows::corner(n)]); };
+    R d[4], u[4];
+    for (int e = 0; e < 4; ++e) {
+      d[e] = at(2 * e + 1) - at(2 * e);
+      u[e] = at(2 * e) + x * d[e];
+    }
+    const R lower = u[1] - u[0], upper = u[3] - u[2];
+    const R d_lower = d[0] + y * (d[1] - d[0]), d_upper = d[2] + y * (d[3] - d[2]);
+    result[0] = d_lower + z * (d_upper - d_lower);
+    result[1] = lower + z * (upper - lower);
+    result[2] = (u[2] + y * upper) - (u[0] + y * lower);
+  }
+};
+static_assert(ShapePolicy<Ddmp>);
+
+}  // namespace mpm::core

@@ -1,0 +1,161 @@
+#include "core/step/cells_in_use.hpp"
+
+#include <array>
+
+#include "core/shape/list.hpp"
+#include "core/step/prefetch.hpp"
+#include "core/threads.hpp"
+
+namespace mpm::core {
+
+namespace {
+
+constexpr NodeFields field = mapped::cells_in_use;
+
+constexpr std::uint64_t bit_of(int i, int j, int k) {
+  return std::uint64_t{1} << (i + brick_cells * (j + brick_cells * k));
+}
+
+/// By the number of the cell's lowest point in lattice_points. No particle is in a cell above the brick.
+constexpr auto cell_of_point = [] {
+  std::array<std::uint64_t, lattice_points.nodes()> bits{};
+  for (int k = 0; k < brick_cells; ++k) {
+    for (int j = 0; j < brick_cells; ++j) {
+      for (int i = 0; i < brick_cells; ++i)
+        bits[static_cast<std::size_t>(lattice_points.index(i, j, k))] = bit_of(i, j, k);
+    }
+  }
+  return bits;
+}();
+
+/// f(bit, node of the brick's node block) for each cell.
+template <class F>
+void for_each_cell_of(const NodeBlockShape& shape, F f) {
+  for (int k = 0; k < brick_cells; ++k) {
+    for (int j = 0; j < brick_cells; ++j) {
+      for (int i = 0; i < brick_cells; ++i) f(bit_of(i, j, k), shape.index(i, j, k));
+    }
+  }
+}
+
+/// Adds the mirror images beyond the constrained faces of the grid. One axis after the other, so that those
+/// beyond edges and corners follow.
+void add_mirror_images(const GridGeometry& geometry, BrickCoord brick, CellsAround& around) {
+  const int first[3] = {brick_cells * brick.x, brick_cells * brick.y, brick_cells * brick.z};
+  const auto copy_layer = [&](int axis, int from, int to) {
+    int c[3];
+    int &u = c[(axis + 1) % 3], &v = c[(axis + 2) % 3];
+    for (u = -1; u <= brick_cells; ++u) {
+      for (v = -1; v <= brick_cells; ++v) {
+        c[axis] = from;
+        if (!around.has(c[0], c[1], c[2])) continue;
+        c[axis] = to;
+        around.add(c[0], c[1], c[2]);
+      }
+    }
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const std::int64_t last = geometry.cells[a] - first[axis];  // the upper wall's node
+    if (first[axis] == 0 && is_constrained(geometry.boundary[2 * a])) copy_layer(axis, 0, -1);
+    if (last <= brick_cells && is_constrained(geometry.boundary[2 * a + 1]))
+      copy_layer(axis, static_cast<int>(last) - 1, static_cast<int>(last));
+  }
+}
+
+}  // namespace
+
+CellsInUse::Cells CellsInUse::cells_of(Slot s) const {
+  const BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
+  const BrickFrame frame(grid.geometry(), brick.coord);
+  constexpr int columns = static_cast<int>(Column::position_x) + 3;
+  Cells cells = 0;
+  for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+    const ParticleTile& tile = brick.tiles[c];
+    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+    const BlockPrefetch prefetch(model_, s, c);
+    for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+      prefetch.request<Linear>(b, pool.layout(), columns);
+      const LinearPlace place(frame, pool.layout(), pool.block(tile.blocks[b]));
+      for (int l = 0; l < tile.used_lanes(b); ++l)
+        cells |= cell_of_point[static_cast<std::size_t>(place.node[l])];
+    }
+  }
+  return cells;
+}
+
+void CellsInUse::write_to_nodes(Slot s) {
+  BrickGrid& grid = *model_.grid;
+  constexpr int width = record_doubles(field.array);
+  double* at = grid.contributions(field.array, s) + field.first;
+  for (int n = 0; n < grid.shape().nodes(); ++n) at[width * n] = 0;
+  const Cells cells = cells_[static_cast<std::size_t>(s)];
+  for_each_cell_of(grid.shape(), [&](Cells bit, int node) { at[width * node] = (cells & bit) != 0 ? 1 : 0; });
+}
+
+CellsInUse::Cells CellsInUse::read_from_nodes(Slot s) const {
+  const BrickGrid& grid = *model_.grid;
+  constexpr int width = record_doubles(field.array);
+  const double* at = grid.contributions(field.array, s) + field.first;
+  Cells cells = 0;
+  for_each_cell_of(grid.shape(), [&](Cells bit, int node) { cells |= at[width * node] != 0 ? bit : 0; });
+  return cells;
+}
+
+void CellsInUse::find() {
+  BrickGrid& grid = *model_.grid;
+  cells_.resize(static_cast<std::size_t>(grid.owned() + grid.ghosts()));
+  for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
+    cells_[static_cast<std::size_t>(s)] = cells_of(static_cast<Slot>(s));
+    write_to_nodes(static_cast<Slot>(s));
+  });
+  halo_.begin(grid, field);
+  for_each_by_threads(grid.boundary(), grid.owned(), 4, [&](int s) {
+    prefetch_coming_bricks(grid, static_cast<Slot>(s));
+    cells_[static_cast<std::size_t>(s)] = cells_of(static_cast<Slot>(s));
+  });
+}
+
+void CellsInUse::finish_exchange() {
+  BrickGrid& grid = *model_.grid;
+  halo_.end(grid);
+  for (int g = 0; g < grid.ghosts(); ++g) {
+    const Slot s = grid.owned() + g;
+    cells_[static_cast<std::size_t>(s)] = read_from_nodes(s);
+  }
+  grid.reset_cells_around();
+  for_each_by_threads(0, grid.owned(), 16, [&](int s) { combine(static_cast<Slot>(s)); });
+}
+
+void CellsInUse::combine(Slot s) {
+  BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
+  CellsAround& around = grid.cells_around(s);
+  for (int n = 0; n < neighbourhood; ++n) {
+    const Slot from = brick.neighbour[static_cast<std::size_t>(n)];
+    if (from == no_slot) continue;
+    const Cells cells = cells_[static_cast<std::size_t>(from)];
+    const BrickCoord d = neighbour_offset(n);
+    const auto lowest = [](int offset) { return offset < 0 ? brick_cells - 1 : 0; };
+    const auto highest = [](int offset) { return offset > 0 ? 0 : brick_cells - 1; };
+    for (int k = lowest(d.z); k <= highest(d.z); ++k) {
+      for (int j = lowest(d.y); j <= highest(d.y); ++j) {
+        const auto row = static_cast<unsigned>(cells >> brick_cells * (j + brick_cells * k)) & 15u;
+        const unsigned within = d.x < 0 ? row >> 3 : d.x > 0 ? (row & 1u) << 5 : row << 1;
+        around.add_row(j + brick_cells * d.y, k + brick_cells * d.z, within);
+      }
+    }
+  }
+  add_mirror_images(grid.geometry(), brick.coord, around);
+}
+
+std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo) {
+  return with_shape(model.scene->grid.shape,
+                    [&]<class S>(std::type_identity<S>) -> std::unique_ptr<CellsInUse> {
+                      if constexpr (asks_for_cells<S>) return std::make_unique<CellsInUse>(model, halo);
+                      return nullptr;
+                    });
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,10 @@
+#include "core/shape/ddmp.hpp"
+#include "core/step/passes_with.hpp"
+#include "core/transfer/flip.hpp"
+
+namespace mpm::core {
+
+template std::unique_ptr<Passes> make_passes_with<Ddmp, Flip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Ddmp, FlipPic>(Model&, NodeHalo&);
+
+}  // namespace mpm::core

@@ -1,0 +1,138 @@
+// Which cells are in use, against a count over all particles; and what DDMP makes of it at a symmetry face.
+#include "core/step/cells_in_use.hpp"
+
+#include <set>
+
+#include <catch2/catch.hpp>
+
+#include "tests/core/step/case.hpp"
+
+using namespace mpm::tests;
+using mpm::core::CellsAround;
+using mpm::core::GridGeometry;
+using mpm::core::Slot;
+
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+/// The block of the oracle's tests in the corner of the lower y and the upper x and z, some particles on the
+/// upper faces of the grid.
+ReferenceCase in_a_corner(int boundary) {
+  ReferenceCase c = tumbling_block();
+  c.shape = ReferenceShape::ddmp;
+  c.boundary.fill(boundary);
+  for (std::size_t n = 0; n < c.particles.size(); ++n) {
+    Vector& x = c.particles[n].x;
+    x = {x[0] + 5.7, x[1] - 5.4, x[2] + 4.7};
+    if (n % 50 == 0) x[0] = c.origin[0] + c.cell[0] * c.cells[0];
+  }
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("A brick knows the cells in use in it and around it, and their images beyond walls") {
+  for (const int boundary : {0, 1, 2, 3, 4}) {
+    CAPTURE(boundary);
+    const ReferenceCase c = in_a_corner(boundary);
+    SmallRun run(c);
+    const GridGeometry& g = run.model.grid->geometry();
+    std::set<Cell> in_use;
+    for (const ReferenceParticle& p : c.particles)
+      in_use.insert({g.cell_index(p.x[0], 0), g.cell_index(p.x[1], 1), g.cell_index(p.x[2], 2)});
+
+    const auto cells = mpm::core::make_cells_in_use(run.model, run.solo.halo);
+    REQUIRE(cells != nullptr);
+    cells->find();
+    cells->finish_exchange();
+    int wrong = 0, beyond = 0;
+    for (Slot s = 0; s < run.model.grid->owned(); ++s) {
+      const CellsAround& around = *run.model.grid->cells_in_use(s);
+      const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
+      for (int n = 0; n < 216; ++n) {
+        const int at[3] = {n % 6 - 1, n / 6 % 6 - 1, n / 36 - 1};
+        Cell cell{4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]};
+        bool mirrored = false;
+        for (std::size_t a = 0; a < 3 && boundary != 0 && boundary != 3; ++a) {
+          const std::int64_t before = cell[a];
+          if (cell[a] == -1) cell[a] = 0;
+          if (cell[a] == g.cells[a]) cell[a] = g.cells[a] - 1;
+          mirrored = mirrored || cell[a] != before;
+        }
+        const bool has = around.has(at[0], at[1], at[2]);
+        wrong += has != in_use.contains(cell) ? 1 : 0;
+        beyond += mirrored && has ? 1 : 0;
+      }
+      CHECK(around.beside(2, 2, 2) == around.has(1, 1, 1) + around.has(2, 1, 1) + around.has(1, 2, 1) +
+                                          around.has(2, 2, 1) + around.has(1, 1, 2) + around.has(2, 1, 2) +
+                                          around.has(1, 2, 2) + around.has(2, 2, 2));
+    }
+    CHECK(wrong == 0);
+    CHECK((beyond > 0) == (boundary != 0 && boundary != 3));
+  }
+}
+
+TEST_CASE("Only shape functions that ask for cells in use have phases for them") {
+  for (const ReferenceShape shape : reference_shapes) {
+    ReferenceCase c = in_a_corner(0);
+    c.shape = shape;
+    SmallRun run(c);
+    run.step(1);
+    int phases = 0;
+    for (const mpm::core::Phase& phase : run.stepper->phases())
+      phases += phase.name.find("cells") != std::string::npos ? 1 : 0;
+    CHECK(phases == (shape == ReferenceShape::ddmp ? 2 : 0));
+    CHECK((run.model.grid->cells_in_use(0) != nullptr) == (shape == ReferenceShape::ddmp));
+  }
+}
+
+TEST_CASE("Half a body at a symmetry face moves as half of the whole") {
+  for (const ReferenceShape shape :
+       {ReferenceShape::ddmp, ReferenceShape::quadratic_bspline, ReferenceShape::linear}) {
+    for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl}) {
+      CAPTURE(static_cast<int>(shape), static_cast<int>(scheme));
+      ReferenceCase half;
+      half.shape = shape;
+      half.scheme = scheme;
+      half.material = {.density = 2, .young = 900, .poisson = 0.3};
+      half.cell = {1, 1, 1};
+      half.cells = {8, 9, 9};
+      half.boundary[0] = 2;
+      for (int n = 0; n < 6 * 5 * 6; ++n) {
+        ReferenceParticle p;
+        p.x = {0.27 + 0.5 * (n % 6), 3.1 + 0.5 * (n / 6 % 5), 3.3 + 0.5 * (n / 30)};
+        p.v = {-2 * std::sin(p.x[0]), 0.9 * p.x[2] - 2 + p.x[0] * p.x[0], 1.2 * std::cos(p.x[1])};
+        p.V = 0.125;
+        p.m = 0.25;
+        half.particles.push_back(p);
+      }
+      ReferenceCase whole = half;
+      whole.origin[0] = -8;
+      whole.cells[0] = 16;
+      whole.boundary[0] = 0;
+      for (ReferenceParticle p : half.particles) {
+        p.x[0] = -p.x[0];
+        p.v[0] = -p.v[0];
+        whole.particles.push_back(p);
+      }
+      SmallRun one(half), two(whole);
+      for (SmallRun* run : {&one, &two}) {
+        run->scene->solution.time_step.specified = 0.01;
+        run->step(40);
+      }
+      const auto all = two.particles();
+      double worst = 0, stress = 0;
+      for (const auto& [identity, p] : one.particles()) {
+        const ReferenceParticle& q = all.at(identity);
+        for (std::size_t a = 0; a < 3; ++a) {
+          worst = std::max({worst, std::abs(p.x[a] - q.x[a]), std::abs(p.v[a] - q.v[a])});
+          for (std::size_t b = 0; b < 3; ++b) worst = std::max(worst, std::abs(p.s[a][b] - q.s[a][b]) / 900);
+        }
+        stress = std::max(stress, std::abs(p.s[0][0]));
+      }
+      CHECK(worst < 1e-11);
+      CHECK(stress > 10);
+    }
+  }
+}
