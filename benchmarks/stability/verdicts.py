@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+"""Scenes that strain a material point method, and a verdict on each: which end, how much energy, how fast.
+
+  verdicts.py                      every scene with every method; a few minutes on one core
+  verdicts.py --scene NAME ...     these scenes; --shape, --scheme, --averaging choose methods alike
+  verdicts.py --docs               everything, and the table of docs/stability.md
+
+stable: the run completes, its energy balance is within 1 % in the mean of the last quarter of the rows of the status file (the
+sum of a single row oscillates: its parts belong to times half a step apart), and no particle is faster at the end than the scene's
+bound. drift: it completes, but the balance is not, or a particle is too fast. stopped: exit code 3 with a message that says what failed, at
+which step. wrong: any other end, or a number that is not finite in a file. The program's defaults, with FLIP and a factor of 0.9
+where the scene says nothing else."""
+
+import argparse
+import dataclasses
+import pathlib
+import sys
+import tempfile
+
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / part) for part in ("benchmarks", "tests/system")]
+
+from common import results  # noqa: E402: found by the line above
+import _mpm  # noqa: E402
+import bits_laws  # noqa: E402
+import numpy as np  # noqa: E402
+
+PAGE = results.ROOT / "docs/stability.md"
+SHAPES, SCHEMES, AVERAGING = ("linear", "SGMP", "QuadraticBSpline"), ("MUSL", "USF", "USL"), ("none", "cell")
+WITHIN = 0.01  # of the energy
+JWL = '<EquationOfState type="JWL" A="371.2e3" B="3.23e3" R1="4.15" R2="0.95" w="0.3" E0="7e3"/>'
+COPPER = _mpm.material("copper", 8.93e-3, 'type="IsoHarden" Young="117e3" Poisson="0.35" Yield0="157" TangMod="423"',
+                       '<EquationOfState type="Gruneisen" C0="3940" S1="1.49" gamma0="1.96"/>')
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    about: str
+    text: str
+    fastest: float  # bound of a particle's speed
+
+
+def elastic(name, density, young, poisson=0.3, law="IsoElastic"):
+    return _mpm.material(name, density, f'type="{law}" Young="{young!r}" Poisson="{poisson!r}"')
+
+
+def box(upper, cell=1, faces="000000"):
+    return _mpm.grid((0, 0, 0), upper, faces, cell)
+
+
+def solution(end, more="", factor=0.9):
+    return _mpm.solution(repr(end), "MUSL", factor, "", more)
+
+
+def collision(about, first, second, end, fastest):
+    """Two blocks that meet in the middle of a cell at a relative speed of 2; of 4 x 4 x 4 cells."""
+    bodies = [_mpm.block("left", (1.3, 2.2, 2.1), (4, 4, 4), (2, 0.3, 0.1), of="first"),
+              _mpm.block("right", (5.8, 2.2, 2.1), (4, 4, 4), (0, 0, 0), of="second")]
+    return Scene(about, _mpm.scene(bodies, box((14, 9, 9)), solution(end), [first, second]), fastest)
+
+
+def wave(about, material, end, dp=0.5, cell=1, factor=0.9, fastest=3.0):
+    """A block that vibrates in its longest mode while it drifts across cells."""
+    speed = [f"{drift}+0.5*cos(pi*({axis}-{low})/6)" for drift, axis, low in zip((0.4, 0.3, 0.2), "xyz", (2.1, 2.2, 2.3))]
+    body = _mpm.block("block", (2.1, 2.2, 2.3), (6, 6, 6), speed, dp, "soft")
+    return Scene(about, _mpm.scene([body], box((12, 12, 12), cell), solution(end, factor=factor), [material]), fastest)
+
+
+def narrow_cells():
+    grid = box((12, 12, 12)).replace('dx="1" dy="1" dz="1"', 'dx="1" dy="1" dz="0.1"')
+    body = _mpm.block("block", (2.1, 2.2, 2.25), (6, 6, 2), ("0.4+0.5*cos(pi*(x-2.1)/6)", 0.3, 0.05), 0.25, "soft")
+    return Scene("cells of 1 x 1 x 0.1", _mpm.scene([body], grid, solution(4.0), [elastic("soft", 1.0, 1000.0)]), 3.0)
+
+
+def lone_particle():
+    body = ('<Body name="lone" material="soft" type="Point"><Geometry><Point mass="0.125" x="2.5" y="2.5" z="2.5"/></Geometry>'
+            '<InitialVelocity vx="0.5" vy="0.05" vz="0.01"/></Body>')
+    return Scene("a lone particle that creeps across the faces of cells",
+                 _mpm.scene([body], box((8, 6, 6)), solution(8.0), [elastic("soft", 1.0, 1000.0)]), 0.6)
+
+
+def impact():
+    ball = ('<Body name="ball" material="copper" type="Sphere"><Geometry x0="10" y0="10" z0="11.6" Outer_Radius="2" dp="0.5"/>'
+            '<InitialVelocity vx="0" vy="0" vz="-20000"/></Body>')
+    plate = _mpm.block("plate", (4, 4, 7), (12, 12, 2), dp=0.5, of="copper")
+    return Scene("a copper ball into a plate at 20 km/s",
+                 _mpm.scene([ball, plate], box((20, 20, 20)), solution(8e-4), [COPPER]), 30000.0)
+
+
+def products(about, ratio, speed, end, fastest):
+    """Detonation products in a column that a linear velocity compresses or expands to the given ratio of volumes."""
+    law = _mpm.material("gas", 1.63e-3, 'type="HighExpBurn" D="6930" beta="2" PCJ="21e3"', JWL)
+    lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-1"/></Detonation>'
+    body = _mpm.block("gas", (0, 0, 0), (20, 2, 2), (f"{speed}*x/20", 0, 0), 0.5, "gas")
+    length = max(20 * ratio + 40, 60)
+    return Scene(about, _mpm.scene([body], box((length, 2, 2), faces="202222"), solution(end), [law], more=lit), fastest)
+
+
+def torn():
+    bar = _mpm.block("bar", (20.2, 1.2, 1.1), (10, 3, 3), ("8*(x-25.2)", 0, 0), of="soft")
+    law = _mpm.material("soft", 1.0, 'type="IsoHarden" Young="1000" Poisson="0.3" Yield0="1" TangMod="0"')
+    return Scene("a plastic bar pulled to five times its length", _mpm.scene([bar], box((50, 6, 6)), solution(0.5), [law]), 60.0)
+
+
+def water(steps):
+    law = _mpm.material("water", 1000.0, 'type="Null" mu="1e-3"',
+                        '<EquationOfState type="Polynomial" c0="0" c1="2e6" c2="0" c3="0" c4="0" c5="0" c6="0"/>')
+    body = _mpm.block("water", (0, 0, 0), (0.2, 0.05, 0.2), dp=0.025, of="water")
+    step = 0.9 * 0.05 / 45  # about the program's own
+    return Scene(f"water at rest in a tank, {steps} steps",
+                 _mpm.scene([body], _mpm.grid((0, 0, 0), (0.2, 0.05, 0.3), "222220", 0.05),
+                            solution(steps * step, '<Gravity ax="0" ay="0" az="-9.81"/>'), [law]), 1.0)
+
+
+def failed(viscosity):
+    law = _mpm.material("brittle", 8.93e-3, 'type="IsoHarden" Young="117e3" Poisson="0.35" Yield0="157" TangMod="423" '
+                        f'FailViscosity="{viscosity}"', '<EquationOfState type="Gruneisen" C0="3940" S1="1.49" gamma0="1.96"/>'
+                        '<FailureModel type="PlaStrain" epmax="0.05"/>')
+    body = _mpm.block("block", (4, 4, 0), (4, 4, 8), (0, 0, -500), 0.5, "brittle")
+    words = "with" if viscosity else "without"
+    return Scene(f"a brittle block at 500 m/s onto a wall, {words} FailViscosity",
+                 _mpm.scene([body], box((12, 12, 12), faces="000020"), solution(0.01), [law]), 1500.0)
+
+
+def foam():
+    steel = elastic("steel", 7830.0, 200e9)
+    ball = ('<Body name="ball" material="steel" type="Sphere"><Geometry x0="5e-3" y0="5e-3" z0="5e-3" Outer_Radius="1e-3" dp="0.5e-3"/>'
+            '<InitialVelocity vx="100" vy="0" vz="0"/></Body>')
+    whole = _mpm.block("whole", (1e-3, 1e-3, 1e-3), (8e-3, 8e-3, 8e-3), dp=0.5e-3, of="foam", attributes='ForBoolBody="1"')
+    whole = whole.replace('<InitialVelocity vx="0" vy="0" vz="0"/>', "")
+    hole = ball.replace('"ball"', '"hole" ForBoolBody="1"').split("<InitialVelocity")[0] + "</Body>"
+    rest = '<Body name="foam" material="foam" type="Bool" BoolType="subtract" BoolBodyA="whole" BoolBodyB="hole"/>'
+    return Scene("a steel ball that moves inside a block of foam at 100 m/s",
+                 _mpm.scene([ball, whole, hole, rest], _mpm.grid((0, 0, 0), (12e-3, 10e-3, 10e-3), "000000", 1e-3), solution(5e-5),
+                            [steel, bits_laws.material("foam")]), 400.0)
+
+
+SOFT = elastic("soft", 1.0, 1000.0)
+SCENES = {
+    "stiffness": collision("stiffness 1e6 : 1, met in a cell", elastic("first", 1.0, 1e7), elastic("second", 1.0, 10.0), 0.3, 10.0),
+    "density": collision("density 1e4 : 1, met in a cell", elastic("first", 1e4, 1e6), elastic("second", 1.0, 1e3), 1.0, 10.0),
+    "poisson": wave("Poisson's ratio 0.4999", elastic("soft", 1.0, 1000.0, 0.4999, "NeoHookean"), 4.0),
+    "lone": lone_particle(),
+    "impact": impact(),
+    "compressed": products("products compressed more than tenfold", 0.1, -25000, 8e-4, 40000.0),
+    "expanded": products("products expanded more than a hundredfold", 100, 12000, 0.17, 20000.0),
+    "torn": torn(),
+    "sparse": wave("1 particle in a cell", SOFT, 8.0, dp=1.0),
+    "dense": wave("64 particles in a cell", SOFT, 8.0, dp=0.25),
+    "narrow": narrow_cells(),
+    "factor": wave("factor 0.99", SOFT, 8.0, factor=0.99),
+    "water": water(100000),
+    "failed": failed(0),
+    "failed viscous": failed(1),
+    "foam": foam(),
+}
+
+
+def finite(folder):
+    return all(np.isfinite(values).all() for values in _mpm.table(folder / "case.sta").values())
+
+
+def speed(folder):
+    """The largest of a particle at the end."""
+    import h5py
+    with h5py.File(folder / "case.h5part") as file:
+        last = _mpm.pictures(file)[-1]
+        return float(np.sqrt(sum(last[f"velocity_{a}"][:].astype(float) ** 2 for a in range(3))).max())
+
+
+def judge(name, shape, scheme, averaging, folder):
+    """A row of the table."""
+    scene = SCENES[name]
+    text = scene.text.replace("<Grid>", f'<Grid shape="{shape}">').replace('algorithm="MUSL"', f'algorithm="{scheme}"')
+    text = text.replace("</Solution>", f'<Volumetric averaging="{averaging}"/></Solution>')
+    end = text.split('<EndTime value="')[1].split('"')[0]
+    text = text.replace("<Output>", f'<Output><PostProcessing time_interval="{end}" h5part="1" var="pres"/>')
+    (folder / "case.xmp").write_text(text)
+    done = _mpm.run([folder / "case.xmp", "--output-dir", folder])
+    row = {"scene": name, "shape": shape, "scheme": scheme, "averaging": averaging, "verdict": "wrong", "code": done.code,
+           "steps": "", "drift": "", "speed": "", "note": ""}
+    if done.code == 2:
+        raise SystemExit(f"{name}: {done.err}")
+    if done.code not in (0, 3):
+        row["note"] = done.err.strip()[-100:]
+        return row
+    summary = _mpm.summary(folder)
+    rows = _mpm.table(folder / "case.sta")
+    drifts = rows["relative_drift"]
+    row.update(steps=summary["steps"], drift=float(np.mean(drifts[-(len(drifts) + 3) // 4:])))
+    if done.code == 3:
+        row.update(verdict="stopped" if summary["reason"].startswith("step ") and finite(folder) else "wrong", note=summary["reason"])
+        return row
+    row["speed"] = speed(folder)
+    if finite(folder):
+        row["verdict"] = "stable" if abs(row["drift"]) <= WITHIN and row["speed"] <= scene.fastest else "drift"
+    return row
+
+
+COLUMNS = {"scene": (lambda r: SCENES[r["scene"]].about, ""), "shape": (lambda r: f"`{r['shape']}`", ""),
+           "scheme": (lambda r: r["scheme"], ""), "averaging": (lambda r: r["averaging"], ""),
+           "verdict": (lambda r: r["verdict"], ""), "energy drift, %": (lambda r: r["drift"] and 100 * r["drift"], "+.2g"),
+           "speed": (lambda r: r["speed"], ".3g"), "bound": (lambda r: SCENES[r["scene"]].fastest, "g"),
+           "steps": (lambda r: r["steps"], "")}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
+    parser.add_argument("--shape", nargs="+", choices=SHAPES, default=SHAPES)
+    parser.add_argument("--scheme", nargs="+", choices=SCHEMES, default=("MUSL",))
+    parser.add_argument("--averaging", nargs="+", choices=AVERAGING, default=("none",))
+    parser.add_argument("--docs", action="store_true", help="refresh the table of docs/stability.md")
+    options = parser.parse_args()
+    rows = []
+    for name in options.scene:
+        for shape in options.shape:
+            for scheme in options.scheme:
+                for averaging in options.averaging:
+                    with tempfile.TemporaryDirectory() as folder:
+                        rows.append(judge(name, shape, scheme, averaging, pathlib.Path(folder)))
+                    print(", ".join(f"{v:.3g}" if isinstance(v, float) else str(v) for v in rows[-1].values()), flush=True)
+    if options.docs:
+        results.refresh(PAGE, {"verdicts": results.markdown(rows, COLUMNS)})
+
+
+if __name__ == "__main__":
+    main()
