@@ -81,9 +81,9 @@ template <class F>
   return sum;
 }
 
-/// Row `r` along an axis of a plane of cells across another one, of `n` edges along that: sum over the cells
-/// beside it in use of (2 or 1 along x) (2 or 1 along the axis) a, in the nodes' lanes. a: rows of edges
-/// along the axis; `cell`: the first cell's number, `stride` to the next.
+/// A plane of cells between two rows' planes of nodes, `a` on its edges across the plane, by the row r of the
+/// edge: sum over the cells beside row `r` in use of (2 or 1 along x) (2 or 1 along the rows) a, in the
+/// nodes' lanes. `cell`: number of the plane's first row of cells, `stride` to the next.
 [[gnu::always_inline]] inline Row along(const Row* a, const CellWeights& weights, int r, int cell,
                                         int stride) {
   Row sum(0.0);
