@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -34,6 +36,26 @@ bool is_finite(const ConstParticle& p, double reference_density) {
          std::isfinite(m * p[Column::internal_energy] / reference_density);
 }
 
+/// The particle with the highest value of `measure`, over all ranks; of equal ones the first.
+template <class F>
+std::string highest_in_words(const Model& model, Reductions& ranks, std::string_view name, F measure) {
+  double most = -std::numeric_limits<double>::infinity();
+  OffendingParticle highest;
+  for (const ConstParticleBlock& block : blocks_of(model)) {
+    const Body& body = model.bodies[static_cast<std::size_t>(block.body)];
+    for (const ConstParticle p : block) {
+      const double value = measure(p, body);
+      if (!(value >= most)) continue;
+      if (value > most) highest = {};
+      most = value;
+      highest.offer(p[Column::identity], [&] {
+        return in_words(model, block.body, p) + fmt::format(", with {} {:.6g}", name, value);
+      });
+    }
+  }
+  return first_of_all(ranks, most == ranks.largest(most) ? highest : OffendingParticle{}).words;
+}
+
 }  // namespace
 
 OffendingParticle first_not_finite(const Model& model, int* body_of_first) {
@@ -57,20 +79,15 @@ OffendingParticle first_not_finite(const Model& model, int* body_of_first) {
 }
 
 std::string fastest_in_words(const Model& model, Reductions& ranks) {
-  double most = -1;
-  OffendingParticle fastest;
-  for (const ConstParticleBlock& block : blocks_of(model)) {
-    for (const ConstParticle p : block) {
-      const double speed = std::sqrt(squared_speed(p));
-      if (!(speed >= most)) continue;
-      if (speed > most) fastest = {};
-      most = speed;
-      fastest.offer(p[Column::identity], [&] {
-        return in_words(model, block.body, p) + fmt::format(", with speed {:.6g}", speed);
-      });
-    }
-  }
-  return first_of_all(ranks, most == ranks.largest(most) ? fastest : OffendingParticle{}).words;
+  return highest_in_words(model, ranks, "speed",
+                          [](const ConstParticle& p, const Body&) { return std::sqrt(squared_speed(p)); });
+}
+
+std::string hottest_in_words(const Model& model, Reductions& ranks) {
+  return highest_in_words(model, ranks, "specific internal energy",
+                          [](const ConstParticle& p, const Body& body) {
+                            return p[Column::internal_energy] / body.model->reference_density();
+                          });
 }
 
 void require_finite(const Model& model, std::span<const double> totals, Reductions& ranks) {

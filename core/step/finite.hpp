@@ -16,6 +16,8 @@ OffendingParticle first_not_finite(const Model& model, int* body = nullptr);
 
 /// Text that describes the fastest particle of all ranks and its speed; empty without particles. Collective.
 std::string fastest_in_words(const Model& model, Reductions& ranks);
+/// The same of the particle with the highest specific internal energy.
+std::string hottest_in_words(const Model& model, Reductions& ranks);
 
 /// `totals`: sums over all particles, the same on all ranks. Throws NumericalFailure on every rank if one of
 /// them is not finite. Collective.

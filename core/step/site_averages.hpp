@@ -4,13 +4,13 @@
 //   force   p_p <- p_c = sum V_p (p + q)_p / sum V_p
 // Nearly incompressible material then has one constraint per site instead of one per particle. This is the
 // B-bar method with a constant volume change (T. J. R. Hughes, IJNME 15 (1980) 1413) in rate form, with means
-// over particles in the place of an element's integrals, as W. M. Coombs, T. J. Charlton, M. Cortis and
-// C. E. Augarde (CMAME 333 (2018) 236) and C. M. Mast et al. (JCP 231 (2012) 5351) take averages to
-// particles. The mean pressure belongs to it: sum V p_c tr L = sum V p theta_c, so that forces do the work
-// that the particles store. With the mean volume change alone a dam break doubles its energy.
+// over particles in the place of an element's integrals. Other ways to bring B-bar and F-bar to the material
+// point method: R. M. Telikicherla and G. Moutsanidis, arXiv:2407.03826, and the literature there. The mean
+// pressure belongs to it: sum V p_c tr L = sum V p theta_c, so that forces do the work that the particles
+// store. With the mean volume change alone a dam break doubles its energy.
 //
 // A site belongs to one brick, and sums follow the order of its particles: the same bits on any ranks and
-// threads. Shown by tests/core/step/site_averages_test.cpp and against the naive stepper.
+// threads. Tested by tests/core/step/site_averages_test.cpp and against the naive stepper.
 #pragma once
 
 #include <algorithm>

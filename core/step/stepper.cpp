@@ -96,8 +96,11 @@ void Stepper::reduce_status() {
     if (what.empty()) what = "a particle in migration has a state that is not finite";
   } else if (std::isfinite(clock.first_critical_dt) &&
              clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
-    what = fmt::format("the critical time step has fallen to {:.3g}, {:.1g} of the first one",
-                       clock.critical_dt, clock.critical_dt / clock.first_critical_dt);
+    what = fmt::format(
+        "the critical time step has fallen to {:.3g}, {:.1g} of the first one; the fastest: {}; the hottest: "
+        "{}",
+        clock.critical_dt, clock.critical_dt / clock.first_critical_dt,
+        fastest_in_words(model_, communication_), hottest_in_words(model_, communication_));
   }
   if (!what.empty()) failure_ = fmt::format("step {}, time {:.9g}: {}", clock.step, clock.time, what);
 }

@@ -280,6 +280,20 @@ TEST_CASE("A step that does not advance the time ends the run, before anything h
   }
 }
 
+TEST_CASE("A critical step that collapses ends the run and names the fastest and the hottest particle") {
+  SmallRun run(tumbling(ReferenceScheme::musl), half);
+  run.step();
+  for (const ParticleBlock& block : blocks_of(run.model)) {
+    for (int i = 0; i < block.used; ++i)
+      if (block.particle(i)[Column::identity] == 17)
+        block.data[block.layout->offset(Column::internal_energy) + i] = 1e3;
+  }
+  run.model.clock.first_critical_dt = 1e9 * run.model.clock.critical_dt;
+  CHECK_THROWS_WITH(run.step(), Catch::Contains("step 2, time") && Catch::Contains("has fallen to") &&
+                                    Catch::Contains("; the fastest: particle ") &&
+                                    Catch::Contains("; the hottest: particle 17 of body \"body\" at ("));
+}
+
 TEST_CASE("A state of numbers whose energy is none is told with its particle") {
   SmallRun run(tumbling(ReferenceScheme::musl));
   CHECK_NOTHROW(require_finite(run.model, run.solo));
