@@ -1,0 +1,70 @@
+#include "core/contact/node_contact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace mpm::core {
+
+namespace {
+
+constexpr int most_sweeps = 200;
+constexpr double rest = 1e-13;  // of the largest speed
+
+/// The part of `p` along `n` is made not negative, the rest at most `friction` times as long.
+Vec3<double> within_cone(const Vec3<double>& p, const Vec3<double>& n, double friction) {
+  const double along = std::max(dot(p, n), 0.0);
+  const Vec3<double> tangential = p - dot(p, n) * n;
+  const double length = std::sqrt(dot(tangential, tangential)), most = friction * along;
+  return along * n + (length > most ? most / length : 1.0) * tangential;
+}
+
+}  // namespace
+
+void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pairs) {
+  const auto field = [&](int f) -> ContactField& { return fields[static_cast<std::size_t>(f)]; };
+  std::vector<double> parts(fields.size(), 0.0);
+  double fastest = 0;
+  for (ContactPair& pair : pairs) {
+    pair.impulse = {};
+    for (const int f : {pair.first, pair.second}) {
+      parts[static_cast<std::size_t>(f)] += 1;
+      fastest = std::max(fastest, std::sqrt(dot(field(f).velocity, field(f).velocity)));
+    }
+  }
+  std::vector<Vec3<double>> change(fields.size());
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    std::fill(change.begin(), change.end(), Vec3<double>{});
+    for (ContactPair& pair : pairs) {
+      const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+      const double mass = 1 / (parts[a] / fields[a].mass + parts[b] / fields[b].mass);
+      const Vec3<double> approach = fields[a].velocity - fields[b].velocity;
+      const Vec3<double> before = pair.impulse;
+      pair.impulse = within_cone(before + mass * approach, pair.normal, pair.friction);
+      const Vec3<double> more = pair.impulse - before;
+      change[a] = change[a] - (1 / fields[a].mass) * more;
+      change[b] = change[b] + (1 / fields[b].mass) * more;
+    }
+    double largest = 0;
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      fields[f].velocity = fields[f].velocity + change[f];
+      largest = std::max(largest, std::sqrt(dot(change[f], change[f])));
+    }
+    if (pairs.size() < 2 || !(largest > rest * fastest)) return;  // one pair is exact at once
+  }
+}
+
+std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const ContactSurface& second) {
+  const auto direction = [](const Vec3<double>& g) -> std::optional<Vec3<double>> {
+    const double length = std::sqrt(dot(g, g));
+    if (!(length > 0)) return std::nullopt;
+    return (1 / length) * g;
+  };
+  const auto a = direction(first.mass_gradient), b = direction(-1.0 * second.mass_gradient);
+  if (!a || (b && second.weight > first.weight)) return b;
+  if (!b || first.weight > second.weight) return a;
+  return direction(*a + *b);
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,55 @@
+// Contact at one node of the background grid between the velocity fields of several components (thesis 4.3):
+// impulses that stop approach along the normal, with Coulomb's friction.
+//
+// Two fields a and b with the normal n from a to b, velocities v without contact and masses m. With the
+// approach u = v_a - v_b and 1/m* = 1/m_a + 1/m_b, the impulse on b, and its opposite on a, is
+//   none                       where u.n <= 0: they part (4-35)
+//   m* u                       where they stick: m* |u_t| <= mu m* u.n (4-47), u_t = u - u.n n
+//   m* u.n (n + mu u_t/|u_t|)  where they slide (4-48)
+// which is (4-40) and (4-46) without the velocity of the centre of mass: momentum is kept exactly.
+//
+// More than two fields: the impulses P of all pairs follow from the same velocities, P_n <- max(0, P_n + m*
+// u.n), P_t <- P_t + m* u_t within mu P_n, with m_a replaced by m_a over the number of a's contacts
+// (mass splitting: R. Tonge, F. Benevolenski and A. Voroshilov, ACM Trans. Graph. 31 (2012) 105), and so on
+// until the velocities rest. No order of the pairs or components enters.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/tensor/vec3.hpp"
+
+namespace mpm::core {
+
+/// A component at a node.
+struct ContactField {
+  double mass = 0;
+  Vec3<double> velocity{};  ///< without contact, then with it
+};
+
+/// Two fields at a node that may touch.
+struct ContactPair {
+  int first = 0, second = 0;  ///< numbers of the fields
+  Vec3<double> normal{};      ///< unit vector from the first to the second
+  double friction = 0;        ///< Coulomb's coefficient
+  Vec3<double> impulse{};     ///< result: on the second; the first gets the opposite
+};
+
+/// Two fields whose masses differ by more than this factor do not touch: the velocity of the lighter one is
+/// that of few particles far from the node, and blocks that slide would stick to it.
+inline constexpr double contact_mass_ratio = 1e5;
+
+/// Sets the impulses of the pairs and the velocities of the fields.
+void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pairs);
+
+/// Where the surface of a component is at a node.
+struct ContactSurface {
+  Vec3<double> mass_gradient{};  ///< sum of m grad S over its particles: points outward (4-31)
+  double weight = 0;             ///< normal_vector_weight
+};
+
+/// Normal from `first` to `second`: that of the larger weight; with equal weights the mean of both (4-32).
+/// None where no surface has a direction.
+std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const ContactSurface& second);
+
+}  // namespace mpm::core
