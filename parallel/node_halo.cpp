@@ -16,7 +16,7 @@ using core::Slot;
 
 namespace {
 
-constexpr int tag_halo = 2;
+constexpr int tag_halo = 2, tag_components = 6;
 
 using NodeSet = std::bitset<NodeBlockShape{core::most_layers, core::most_layers}.nodes()>;
 
@@ -43,12 +43,15 @@ std::array<NodeSet, core::neighbourhood> shared_sets(const NodeBlockShape& shape
   return sets;
 }
 
-void append(NodeList& list, Slot slot, const NodeSet& nodes) {
-  const auto begin = static_cast<std::uint32_t>(list.nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes.test(i)) list.nodes.push_back(static_cast<std::uint16_t>(i));
+/// One piece for each velocity field.
+void append(NodeList& list, Slot slot, int fields, const NodeSet& nodes) {
+  for (int field = 0; field < fields; ++field) {
+    const auto begin = static_cast<std::uint32_t>(list.nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes.test(i)) list.nodes.push_back(static_cast<std::uint16_t>(i));
+    }
+    list.pieces.push_back({slot, field, begin, static_cast<std::uint32_t>(list.nodes.size())});
   }
-  list.pieces.push_back({slot, begin, static_cast<std::uint32_t>(list.nodes.size())});
 }
 
 /// Slots [first, last) in the order of their bricks' keys.
@@ -66,7 +69,7 @@ template <int Count, class Records, class Copy>
 void for_each_node(const NodeList& list, Records records, int width, Copy copy) {
   std::size_t at = 0;
   for (const NodeList::Piece& piece : list.pieces) {
-    auto* base = records(piece.slot);
+    auto* base = records(piece.slot, piece.field);
     for (std::uint32_t n = piece.begin; n < piece.end; ++n) {
       copy(at, base + width * list.nodes[n]);
       at += Count;
@@ -77,7 +80,7 @@ void for_each_node(const NodeList& list, Records records, int width, Copy copy) 
 template <int Count>
 void pack(const BrickGrid& grid, const NodeList& list, NodeFields fields, double* message) {
   for_each_node<Count>(
-      list, [&](Slot s) { return grid.contributions(fields.array, s) + fields.first; },
+      list, [&](Slot s, int field) { return grid.contributions(fields.array, s, field) + fields.first; },
       core::record_doubles(fields.array),
       [&](std::size_t at, const double* node) { std::copy_n(node, Count, message + at); });
 }
@@ -85,7 +88,7 @@ void pack(const BrickGrid& grid, const NodeList& list, NodeFields fields, double
 template <int Count>
 void unpack(BrickGrid& grid, const NodeList& list, NodeFields fields, const double* message) {
   for_each_node<Count>(
-      list, [&](Slot s) { return grid.contributions(fields.array, s) + fields.first; },
+      list, [&](Slot s, int field) { return grid.contributions(fields.array, s, field) + fields.first; },
       core::record_doubles(fields.array),
       [&](std::size_t at, double* node) { std::copy_n(message + at, Count, node); });
 }
@@ -95,9 +98,18 @@ void clear_ghosts(BrickGrid& grid) {
   for (const NodeArray of : core::node_arrays) {
     if (!grid.arrays().has(of)) continue;
     for (int g = 0; g < grid.ghosts(); ++g) {
-      std::fill_n(grid.contributions(of, grid.owned() + g), grid.shape().nodes() * core::record_doubles(of),
-                  0.0);
+      const Slot s = grid.owned() + g;
+      for (int field = 0; field < grid.velocity_fields(s); ++field)
+        std::fill_n(grid.contributions(of, s, field), grid.shape().nodes() * core::record_doubles(of), 0.0);
     }
+  }
+}
+
+/// f(slot) for each brick of the list, once.
+template <class F>
+void for_each_slot(const NodeList& list, F f) {
+  for (const NodeList::Piece& piece : list.pieces) {
+    if (piece.field == 0) f(piece.slot);
   }
 }
 
@@ -130,10 +142,10 @@ std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const core::BrickD
       to_rank[directory.owner_nearby(ghost_of(other))] |= shared[n];
       from_ghost[static_cast<std::size_t>(other - grid.owned())] |= shared[core::neighbourhood - 1 - n];
     }
-    for (const auto& [rank, nodes] : to_rank) append(partners[rank].send, s, nodes);
+    for (const auto& [rank, nodes] : to_rank) append(partners[rank].send, s, grid.velocity_fields(s), nodes);
   }
   for (const Slot s : by_key(grid.owned(), grid.owned() + grid.ghosts(), ghost_of)) {
-    append(partners[directory.owner_nearby(ghost_of(s))].receive, s,
+    append(partners[directory.owner_nearby(ghost_of(s))].receive, s, grid.velocity_fields(s),
            from_ghost[static_cast<std::size_t>(s - grid.owned())]);
   }
 
@@ -143,6 +155,33 @@ std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const core::BrickD
     list.push_back(std::move(partner));
   }
   return list;
+}
+
+void MpiHalo::exchange_components(const BrickGrid& grid, std::vector<std::vector<std::int32_t>>& of_slot) {
+  update(grid);
+  // For each brick in the order of the partner's list: how many components, and these.
+  std::vector<std::vector<double>> lists(partners_.size());
+  Requests requests;
+  for (std::size_t p = 0; p < partners_.size(); ++p) {
+    for_each_slot(partners_[p].send, [&](Slot s) {
+      const std::vector<std::int32_t>& mine = of_slot[static_cast<std::size_t>(s)];
+      lists[p].push_back(static_cast<double>(mine.size()));
+      lists[p].insert(lists[p].end(), mine.begin(), mine.end());
+    });
+    requests.send_unannounced(comm_, lists[p].data(), lists[p].size() * sizeof(double), partners_[p].rank,
+                              tag_components);
+  }
+  for (const HaloPartner& partner : partners_) {
+    std::vector<double> list;
+    comm_.receive_onto(list, partner.rank, tag_components);
+    auto next = list.begin();
+    for_each_slot(partner.receive, [&](Slot s) {
+      const auto count = static_cast<std::ptrdiff_t>(*next++);
+      of_slot[static_cast<std::size_t>(s)].assign(next, next + count);
+      next += count;
+    });
+  }
+  requests.wait_all();
 }
 
 void MpiHalo::update(const BrickGrid& grid) {

@@ -2,8 +2,8 @@
 // rank; its buffer and length are fixed when the set of bricks changes.
 //
 // For every brick of ours and every neighbouring rank, the nodes that it shares with any brick of that rank
-// are sent; the receiver derives the same list from its ghosts. Bricks are ordered by key, the nodes of each
-// by index.
+// are sent, field by field; the receiver derives the same list from its ghosts. Bricks are ordered by key,
+// the nodes of each by index.
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@ namespace mpm::parallel {
 struct NodeList {
   struct Piece {
     core::Slot slot = core::no_slot;
+    int field = 0;
     std::uint32_t begin = 0, end = 0;  ///< in `nodes`
   };
   std::vector<Piece> pieces;
@@ -52,6 +53,8 @@ class MpiHalo final : public core::NodeHalo {
   }
   void begin(core::BrickGrid& grid, core::NodeFields fields) override;
   void end(core::BrickGrid& grid) override;
+  void exchange_components(const core::BrickGrid& grid,
+                           std::vector<std::vector<std::int32_t>>& of_slot) override;
 
  private:
   void update(const core::BrickGrid& grid);

@@ -119,6 +119,10 @@ class TimedHalo final : public core::NodeHalo {
   void end(core::BrickGrid& grid) override {
     times_.timed(CommunicationTimes::Part::end_halo, [&] { inner_.end(grid); });
   }
+  void exchange_components(const core::BrickGrid& grid,
+                           std::vector<std::vector<std::int32_t>>& of_slot) override {
+    times_.timed(CommunicationTimes::Part::begin_halo, [&] { inner_.exchange_components(grid, of_slot); });
+  }
 
  private:
   core::NodeHalo& inner_;

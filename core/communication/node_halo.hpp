@@ -1,6 +1,9 @@
 // Exchange of contributions to the nodes that bricks of several ranks share.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "core/grid/brick_grid.hpp"
 
 namespace mpm::core {
@@ -14,6 +17,11 @@ class NodeHalo {
   /// neighbouring ranks.
   virtual void begin(BrickGrid& grid, NodeFields fields) = 0;
   virtual void end(BrickGrid& grid) = 0;
+
+  /// of_slot: the components of the owned slots' particles; sets those of the ghosts. Collective, with the
+  /// neighbouring ranks.
+  virtual void exchange_components(const BrickGrid& grid,
+                                   std::vector<std::vector<std::int32_t>>& of_slot) = 0;
 };
 
 }  // namespace mpm::core

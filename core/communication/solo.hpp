@@ -40,6 +40,7 @@ class SoloHalo final : public NodeHalo {
  public:
   void begin(BrickGrid&, NodeFields) override {}
   void end(BrickGrid&) override {}
+  void exchange_components(const BrickGrid&, std::vector<std::vector<std::int32_t>>&) override {}
 };
 
 class SoloCommunication : public Communication {

@@ -74,6 +74,8 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   ghosts_ = std::move(ghosts);
   slot_ = std::move(slot);
   extra_begin_.clear();
+  component_begin_.clear();
+  components_.clear();
   cells_around_.clear();
   allocate_nodes(bricks_.size() + ghosts_.size());
   ++revision_;
@@ -85,15 +87,23 @@ void BrickGrid::allocate_nodes(std::size_t blocks) {
   }
 }
 
-void BrickGrid::set_velocity_fields(std::span<const std::uint8_t> fields) {
-  const std::size_t slots = bricks_.size() + ghosts_.size();
-  assert(fields.size() == slots);
-  extra_begin_.assign(1, 0);
-  for (const std::uint8_t n : fields) {
-    assert(n >= 1);
-    extra_begin_.push_back(extra_begin_.back() + n - 1);
+void BrickGrid::set_components(const std::vector<std::vector<std::int32_t>>& of_slot) {
+  assert(of_slot.size() == bricks_.size() + ghosts_.size());
+  std::vector<std::size_t> begin{0};
+  std::vector<std::int32_t> components;
+  for (const std::vector<std::int32_t>& of : of_slot) {
+    assert(std::is_sorted(of.begin(), of.end()));
+    components.insert(components.end(), of.begin(), of.end());
+    begin.push_back(components.size());
   }
-  allocate_nodes(slots + static_cast<std::size_t>(extra_begin_.back()));
+  if (begin == component_begin_ && components == components_) return;
+  component_begin_ = std::move(begin);
+  components_ = std::move(components);
+  extra_begin_.assign(1, 0);
+  for (const std::vector<std::int32_t>& of : of_slot)
+    extra_begin_.push_back(extra_begin_.back() + std::max(static_cast<Slot>(of.size()), Slot{1}) - 1);
+  allocate_nodes(of_slot.size() + static_cast<std::size_t>(extra_begin_.back()));
+  ++revision_;
 }
 
 }  // namespace mpm::core

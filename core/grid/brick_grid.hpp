@@ -86,14 +86,34 @@ class BrickGrid {
   const double* contributions(NodeArray of, Slot s) const {
     return array(of).data() + stride(of) * static_cast<std::size_t>(s);
   }
-  /// For a slot with several velocity fields; field 0 is the one above.
+  /// Of one of its velocity fields; field 0 is the one above.
   double* contributions(NodeArray of, Slot s, int field) {
     return contributions(of, field == 0 ? s : extra_block(s, field));
   }
+  const double* contributions(NodeArray of, Slot s, int field) const {
+    return contributions(of, field == 0 ? s : extra_block(s, field));
+  }
 
-  /// Bricks where components meet store nodes for every velocity field: fields[slot] >= 1 of each owned and
-  /// ghost slot. After reset() all slots have one. Contents of the extra fields are undefined.
-  void set_velocity_fields(std::span<const std::uint8_t> fields);
+  /// Gives every component a velocity field of its own in each brick that holds particles of it (contact).
+  /// of_slot: the components of each owned and ghost slot, ascending. Without effect if they are those of
+  /// before; else the contents of the node arrays are undefined. After reset() all slots have one field for
+  /// all components.
+  void set_components(const std::vector<std::vector<std::int32_t>>& of_slot);
+  bool has_fields_by_component() const { return !component_begin_.empty(); }
+  /// Of a slot, in the order of its fields; where there are fields by component.
+  std::span<const std::int32_t> components(Slot s) const {
+    const auto at = static_cast<std::size_t>(s);
+    return std::span(components_)
+        .subspan(component_begin_[at], component_begin_[at + 1] - component_begin_[at]);
+  }
+  /// The field of a component in a slot; -1 if the brick holds no particles of it.
+  int field_of(Slot s, std::int32_t component) const {
+    const std::span<const std::int32_t> there = components(s);
+    for (std::size_t f = 0; f < there.size(); ++f)
+      if (there[f] == component) return static_cast<int>(f);
+    return -1;
+  }
+  /// At least 1.
   int velocity_fields(Slot s) const {
     return extra_begin_.empty() ? 1
                                 : 1 + extra_begin_[static_cast<std::size_t>(s) + 1] -
@@ -134,6 +154,8 @@ class BrickGrid {
   std::array<AlignedDoubles, node_arrays.size()> nodes_;
   std::vector<Slot>
       extra_begin_;  ///< by slot: index of its first extra block; empty while all have one field
+  std::vector<std::size_t> component_begin_;  ///< by slot, in `components_`; empty while fields are for all
+  std::vector<std::int32_t> components_;
   std::vector<CellsAround> cells_around_;  ///< by owned slot, or empty
   int boundary_ = 0;
   std::uint64_t revision_ = 0;

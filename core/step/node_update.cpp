@@ -41,8 +41,12 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reac
   }
 }
 
-template <NodeArray of>
-void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums) {
+namespace {
+
+/// `contributions_of(slot)`: those of a neighbour, null if it has none.
+template <NodeArray of, class F>
+[[gnu::always_inline]] inline void sum_over_neighbours(const BrickGrid& grid, const SharedNodes& shared,
+                                                       Slot slot, F contributions_of, double* sums) {
   constexpr int width = record_doubles(of);
   using Part = Lanes<width>;
   static const std::vector<double> nothing(
@@ -50,7 +54,8 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
   const Brick& brick = grid.brick(slot);
   std::array<const double*, neighbourhood> from{};
   for (std::size_t n = 0; n < neighbourhood; ++n) {
-    from[n] = brick.neighbour[n] == no_slot ? nothing.data() : grid.contributions(of, brick.neighbour[n]);
+    const double* there = brick.neighbour[n] == no_slot ? nullptr : contributions_of(brick.neighbour[n]);
+    from[n] = there == nullptr ? nothing.data() : there;
   }
   shared.for_each_node([&](int node, auto shares) {
     Part sum(0.0);
@@ -60,9 +65,32 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
     store(sums + node_doubles * node, sum);
   });
 }
+
+}  // namespace
+
+template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums) {
+  sum_over_neighbours<of>(
+      grid, shared, slot, [&](Slot s) { return grid.contributions(of, s); }, sums);
+}
+template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::int32_t component,
+                       double* sums) {
+  const auto of_component = [&](Slot s) -> const double* {
+    const int field = grid.field_of(s, component);
+    return field < 0 ? nullptr : grid.contributions(of, s, field);
+  };
+  sum_over_neighbours<of>(grid, shared, slot, of_component, sums);
+}
 template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::third>(const BrickGrid&, const SharedNodes&, Slot, double*);
+template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t,
+                                                  double*);
+template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t,
+                                                   double*);
+template void sum_contributions<NodeArray::third>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t,
+                                                  double*);
 
 BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape& shape, BrickCoord brick)
     : shape_(shape) {

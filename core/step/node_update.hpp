@@ -50,6 +50,10 @@ class SharedNodes {
 /// contributes zeros, so every copy of a node adds the same numbers.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
+/// The same of one component's velocity field. Where the neighbourhood holds one component, both are equal.
+template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::int32_t component,
+                       double* sums);
 
 /// Forces on nodes other than the particles' internal forces.
 struct NodeForces {

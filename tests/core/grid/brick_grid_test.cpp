@@ -94,8 +94,13 @@ TEST_CASE("Bricks that stay keep their particles; new ones and those that were g
 TEST_CASE("Bricks with several velocity fields keep nodes for each of them, apart from all others") {
   BrickGrid grid(cube(24), {}, {NodeArray::first, NodeArray::second, NodeArray::third});
   grid.reset({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{3, 0, 0}});
-  const std::vector<std::uint8_t> fields{1, 3, 2, 2};
-  grid.set_velocity_fields(fields);
+  const std::vector<std::vector<std::int32_t>> components{{}, {0, 2, 5}, {2, 3}, {3, 4}};
+  const std::vector<int> fields{1, 3, 2, 2};
+  CHECK_FALSE(grid.has_fields_by_component());
+  grid.set_components(components);
+  const std::uint64_t revision = grid.revision();
+  grid.set_components(components);
+  CHECK(grid.revision() == revision);
   for (const NodeArray of : node_arrays) {
     std::vector<double*> blocks;
     for (Slot s = 0; s < 4; ++s) {
@@ -110,6 +115,14 @@ TEST_CASE("Bricks with several velocity fields keep nodes for each of them, apar
     // All of it is memory of ours.
     for (double* block : blocks) std::fill_n(block, 125 * record_doubles(of), 1.0);
   }
+  CHECK(grid.field_of(1, 5) == 2);
+  CHECK(grid.field_of(2, 5) == -1);
+  CHECK(grid.field_of(0, 0) == -1);
+  CHECK(std::ranges::equal(grid.components(3), components[3]));
+  grid.set_components({{1}, {1}, {1}, {}});
+  CHECK(grid.revision() != revision);
+  CHECK(grid.velocity_fields(1) == 1);
   grid.reset({{0, 0, 0}}, {});
   CHECK(grid.velocity_fields(0) == 1);
+  CHECK_FALSE(grid.has_fields_by_component());
 }
