@@ -50,6 +50,7 @@ void Contact::find_fields(BrickGrid& grid, NodeHalo& halo) {
       if (neighbour == no_slot) continue;
       for (const std::int32_t component : grid.components(neighbour)) insert(seen, component);
     }
+    if (seen.empty()) seen.push_back(0);  // a brick without particles near it: one field, at rest
     seen_.insert(seen_.end(), seen.begin(), seen.end());
     seen_begin_.push_back(seen_.size());
   }

@@ -8,15 +8,16 @@ namespace mpm::core {
 
 // --- particles to grid ------------------------------------------------------------------------------------
 
-/// before(body, place, block, used) for every block, then its contribution to the nodes.
+/// before(body, place, block, used) for every block of a component, then its contribution to the nodes.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what, class F>
-void PassesWith<S, T>::map_brick(Slot s, F before) {
+void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, F before) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame = this->frame(s);
   constexpr int width = record_doubles(what.array);
-  double* contributions = grid.contributions(what.array, s);
+  const int field = field_of(s, component);
+  double* contributions = grid.contributions(what.array, s, field);
   std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
   SpreadPrefetch room(s + 1 < grid.owned() ? grid.contributions(what.array, s + 1) : nullptr,
                       width * grid.shape().nodes(), block_count(brick));
@@ -28,6 +29,7 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
                                       : nullptr;
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
+    if (!holds(tile, component)) continue;
     const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
     const BlockPrefetch prefetch(model_, s, c);
     const ColumnLayout& layout = body.pool->layout();
@@ -54,7 +56,32 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
   }
   cell.flush(frame, sums.records);
   sums.finish(frame);
-  if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, contributions);
+  if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, field, contributions);
+}
+
+/// Maps m grad S of a component's particles (thesis 4-31).
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
+  constexpr NodeFields what = mapped::surface;
+  constexpr int width = record_doubles(what.array);
+  BrickGrid& grid = *model_.grid;
+  const BrickFrame frame = this->frame(s);
+  double* contributions = grid.contributions(what.array, s, field_of(s, component));
+  std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  for_each_block(s, component, columns_to_mass,
+                 [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+                   const Place place(frame, layout, block);
+                   const double* mass = block + layout.offset(Column::mass);
+                   for (int l = 0; l < used; ++l) {
+                     S::for_each_node(place, l, frame.inverse_cell,
+                                      [&](int node, const NodeOffset&, double, const Vec3<double>& gradient) {
+                                        for (int a = 0; a < 3; ++a)
+                                          contributions[width * node + a] += mass[l] * gradient[a];
+                                      });
+                   }
+                 });
+  const BoundaryFaces walls = faces(s);
+  if (S::node_block != NodeBlockShape{} && !walls.none()) walls.fold(what, contributions);
 }
 
 /// Sums a tile's pressures in its sites.
@@ -73,39 +100,42 @@ template <ShapePolicy S, TransferPolicy T>
 /// Adds to the inner nodes what has been mapped beyond the grid's constrained faces.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
-void PassesWith<S, T>::fold_at_walls(Slot s, double* contributions) {
+void PassesWith<S, T>::fold_at_walls(Slot s, int field, double* contributions) {
   const BoundaryFaces walls = faces(s);
   if (walls.none()) return;
   walls.fold(what, contributions);
   if constexpr (maps_force(what)) {
     constexpr NodeArray masses = maps_mass(what) ? what.array : NodeArray::second;
-    walls.reverse_weights(forces_.gravity, masses, model_.grid->contributions(masses, s), contributions);
+    walls.reverse_weights(forces_.gravity, masses, model_.grid->contributions(masses, s, field),
+                          contributions);
   }
 }
 
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
 void PassesWith<S, T>::map_to_grid() {
-  map_bricks<what>([this](Slot s, Scratch&) { map_brick<what>(s, [](int, const Place&, double*, int) {}); });
+  map_bricks<what>([this](Slot s, Scratch&) {
+    for_each_own_field(s, [&](std::int32_t component) {
+      map_brick<what>(s, component, [](int, const Place&, double*, int) {});
+    });
+  });
 }
 
 // --- nodes ------------------------------------------------------------------------------------------------
 
 /// Sums what the scheme has mapped and updates the nodes; the result in at.nodes follows MotionRecord.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::sum_and_update_nodes(Slot s, Scratch& at) {
+void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
-  sum_contributions<NodeArray::first>(grid, shared_, s, at.nodes.data());
+  sum<NodeArray::first>(shared_, s, component, at.nodes.data());
   // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
-  if (scheme_ == Scheme::usf)
-    sum_contributions<NodeArray::second>(grid, momentum_shared_, s, at.nodes.data());
+  if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at.nodes.data());
   update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
 }
 
-/// The same; at.field holds the result too, and at.corrected the corrected velocities.
+/// Brings the updated nodes into at.field, and the corrected velocities into at.corrected.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_nodes_of_brick(Slot s, Scratch& at) {
-  sum_and_update_nodes(s, at);
+void PassesWith<S, T>::take_updated_nodes(Slot s, Scratch& at) {
   at.field.take_motion(at.nodes.data());
   if constexpr (corrects) {
     if (!correcting_) return;
@@ -180,18 +210,19 @@ template <ShapePolicy S, TransferPolicy T>
 }
 
 template <ShapePolicy S, TransferPolicy T>
-[[gnu::noinline]] void PassesWith<S, T>::velocities_of_brick(Slot s, Scratch& at) {
+[[gnu::noinline]] void PassesWith<S, T>::velocities_of_brick(Slot s, std::int32_t component, Scratch& at) {
   const BrickFrame frame = this->frame(s);
-  for_each_block(s, columns_to_mass,
+  for_each_block(s, component, columns_to_mass,
                  [&](int, std::size_t, int body, const ColumnLayout& layout, double* block, int used) {
                    update_velocities(s, frame, body, Place(frame, layout, block), block, used, at);
                  });
   at.add_work_of_brick();
 }
 
-/// Returns the largest speed of the brick's particles.
+/// Returns the largest speed of the component's particles.
 template <ShapePolicy S, TransferPolicy T>
-[[gnu::noinline]] double PassesWith<S, T>::velocities_and_motion_of_brick(Slot s, Scratch& at) {
+[[gnu::noinline]] double PassesWith<S, T>::velocities_and_motion_of_brick(Slot s, std::int32_t component,
+                                                                          Scratch& at) {
   const BrickFrame frame = this->frame(s);
   auto first = prefetch_nodes<NodeArray::first>(s);
   auto second = prefetch_nodes<NodeArray::second>(s);
@@ -206,7 +237,7 @@ template <ShapePolicy S, TransferPolicy T>
                   at.sums.data() + node_doubles * n + Motion::strain_velocity_at);
     moving.take_strain(frame, at.sums.data());
   }
-  for_each_block(s, columns_to_mass,
+  for_each_block(s, component, columns_to_mass,
                  [&](int c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
                    first.next();
                    second.next();
@@ -278,7 +309,8 @@ template <bool moves>
 /// called once per block.
 template <ShapePolicy S, TransferPolicy T>
 template <bool moves, class F>
-[[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, Velocities velocities, Scratch& at,
+[[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, std::int32_t component,
+                                                         Velocities velocities, Scratch& at,
                                                          F prefetch_nodes) {
   const BrickFrame frame = this->frame(s);
   Batch& batch = at.batch;
@@ -318,9 +350,11 @@ template <bool moves, class F>
       }
     }
   };
-  for_each_batch(s, frame, at, average, kinematics, stress);
+  for_each_batch(s, component, frame, at, average, kinematics, stress);
   at.add_work_of_brick();
-  if (velocities == Velocities::of_last_step) critical_[static_cast<std::size_t>(s)] = wave_weight_ * fastest;
+  if (velocities != Velocities::of_last_step) return;
+  double& critical = critical_[static_cast<std::size_t>(s)];
+  critical = std::max(critical, wave_weight_ * fastest);
 }
 
 }  // namespace mpm::core

@@ -42,7 +42,7 @@ void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] 
     typename S::template Scatter<what> cell;
     cell.clear();
     at.corrected.take_motion(corrected_nodes(s));
-    for_each_block(s, columns_to_mass,
+    for_each_block(s, every_component, columns_to_mass,
                    [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                      const Place place(frame, layout, block);
                      MappedRows rows;
@@ -51,7 +51,7 @@ void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] 
                    });
     cell.flush(frame, sums.records);
     sums.finish(frame);
-    if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, contributions);
+    if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, 0, contributions);
   }
 }
 
@@ -61,7 +61,7 @@ void PassesWith<S, T>::correct_velocities([[maybe_unused]] int order) {
     if (!correcting_) return;
     // All nodes first: their sums read the contributions of the order before, which are then replaced.
     for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch& at) {
-      if (order == 2) sum_and_update_nodes(s, at);
+      if (order == 2) sum_and_update_nodes(s, every_component, at);
       add_order(s, order - 1, at);
     });
     map_bricks<mapped::correction>([&](Slot s, Scratch& at) { map_increments(s, at); });

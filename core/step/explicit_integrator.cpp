@@ -40,6 +40,12 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     then("heat to particles", [&] { heat.update_temperatures(model_.clock.dt); });
   }
 
+  if (model_.scene->contact.enable) {
+    then("velocity fields of components", [&] { pass.find_fields(); });
+    then("surfaces to grid", [&] { pass.map_surfaces(); });
+    then("exchange surfaces", [&] { pass.finish_exchange(); });
+  }
+
   switch (model_.scene->solution.scheme) {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });

@@ -85,12 +85,15 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
 template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::third>(const BrickGrid&, const SharedNodes&, Slot, double*);
+template void sum_contributions<NodeArray::fourth>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t,
                                                   double*);
 template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t,
                                                    double*);
 template void sum_contributions<NodeArray::third>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t,
                                                   double*);
+template void sum_contributions<NodeArray::fourth>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t,
+                                                   double*);
 
 BoundaryFaces::BoundaryFaces(const GridGeometry& geometry, const NodeBlockShape& shape, BrickCoord brick)
     : shape_(shape) {
@@ -131,6 +134,7 @@ int axis_of(NodeFields what, int c) {
   if (maps_momentum(what) && c >= momentum && c < momentum + 3) return c - momentum;
   if (maps_force(what) && c >= node_field::force.first && c < node_field::force.end())
     return c - node_field::force.first;
+  if (what == node_field::surface) return c < 3 ? c : -1;
   return -1;
 }
 

@@ -21,6 +21,11 @@ class Passes {
   /// Called at the beginning of every step: sets its length and loads.
   virtual void begin_step(double dt) = 0;
 
+  /// Contact: the velocity fields of the components, then the surfaces of those that meet, to the grid. Only
+  /// where there is contact.
+  virtual void find_fields() = 0;
+  virtual void map_surfaces() = 0;
+
   /// Particles to grid. Bricks shared with other ranks come first; their exchange is in progress when this
   /// returns.
   virtual void map_momentum_mass_force() = 0;

@@ -10,6 +10,7 @@
 
 #include <omp.h>
 
+#include "core/contact/contact.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/grid_to_particles.hpp"
 #include "core/step/load_forces.hpp"
@@ -37,6 +38,8 @@ class PassesWith final : public Passes {
     begin_corrections();
   }
 
+  void find_fields() override { contact_->find_fields(*model_.grid, halo_); }
+  void map_surfaces() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
   void finish_exchange() override { halo_.end(*model_.grid); }
@@ -64,6 +67,8 @@ class PassesWith final : public Passes {
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
     typename S::Field field;
+    std::vector<FieldNodes> fields;  ///< where components meet
+    ContactSums contact;
     SiteAverages averages;  ///< of the current tile; empty where volume changes are not averaged
     [[no_unique_address]] std::conditional_t<corrects, typename S::Field, Nothing> corrected;
   };
@@ -76,9 +81,31 @@ class PassesWith final : public Passes {
   template <class F>
   void for_bricks(int first, int last, F f);
   template <class F>
-  void for_each_block(Slot s, int columns, F f);
+  void for_each_block(Slot s, std::int32_t component, int columns, F f);
   template <class E, class F, class G>
-  void for_each_batch(Slot s, const BrickFrame& frame, Scratch& at, E tile_work, F block_work, G batch_work);
+  void for_each_batch(Slot s, std::int32_t component, const BrickFrame& frame, Scratch& at, E tile_work,
+                      F block_work, G batch_work);
+  bool holds(const ParticleTile& tile, std::int32_t component) const {
+    return component == every_component ||
+           model_.bodies[static_cast<std::size_t>(tile.body)].component == component;
+  }
+  /// Velocity field of a component in a brick that holds particles of it.
+  int field_of(Slot s, std::int32_t component) const {
+    return component == every_component ? 0 : model_.grid->field_of(s, component);
+  }
+  template <class F>
+  void for_each_own_field(Slot s, F f);
+  template <class Update, class F>
+  void for_each_field(Slot s, Scratch& at, Contact::Velocity which, Update update, F f);
+  template <class Update>
+  void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
+  template <NodeArray of>
+  void sum(const SharedNodes& shared, Slot s, std::int32_t component, double* sums) const {
+    if (component == every_component)
+      sum_contributions<of>(*model_.grid, shared, s, sums);
+    else
+      sum_contributions<of>(*model_.grid, shared, s, component, sums);
+  }
   template <NodeFields what, class F>
   void map_bricks(F work);
 
@@ -86,17 +113,18 @@ class PassesWith final : public Passes {
   template <NodeFields what>
   void map_to_grid();
   template <NodeFields what, class F>
-  void map_brick(Slot s, F before);
+  void map_brick(Slot s, std::int32_t component, F before);
+  void map_surface(Slot s, std::int32_t component);
   template <NodeFields what>
-  void fold_at_walls(Slot s, double* contributions);
-  void update_nodes_of_brick(Slot s, Scratch& at);
-  void sum_and_update_nodes(Slot s, Scratch& at);
-  void velocities_of_brick(Slot s, Scratch& at);
-  double velocities_and_motion_of_brick(Slot s, Scratch& at);
+  void fold_at_walls(Slot s, int field, double* contributions);
+  void sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at);
+  void take_updated_nodes(Slot s, Scratch& at);
+  void velocities_of_brick(Slot s, std::int32_t component, Scratch& at);
+  double velocities_and_motion_of_brick(Slot s, std::int32_t component, Scratch& at);
   /// Whether the particles' velocities are already those at the start of the next step.
   enum class Velocities { of_last_step, of_next_step };
   template <bool moves, class F>
-  void stress_of_brick(Slot s, Velocities velocities, Scratch& at, F prefetch_nodes);
+  void stress_of_brick(Slot s, std::int32_t component, Velocities velocities, Scratch& at, F prefetch_nodes);
 
   // Corrections of the velocities (correct_velocities.hpp).
   void begin_corrections();
@@ -156,8 +184,10 @@ class PassesWith final : public Passes {
     return of == NodeArray::first ? shared_ : momentum_shared_;
   }
   int motion_doubles() const { return motion_width * shared_.nodes(); }
-  double* motion(Slot s) {
-    return motion_.data() + static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(s);
+  /// Of the field number `k` of those that the brick sees.
+  double* motion(Slot s, std::size_t k = 0) {
+    const std::size_t first = contact_ ? contact_->first_seen(s) : static_cast<std::size_t>(s);
+    return motion_.data() + static_cast<std::size_t>(motion_doubles()) * (first + k);
   }
   /// Prefetches the next brick's stored nodal motion.
   SpreadPrefetch prefetch_motion(Slot s) {
@@ -171,6 +201,7 @@ class PassesWith final : public Passes {
   SharedNodes momentum_shared_;
   NodeForces forces_;
   Loads loads_;
+  std::unique_ptr<Contact> contact_;  ///< null without contact
   T transfer_;
   const Scheme scheme_;
   const int orders_;
@@ -216,6 +247,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
   }
   velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
   erosion_volume_ = solution.volume.erode.value_or(0);
+  if (model.scene->contact.enable) contact_ = std::make_unique<Contact>(model);
   wave_weight_ = 1 / wave_limit(*model.scene);
 #pragma omp parallel
   flush_denormals_to_zero();
@@ -245,14 +277,16 @@ void PassesWith<S, T>::for_bricks(int first, int last, F f) {
       threads);
 }
 
-/// f(tile index, block index, body number, layout, block, lanes in use) for a brick's blocks. `columns`:
-/// number of leading columns that are read.
+/// f(tile index, block index, body number, layout, block, lanes in use) for a brick's blocks with particles
+/// of a component. `columns`: number of leading columns that are read.
 template <ShapePolicy S, TransferPolicy T>
 template <class F>
-[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_block(Slot s, int columns, F f) {
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_block(Slot s, std::int32_t component,
+                                                                    int columns, F f) {
   const Brick& brick = model_.grid->brick(s);
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
+    if (!holds(tile, component)) continue;
     BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
     const BlockPrefetch prefetch(model_, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
@@ -262,14 +296,15 @@ template <class F>
   }
 }
 
-/// Processes the blocks of a brick in batches: for each tile tile_work(tile); for each block of a batch
-/// block_work(body, block of the batch, lanes in use), then, with the next blocks prefetched, batch_work(tile
-/// index, first block index, tile). `at` holds the batch and its particles' places.
+/// Processes a brick's blocks with particles of a component in batches: for each tile tile_work(tile); for
+/// each block of a batch block_work(body, block of the batch, lanes in use), then, with the next blocks
+/// prefetched, batch_work(tile index, first block index, tile). `at` holds the batch and its particles'
+/// places.
 template <ShapePolicy S, TransferPolicy T>
 template <class E, class F, class G>
-[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_batch(Slot s, const BrickFrame& frame,
-                                                                    Scratch& at, E tile_work, F block_work,
-                                                                    G batch_work) {
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_batch(Slot s, std::int32_t component,
+                                                                    const BrickFrame& frame, Scratch& at,
+                                                                    E tile_work, F block_work, G batch_work) {
   const Brick& brick = model_.grid->brick(s);
   Batch& batch = at.batch;
   batch.time = model_.clock.time + dt;
@@ -277,6 +312,7 @@ template <class E, class F, class G>
   batch.cell_size = model_.grid->geometry().smallest_cell();
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
+    if (!holds(tile, component)) continue;
     const BlockPrefetch prefetch(model_, s, c);
     BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
     batch.layout = &pool.layout();
@@ -314,6 +350,52 @@ void PassesWith<S, T>::map_bricks(F work) {
   for_bricks(grid.boundary(), grid.owned(), work);
 }
 
+/// f(component) for the velocity fields of a brick's particles: every component where there is one field.
+template <ShapePolicy S, TransferPolicy T>
+template <class F>
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_own_field(Slot s, F f) {
+  if (!contact_ || model_.grid->velocity_fields(s) < 2) return f(every_component);
+  for (const std::int32_t component : model_.grid->components(s)) f(component);
+}
+
+/// For the velocity fields that a brick sees: update(component, k) brings the motion of the field number k
+/// into at.nodes; where components meet, their velocities are then resolved; f(component) uses at.nodes, for
+/// the fields in which the brick has particles.
+template <ShapePolicy S, TransferPolicy T>
+template <class Update, class F>
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_field(Slot s, Scratch& at,
+                                                                    Contact::Velocity which, Update update,
+                                                                    F f) {
+  if (!contact_ || !contact_->meets(s)) {
+    update(every_component, 0);
+    f(every_component);
+    return;
+  }
+  meet(s, at, which, update);
+  for (const FieldNodes& field : at.fields) {
+    if (model_.grid->field_of(s, field.component) < 0) continue;
+    std::copy(field.motion.begin(), field.motion.end(), at.nodes.data());
+    f(field.component);
+  }
+}
+
+/// Resolves the velocities of the fields that a brick sees, in at.fields.
+template <ShapePolicy S, TransferPolicy T>
+template <class Update>
+[[gnu::noinline]] void PassesWith<S, T>::meet(Slot s, Scratch& at, Contact::Velocity which, Update update) {
+  const std::span<const std::int32_t> seen = contact_->seen(s);
+  at.fields.resize(seen.size());
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    FieldNodes& field = at.fields[k];
+    field.component = seen[k];
+    update(seen[k], k);
+    field.motion.assign(at.nodes.data(), at.nodes.data() + at.nodes.size());
+    field.surface.resize(at.nodes.size());
+    sum<NodeArray::fourth>(shared_, s, seen[k], field.surface.data());
+  }
+  contact_->resolve(*model_.grid, shared_, s, which, at.fields, at.contact);
+}
+
 }  // namespace mpm::core
 
 #include "core/step/brick_operations.hpp"
@@ -324,19 +406,34 @@ namespace mpm::core {
 // --- the passes -------------------------------------------------------------------------------------------
 
 template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_surfaces() {
+  map_bricks<mapped::surface>([this](Slot s, Scratch&) {
+    if (contact_->meets(s)) for_each_own_field(s, [&](std::int32_t component) { map_surface(s, component); });
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities_and_map_back() {
-  motion_.resize(static_cast<std::size_t>(motion_doubles()) * static_cast<std::size_t>(model_.grid->owned()));
+  motion_.resize(static_cast<std::size_t>(motion_doubles()) *
+                 (contact_ ? contact_->all_seen() : static_cast<std::size_t>(model_.grid->owned())));
   map_bricks<mapped::momentum>([&](Slot s, Scratch& at) {
-    update_nodes_of_brick(s, at);
-    keep_motion(shared_.nodes(), moving_nodes(s, at), motion(s));
-    auto nodes = prefetch_nodes<NodeArray::first>(s);
-    SpreadPrefetch room = prefetch_motion(s);
-    const BrickFrame frame = this->frame(s);
-    map_brick<mapped::momentum>(s, [&](int body, const Place& place, double* block, int used) {
-      nodes.next();
-      room.next();
-      update_velocities(s, frame, body, place, block, used, at);
+    const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component) {
+      take_updated_nodes(s, at);
+      if (component == every_component) keep_motion(shared_.nodes(), moving_nodes(s, at), motion(s));
+      auto nodes = prefetch_nodes<NodeArray::first>(s);
+      SpreadPrefetch room = prefetch_motion(s);
+      const BrickFrame frame = this->frame(s);
+      map_brick<mapped::momentum>(s, component, [&](int body, const Place& place, double* block, int used) {
+        nodes.next();
+        room.next();
+        update_velocities(s, frame, body, place, block, used, at);
+      });
     });
+    if (contact_ && contact_->meets(s)) {
+      for (std::size_t k = 0; k < at.fields.size(); ++k)
+        keep_motion(shared_.nodes(), at.fields[k].motion.data(), motion(s, k));
+    }
     at.add_work_of_brick();
   });
 }
@@ -346,16 +443,20 @@ void PassesWith<S, T>::update_stress_and_move() {
   const BrickGrid& grid = *model_.grid;
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    recall_motion(shared_.nodes(), motion(s), at.nodes.data());
-    sum_contributions<NodeArray::second>(grid, momentum_shared_, s, at.sums.data());
-    second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
-    at.field.take_motion(at.nodes.data());
-    at.field.take_strain(frame(s), at.nodes.data());
-    auto nodes = prefetch_nodes<NodeArray::second>(s);
-    SpreadPrefetch room = prefetch_motion(s);
-    stress_of_brick<true>(s, Velocities::of_next_step, at, [&] {
-      nodes.next();
-      room.next();
+    const auto update = [&](std::int32_t component, std::size_t k) {
+      recall_motion(shared_.nodes(), motion(s, k), at.nodes.data());
+      sum<NodeArray::second>(momentum_shared_, s, component, at.sums.data());
+      second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
+    };
+    for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component) {
+      at.field.take_motion(at.nodes.data());
+      at.field.take_strain(frame(s), at.nodes.data());
+      auto nodes = prefetch_nodes<NodeArray::second>(s);
+      SpreadPrefetch room = prefetch_motion(s);
+      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
+        nodes.next();
+        room.next();
+      });
     });
   });
 }
@@ -363,15 +464,19 @@ void PassesWith<S, T>::update_stress_and_move() {
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_stress_and_map_forces() {
   const BrickGrid& grid = *model_.grid;
-  critical_.resize(static_cast<std::size_t>(grid.owned()));
+  critical_.assign(static_cast<std::size_t>(grid.owned()), 0.0);
   map_bricks<mapped::force>([&](Slot s, Scratch& at) {
-    sum_contributions<NodeArray::second>(grid, momentum_shared_, s, at.nodes.data());
-    second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
-                      at.nodes.data());
-    at.field.take_strain(frame(s), at.nodes.data());
-    auto nodes = prefetch_nodes<NodeArray::second>(s);
-    stress_of_brick<false>(s, Velocities::of_last_step, at, [&] { nodes.next(); });
-    map_brick<mapped::force>(s, [](int, const Place&, double*, int) {});
+    const auto update = [&](std::int32_t component, std::size_t) {
+      sum<NodeArray::second>(momentum_shared_, s, component, at.nodes.data());
+      second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
+                        at.nodes.data());
+    };
+    for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component) {
+      at.field.take_strain(frame(s), at.nodes.data());
+      auto nodes = prefetch_nodes<NodeArray::second>(s);
+      stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
+      map_brick<mapped::force>(s, component, [](int, const Place&, double*, int) {});
+    });
   });
 }
 
@@ -380,11 +485,15 @@ void PassesWith<S, T>::update_velocities_and_move() {
   const BrickGrid& grid = *model_.grid;
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    update_nodes_of_brick(s, at);
-    // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
-    // particles.
-    at.statistics.fastest = std::max(at.statistics.fastest, critical_[static_cast<std::size_t>(s)] +
-                                                                velocities_and_motion_of_brick(s, at));
+    const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component) {
+      take_updated_nodes(s, at);
+      // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
+      // particles.
+      at.statistics.fastest =
+          std::max(at.statistics.fastest,
+                   critical_[static_cast<std::size_t>(s)] + velocities_and_motion_of_brick(s, component, at));
+    });
   });
 }
 
@@ -393,12 +502,15 @@ void PassesWith<S, T>::update_all() {
   const BrickGrid& grid = *model_.grid;
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    update_nodes_of_brick(s, at);
-    velocities_of_brick(s, at);
-    regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
-    at.field.take_strain(frame(s), at.nodes.data());
-    auto nodes = prefetch_nodes<NodeArray::first>(s);
-    stress_of_brick<true>(s, Velocities::of_next_step, at, [&] { nodes.next(); });
+    const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component) {
+      take_updated_nodes(s, at);
+      velocities_of_brick(s, component, at);
+      regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
+      at.field.take_strain(frame(s), at.nodes.data());
+      auto nodes = prefetch_nodes<NodeArray::first>(s);
+      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
+    });
   });
 }
 
