@@ -197,7 +197,7 @@ inline void write_box(const core::ColumnLayout& layout, const Vector& half_size,
 }
 
 /// One run of the production stepper. Bodies: particles [0, split) of the case are the first, the rest the
-/// second.
+/// second; with `contact` each is a component.
 struct SmallRun {
   KeepFloatingPoint keep;
   std::shared_ptr<core::Scene> scene = std::make_shared<core::Scene>();
@@ -205,7 +205,10 @@ struct SmallRun {
   core::Model model;
   std::unique_ptr<core::Stepper> stepper;
 
-  explicit SmallRun(const ReferenceCase& c, std::size_t split = std::numeric_limits<std::size_t>::max()) {
+  explicit SmallRun(const ReferenceCase& c, std::size_t split = std::numeric_limits<std::size_t>::max(),
+                    bool contact = false) {
+    scene->contact.enable = contact;
+    scene->components.resize(2);
     scene->solution.scheme = scheme_of(c.scheme);
     scene->solution.transfer = transfer_of(c.transfer);
     scene->solution.xpic_order = c.order;
@@ -239,6 +242,7 @@ struct SmallRun {
     for (int b = 0; b < (split < c.particles.size() ? 2 : 1); ++b) {
       core::Body& body = model.bodies.emplace_back();
       body.name = "body";
+      body.component = b;
       body.model = model.materials[0].get();
       body.pool = std::make_shared<core::BlockPool>(core::ColumnLayout(columns));
     }
