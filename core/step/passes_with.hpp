@@ -377,6 +377,8 @@ template <class Update, class F>
     std::copy(field.motion.begin(), field.motion.end(), at.nodes.data());
     f(field.component);
   }
+  // A brick without particles still clears its contributions, which its neighbours may sum.
+  if (model_.grid->components(s).empty()) f(every_component);
 }
 
 /// Resolves the velocities of the fields that a brick sees, in at.fields.
