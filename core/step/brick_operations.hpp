@@ -11,7 +11,7 @@ namespace mpm::core {
 /// before(body, place, block, used) for every block, then its contribution to the nodes.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what, class F>
-void PassesWith<S, T>::map_brick(Slot s, F before) {
+void PassesWith<S, T>::map_brick(Slot s, Scratch& at, F before) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame = this->frame(s);
@@ -23,9 +23,7 @@ void PassesWith<S, T>::map_brick(Slot s, F before) {
   typename S::template Sums<what> sums(contributions);
   typename S::template Scatter<what> cell;
   cell.clear();
-  SiteAverages* const pressures = maps_force(what) && averages_volume_change()
-                                      ? &scratch_[static_cast<std::size_t>(omp_get_thread_num())].averages
-                                      : nullptr;
+  SiteAverages* const pressures = maps_force(what) && averages_volume_change() ? &at.averages : nullptr;
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
     const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
@@ -86,7 +84,8 @@ void PassesWith<S, T>::fold_at_walls(Slot s, double* contributions) {
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
 void PassesWith<S, T>::map_to_grid() {
-  map_bricks<what>([this](Slot s, Scratch&) { map_brick<what>(s, [](int, const Place&, double*, int) {}); });
+  map_bricks<what>(
+      [this](Slot s, Scratch& at) { map_brick<what>(s, at, [](int, const Place&, double*, int) {}); });
 }
 
 // --- nodes ------------------------------------------------------------------------------------------------

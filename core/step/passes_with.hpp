@@ -86,7 +86,7 @@ class PassesWith final : public Passes {
   template <NodeFields what>
   void map_to_grid();
   template <NodeFields what, class F>
-  void map_brick(Slot s, F before);
+  void map_brick(Slot s, Scratch& at, F before);
   template <NodeFields what>
   void fold_at_walls(Slot s, double* contributions);
   void update_nodes_of_brick(Slot s, Scratch& at);
@@ -332,7 +332,7 @@ void PassesWith<S, T>::update_velocities_and_map_back() {
     auto nodes = prefetch_nodes<NodeArray::first>(s);
     SpreadPrefetch room = prefetch_motion(s);
     const BrickFrame frame = this->frame(s);
-    map_brick<mapped::momentum>(s, [&](int body, const Place& place, double* block, int used) {
+    map_brick<mapped::momentum>(s, at, [&](int body, const Place& place, double* block, int used) {
       nodes.next();
       room.next();
       update_velocities(s, frame, body, place, block, used, at);
@@ -371,7 +371,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
     at.field.take_strain(frame(s), at.nodes.data());
     auto nodes = prefetch_nodes<NodeArray::second>(s);
     stress_of_brick<false>(s, Velocities::of_last_step, at, [&] { nodes.next(); });
-    map_brick<mapped::force>(s, [](int, const Place&, double*, int) {});
+    map_brick<mapped::force>(s, at, [](int, const Place&, double*, int) {});
   });
 }
 
