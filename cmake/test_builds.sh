@@ -16,7 +16,7 @@ for build in "$@"; do
     lanes*)
       sh cmake/build.sh "$build" test_core test_physics
       built=$(date +%s)
-      ctest --preset "$build" -j "$(nproc)" -R '^unit\.(core|physics)$'
+      ctest --preset "$build" -j "$(nproc)" -R '^unit\.(core|oracle|physics)$'
       ;;
     race)
       sh cmake/build.sh "$build" race_programs

@@ -35,8 +35,9 @@ ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
             "read, check and discretise the input, report what the run needs, and exit");
   line.flag("--h5pt", o.to_h5part, "(-h5pt) convert a restart file to H5Part and exit");
   line.flag("--lsdyna", o.lsdyna, "(-lsdyna) also write the particles as LS-DYNA SPH data");
-  line.option("--rt", o.restart_input,
-              "(-rt) restart with the Grid, Solution, Output and Deactive of this .xmp file");
+  line.option(
+      "--rt", o.restart_input,
+      "(-rt) restart with the Grid, Solution, Output, Deactive, loads and material parameters of this file");
   line.option("--nsteps", o.status_rows, "(-nsteps) stop after this many rows of the .sta file",
               Range::positive);
   line.option("--max-wall-time", o.max_wall_time,

@@ -120,7 +120,7 @@ class BrickGrid {
                                       extra_begin_[static_cast<std::size_t>(s)];
   }
 
-  /// Of an owned brick, in this step; null unless the shape functions ask for them
+  /// Of an owned brick, in this step; null unless the shape functions need them
   /// (core/step/cells_in_use.hpp).
   const CellsAround* cells_in_use(Slot s) const {
     return cells_around_.empty() ? nullptr : &cells_around_[static_cast<std::size_t>(s)];

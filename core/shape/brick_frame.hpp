@@ -11,7 +11,7 @@ struct BrickFrame {
   Vec3<double> last_site;   ///< highest site that a particle can be in, relative to the brick's first
   /// Range of the brick inside the grid, in cells from first_site.
   Vec3<double> lowest, beyond;
-  const CellsAround* cells = nullptr;  ///< in use, for shape functions that ask for them
+  const CellsAround* cells = nullptr;  ///< in use, for shape functions that need them
 
   /// Of an owned brick.
   BrickFrame(const BrickGrid& grid, Slot s) : BrickFrame(grid.geometry(), grid.brick(s).coord) {

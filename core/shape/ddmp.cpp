@@ -316,21 +316,15 @@ void Ddmp::shape_and_gradient(const Place& place, int lane, const Vec3<double>& 
   const int side = lattice_points.side(), point = place.node[lane];
   const int cell[3] = {point % side, point / side % side, point / (side * side)};
   const double alpha = place.alpha[lane];
-  for (int n = 0; n < 8; ++n) {
-    const int c[3] = {n & 1, n >> 1 & 1, n >> 2};
-    const double s = weight(place, lane, n);
-    shape[number(c[0], c[1], c[2])] = s;
-    for (int a = 0; a < 3; ++a) {
-      double slope = (c[a] == 1 ? 1 : -1) * inverse_cell[a];
-      for (int b = 0; b < 3; ++b) {
-        if (b != a) slope *= c[b] == 1 ? place.f[b][lane] : 1 - place.f[b][lane];
-      }
-      gradient[number(c[0], c[1], c[2])][a] += alpha * slope;
-    }
-    // Node n's share of the averaged gradients, from the cells around it.
+  const auto of_corner = [&](int, const NodeOffset& offset, double s, const Vec3<double>& direct) {
+    const int(&c)[3] = offset.along;
+    const int at = number(c[0], c[1], c[2]);
+    shape[at] = s;
+    gradient[at] = gradient[at] + alpha * direct;
+    // The node's share of the averaged gradients, from the cells around it.
     const int beside = place.cells->beside(cell[0] + c[0], cell[1] + c[1], cell[2] + c[2]);
     const double share = (1 - alpha) * s / (9.0 * std::max(beside, 1));
-    for (int m = 0; m < 8; ++m) {  // of cell m around it, n is the corner m, too
+    for (int m = 0; m < 8; ++m) {  // the node is corner m of the cell m around it
       const int lowest[3] = {c[0] - (m & 1), c[1] - (m >> 1 & 1), c[2] - (m >> 2)};
       if (!place.cells->has(cell[0] + lowest[0], cell[1] + lowest[1], cell[2] + lowest[2])) continue;
       for (int i = 0; i < 8; ++i) {
@@ -342,7 +336,8 @@ void Ddmp::shape_and_gradient(const Place& place, int lane, const Vec3<double>& 
         for (int a = 0; a < 3; ++a) to[a] += ((i >> a & 1) != 0 ? share : -share) * inverse_cell[a] * g[a];
       }
     }
-  }
+  };
+  Linear::for_each_node(place, lane, inverse_cell, of_corner);
 }
 
 }  // namespace mpm::core

@@ -50,18 +50,6 @@ using LatticeRows = Rows<lattice_points>;
 /// A point's sums: momentum, mass and the force of the direct gradients, as a node's record; T_j.
 inline constexpr int sum_doubles = 16;
 
-/// Sums over the particles of one cell, point i + 2 j + 4 k in lane i + 2 j + 4 k.
-template <NodeFields what>
-struct CellSums {
-  linear::Nodes px, py, pz, m;
-  linear::Nodes direct[6], averaged[6];  ///< V sigma times S alpha and S (1 - alpha): xx yy zz xy yz xz
-
-  void clear() {
-    px = py = pz = m = linear::Nodes(0.0);
-    for (int i = 0; i < 6; ++i) direct[i] = averaged[i] = linear::Nodes(0.0);
-  }
-};
-
 }  // namespace ddmp
 
 /// Position in the cells, and alpha.
@@ -83,64 +71,43 @@ struct DdmpPlace : LinearPlace {
   }
 };
 
-/// As CellScatter, to records of `width` doubles of the lattice's points.
-template <NodeFields what>
-struct DdmpScatter {
-  static constexpr int width = maps_force(what) ? ddmp::sum_doubles : 4;
-  ddmp::CellSums<what> sums;
-  int node = -1;
+namespace ddmp {
 
-  void clear() { sums.clear(); }
-  [[gnu::always_inline]] void add(const BrickFrame& frame, const DdmpPlace& place, int i,
-                                  const MappedRows& rows, double* records) {
+/// Sums over the particles of one cell: V sigma times S alpha and S (1 - alpha), xx yy zz xy yz xz.
+template <NodeFields what>
+struct CellSums : MomentumSums<what> {
+  linear::Nodes direct[6], averaged[6];
+
+  void clear() {
+    MomentumSums<what>::clear();
+    for (int i = 0; i < 6; ++i) direct[i] = averaged[i] = linear::Nodes(0.0);
+  }
+  [[gnu::always_inline]] void add(const DdmpPlace& place, int i, const MappedRows& rows) {
     using N = linear::Nodes;
-    if (place.node[i] != node) {
-      flush(frame, records);
-      clear();
-      node = place.node[i];
-    }
-    const N wx = linear::one_x() + linear::sign_x() * N(place.f[0][i]),
-            wy = linear::one_y() + linear::sign_y() * N(place.f[1][i]),
-            wz = linear::one_z() + linear::sign_z() * N(place.f[2][i]);
-    const N w = wx * wy * wz;
-    if constexpr (maps_momentum(what)) {
-      if constexpr (maps_mass(what)) sums.m += w * N(rows.mass[i]);
-      sums.px += w * N(rows.momentum[0][i]);
-      sums.py += w * N(rows.momentum[1][i]);
-      sums.pz += w * N(rows.momentum[2][i]);
-    }
+    const N w = linear::weights(place, i);
+    MomentumSums<what>::add(w, i, rows);
     if constexpr (maps_force(what)) {
-      const N direct = N(place.alpha[i]) * w, averaged = w - direct;
+      const N with_alpha = N(place.alpha[i]) * w, rest = w - with_alpha;
       for (int c = 0; c < 6; ++c) {
         const N stress(rows.stress[c][i]);
-        sums.direct[c] += direct * stress;
-        sums.averaged[c] += averaged * stress;
+        direct[c] += with_alpha * stress;
+        averaged[c] += rest * stress;
       }
     }
   }
-  [[gnu::always_inline]] void flush(const BrickFrame& frame, double* records) {
-    if (node >= 0) write(frame, records + width * node);
-  }
+};
 
- private:
-  /// The direct gradients as in NodeStore.
-  [[gnu::always_inline]] void write(const BrickFrame& frame, double* lowest) const {
+/// The sums to the records of the lattice's points.
+template <NodeFields what>
+struct PointStore {
+  static constexpr int width = maps_force(what) ? sum_doubles : 4;
+  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* lowest) {
     using N = linear::Nodes;
-    using namespace linear;
-    const ddmp::CellSums<what>& s = sums;
     if constexpr (maps_force(what)) {
-      const N gx = sign_x() * N(-frame.inverse_cell.x), gy = sign_y() * N(-frame.inverse_cell.y),
-              gz = sign_z() * N(-frame.inverse_cell.z);
       const N(&d)[6] = s.direct;
-      N node_sums[8] = {s.px,
-                        s.py,
-                        s.pz,
-                        s.m,
-                        gx * along_x(d[0]) + gy * along_y(d[3]) + gz * along_z(d[5]),
-                        gx * along_x(d[3]) + gy * along_y(d[1]) + gz * along_z(d[4]),
-                        gx * along_x(d[5]) + gy * along_y(d[4]) + gz * along_z(d[2]),
-                        N(0.0)};
-      add_to_corners<width>(node_sums, lowest);
+      N point[8] = {s.px, s.py, s.pz, s.m, N(0.0), N(0.0), N(0.0), N(0.0)};
+      linear::forces(frame, d[0], d[1], d[2], d[3], d[4], d[5], point + 4);
+      add_to_corners<width>(point, lowest);
       N stress[8] = {s.averaged[0], s.averaged[1], s.averaged[2], s.averaged[3],
                      s.averaged[4], s.averaged[5], N(0.0),        N(0.0)};
       add_to_corners<width>(stress, lowest + 8);
@@ -150,6 +117,8 @@ struct DdmpScatter {
     }
   }
 };
+
+}  // namespace ddmp
 
 namespace ddmp {
 
@@ -173,14 +142,14 @@ struct Ddmp {
   static constexpr NodeBlockShape node_block = ddmp::node_block;
   static constexpr NodeBlockShape momentum_block = lattice_points;
   static constexpr int nodes_per_axis = 4;
-  static constexpr bool asks_for_cells = true;
+  static constexpr bool needs_cells = true;
   static ColumnSet columns() { return {}; }
   using NodeRows = ddmp::NodeRows;
   using LatticeRows = ddmp::LatticeRows;
   using Place = DdmpPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>
-  using Scatter = DdmpScatter<what>;
+  using Scatter = CellScatter<ddmp::CellSums<what>, ddmp::PointStore<what>>;
 
   /// Sums at the lattice's points.
   template <NodeFields what>
@@ -234,7 +203,7 @@ struct Ddmp {
       for (int i = 0; i < 3; ++i) {
         const double* v = field.strain_velocity() + NodeRows::doubles * i + lowest_node;
         R direct[3];
-        differences(v, x, y, z, direct);
+        trilinear_differences([&](int n) { return R(v[NodeRows::corner(n)]); }, x, y, z, direct);
         for (int j = 0; j < 3; ++j) {
           const double* d = field.averaged_gradient() + LatticeRows::doubles * (3 * i + j) + lowest_point;
           R averaged = weight[0] * R(d[0]);
@@ -251,14 +220,9 @@ struct Ddmp {
   static void cell_divergence(const BrickFrame& frame, const Place& place, const Field& field, double factor,
                               double* row, int at) {
     for_each_cell(place, [&](int point, auto here) {
-      double divergence = 0;
-      for (int a = 0; a < 3; ++a) {
-        const double* v = field.strain_velocity() + NodeRows::doubles * a + NodeRows::index(point);
-        double difference = 0;
-        for (int n = 0; n < 8; ++n)
-          difference += (n >> a & 1) != 0 ? v[NodeRows::corner(n)] : -v[NodeRows::corner(n)];
-        divergence += 0.25 * frame.inverse_cell[a] * difference;
-      }
+      const double* lowest = field.strain_velocity() + NodeRows::index(point);
+      const double divergence = mean_divergence(
+          frame, [&](int n, int a) { return lowest[NodeRows::doubles * a + NodeRows::corner(n)]; });
       store(row + at, select(here, Lanes<8>(divergence * factor), load<Lanes<8>>(row + at)));
     });
   }
@@ -268,10 +232,11 @@ struct Ddmp {
   }
   template <class F>
   static void for_each_weight(const Place& place, int lane, F f) {
-    const int lowest = lowest_of_cell(place, lane);
-    for (int n = 0; n < 8; ++n)
-      f(lowest + node_block.index(n & 1, n >> 1 & 1, n >> 2) - node_block.index(0, 0, 0),
-        weight(place, lane, n));
+    const int lowest = lowest_of_cell(place, lane) - node_block.index(0, 0, 0);
+    Linear::for_each_node(place, lane, {1, 1, 1},
+                          [&](int, const NodeOffset& at, double shape, const Vec3<double>&) {
+                            f(lowest + node_block.index(at.along[0], at.along[1], at.along[2]), shape);
+                          });
   }
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
@@ -291,31 +256,9 @@ struct Ddmp {
     const int side = lattice_points.side(), point = place.node[lane];
     return node_block.index(point % side, point / side % side, point / (side * side));
   }
-  static double weight(const Place& place, int lane, int corner) {
-    double w = 1;
-    for (int a = 0; a < 3; ++a) w *= (corner >> a & 1) != 0 ? place.f[a][lane] : 1 - place.f[a][lane];
-    return w;
-  }
   /// On the nodes i + 4 j + 16 k around the particle's cell.
   static void shape_and_gradient(const Place& place, int lane, const Vec3<double>& inverse_cell,
                                  double (&shape)[64], Vec3<double> (&gradient)[64]);
-
-  /// Differences of the trilinear interpolation of v along the axes.
-  [[gnu::always_inline]] static void differences(const double* v, Lanes<8> x, Lanes<8> y, Lanes<8> z,
-                                                 Lanes<8> (&result)[3]) {
-    using R = Lanes<8>;
-    const auto at = [&](int n) { return R(v[NodeRows::corner(n)]); };
-    R d[4], u[4];
-    for (int e = 0; e < 4; ++e) {
-      d[e] = at(2 * e + 1) - at(2 * e);
-      u[e] = at(2 * e) + x * d[e];
-    }
-    const R lower = u[1] - u[0], upper = u[3] - u[2];
-    const R d_lower = d[0] + y * (d[1] - d[0]), d_upper = d[2] + y * (d[3] - d[2]);
-    result[0] = d_lower + z * (d_upper - d_lower);
-    result[1] = lower + z * (upper - lower);
-    result[2] = (u[2] + y * upper) - (u[0] + y * lower);
-  }
 };
 static_assert(ShapePolicy<Ddmp>);
 

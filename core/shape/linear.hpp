@@ -108,31 +108,59 @@ inline Nodes one_z() { return Nodes::vector{1, 1, 1, 1, 0, 0, 0, 0}; }
 inline Nodes along_x(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 1, 0, 3, 2, 5, 4, 7, 6); }
 inline Nodes along_y(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 2, 3, 0, 1, 6, 7, 4, 5); }
 inline Nodes along_z(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7, 0, 1, 2, 3); }
+
+/// Of particle `i` of a block.
+[[gnu::always_inline]] inline Nodes weights(const LinearPlace& place, int i) {
+  const Nodes wx = one_x() + sign_x() * Nodes(place.f[0][i]), wy = one_y() + sign_y() * Nodes(place.f[1][i]),
+              wz = one_z() + sign_z() * Nodes(place.f[2][i]);
+  return wx * wy * wz;
+}
+
+/// The force on a node is minus the sum of V sigma times the weight's gradient. A gradient component is a
+/// sign over the cell's edge times the weights along the other two axes, and that product is the sum of the
+/// weights of the edge's two nodes. So V sigma is summed with the weights themselves and converted once per
+/// cell: `r`, three components, from the sums.
+[[gnu::always_inline]] inline void forces(const BrickFrame& frame, Nodes xx, Nodes yy, Nodes zz, Nodes xy,
+                                          Nodes yz, Nodes xz, Nodes* r) {
+  const Nodes gx = sign_x() * Nodes(-frame.inverse_cell.x), gy = sign_y() * Nodes(-frame.inverse_cell.y),
+              gz = sign_z() * Nodes(-frame.inverse_cell.z);
+  r[0] = gx * along_x(xx) + gy * along_y(xy) + gz * along_z(xz);
+  r[1] = gx * along_x(xy) + gy * along_y(yy) + gz * along_z(yz);
+  r[2] = gx * along_x(xz) + gy * along_y(yz) + gz * along_z(zz);
+}
 }  // namespace linear
 
-/// Sums over the particles of one cell, point i + 2 j + 4 k in lane i + 2 j + 4 k.
+/// Sums of momentum and mass over the particles of one cell, point i + 2 j + 4 k in lane i + 2 j + 4 k.
 template <NodeFields what>
-struct CellSums {
+struct MomentumSums {
   linear::Nodes px, py, pz, m;
-  linear::Nodes xx, yy, zz, xy, yz, xz;  ///< V sigma times the weights
+
+  void clear() { px = py = pz = m = linear::Nodes(0.0); }
+  /// Particle `i` of the block, with the weights `w`.
+  [[gnu::always_inline]] void add(linear::Nodes w, int i, const MappedRows& rows) {
+    using N = linear::Nodes;
+    if constexpr (!maps_momentum(what)) return;
+    if constexpr (maps_mass(what)) m += w * N(rows.mass[i]);
+    px += w * N(rows.momentum[0][i]);
+    py += w * N(rows.momentum[1][i]);
+    pz += w * N(rows.momentum[2][i]);
+  }
+};
+
+/// The same and of V sigma times the weights.
+template <NodeFields what>
+struct CellSums : MomentumSums<what> {
+  linear::Nodes xx, yy, zz, xy, yz, xz;
 
   void clear() {
-    px = py = pz = m = linear::Nodes(0.0);
+    MomentumSums<what>::clear();
     xx = yy = zz = xy = yz = xz = linear::Nodes(0.0);
   }
   /// Particle `i` of the block.
   [[gnu::always_inline]] void add(const LinearPlace& place, int i, const MappedRows& rows) {
     using N = linear::Nodes;
-    const N wx = linear::one_x() + linear::sign_x() * N(place.f[0][i]),
-            wy = linear::one_y() + linear::sign_y() * N(place.f[1][i]),
-            wz = linear::one_z() + linear::sign_z() * N(place.f[2][i]);
-    const N w = wx * wy * wz;
-    if constexpr (maps_momentum(what)) {
-      if constexpr (maps_mass(what)) m += w * N(rows.mass[i]);
-      px += w * N(rows.momentum[0][i]);
-      py += w * N(rows.momentum[1][i]);
-      pz += w * N(rows.momentum[2][i]);
-    }
+    const N w = linear::weights(place, i);
+    MomentumSums<what>::add(w, i, rows);
     if constexpr (maps_force(what)) {
       xx += w * N(rows.stress[0][i]);
       yy += w * N(rows.stress[1][i]);
@@ -167,15 +195,17 @@ template <int width>
 
 /// Adds a block's particles to the sums of the current cell; when the cell changes, Store::add(sums, frame,
 /// records of its lowest point) adds these to the records of `Store::width` doubles of the brick's points.
-template <NodeFields what, class Store>
+template <class Sums, class Store>
 struct CellScatter {
-  CellSums<what> sums;
+  static constexpr int width = Store::width;
+  Sums sums;
   int node = -1;
 
   void clear() { sums.clear(); }
 
-  [[gnu::always_inline]] void add(const BrickFrame& frame, const LinearPlace& place, int i,
-                                  const MappedRows& rows, double* records) {
+  template <class Place>
+  [[gnu::always_inline]] void add(const BrickFrame& frame, const Place& place, int i, const MappedRows& rows,
+                                  double* records) {
     if (place.node[i] != node) {
       flush(frame, records);
       clear();
@@ -184,28 +214,18 @@ struct CellScatter {
     sums.add(place, i, rows);
   }
   [[gnu::always_inline]] void flush(const BrickFrame& frame, double* records) {
-    if (node >= 0) Store::add(sums, frame, records + Store::width * node);
+    if (node >= 0) Store::add(sums, frame, records + width * node);
   }
 };
 
-/// The force on a node is minus the sum of V sigma times the weight's gradient. A gradient component is a
-/// sign over the cell's edge times the weights along the other two axes, and that product is the sum of the
-/// weights of the edge's two nodes. So V sigma is summed with the weights themselves and converted once per
-/// cell.
+/// Momentum, mass and forces to the nodes' records.
 template <NodeFields what>
 struct NodeStore {
   static constexpr int width = record_doubles(what.array);
   [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* lowest) {
     using N = linear::Nodes;
     N r[8] = {s.px, s.py, s.pz, s.m, N(0.0), N(0.0), N(0.0), N(0.0)};
-    if constexpr (maps_force(what)) {
-      using namespace linear;
-      const N gx = sign_x() * N(-frame.inverse_cell.x), gy = sign_y() * N(-frame.inverse_cell.y),
-              gz = sign_z() * N(-frame.inverse_cell.z);
-      r[4] = gx * along_x(s.xx) + gy * along_y(s.xy) + gz * along_z(s.xz);
-      r[5] = gx * along_x(s.xy) + gy * along_y(s.yy) + gz * along_z(s.yz);
-      r[6] = gx * along_x(s.xz) + gy * along_y(s.yz) + gz * along_z(s.zz);
-    }
+    if constexpr (maps_force(what)) linear::forces(frame, s.xx, s.yy, s.zz, s.xy, s.yz, s.xz, r + 4);
     if constexpr (width == 8) {
       add_to_corners<width>(r, lowest);
     } else {
@@ -214,22 +234,49 @@ struct NodeStore {
   }
 };
 
-/// Mean divergence of three components of the records of a cell's nodes, from those of the lowest on, in a
-/// node block of this shape: from the mean differences along the cell's edges.
-template <NodeBlockShape shape>
-inline double mean_divergence(const BrickFrame& frame, const double* lowest) {
-  constexpr int strides[3] = {1, shape.side(), shape.side() * shape.side()};
+/// Mean divergence in a cell from the mean differences along its edges; component(n, a): component `a` at
+/// corner n = i + 2 j + 4 k.
+template <class F>
+inline double mean_divergence(const BrickFrame& frame, F component) {
   double divergence = 0;
   for (int a = 0; a < 3; ++a) {
     double difference = 0;
     for (int n = 0; n < 8; ++n) {
-      const int node = (n & 1) * strides[0] + (n >> 1 & 1) * strides[1] + (n >> 2) * strides[2];
-      const double v = lowest[node_doubles * node + a];
+      const double v = component(n, a);
       difference += (n >> a & 1) != 0 ? v : -v;
     }
     divergence += 0.25 * frame.inverse_cell[a] * difference;
   }
   return divergence;
+}
+/// Of three components of the records of a cell's nodes, from those of the lowest on, in a node block of this
+/// shape.
+template <NodeBlockShape shape>
+inline double mean_divergence(const BrickFrame& frame, const double* lowest) {
+  constexpr int strides[3] = {1, shape.side(), shape.side() * shape.side()};
+  return mean_divergence(frame, [&](int n, int a) {
+    const int node = (n & 1) * strides[0] + (n >> 1 & 1) * strides[1] + (n >> 2) * strides[2];
+    return lowest[node_doubles * node + a];
+  });
+}
+
+/// Derivatives of the trilinear interpolation along the axes, times the edges: at(n) is the value at corner
+/// n = i + 2 j + 4 k, and x, y, z are the fractions of the edges.
+template <class F>
+[[gnu::always_inline]] inline void trilinear_differences(F at, Lanes<8> x, Lanes<8> y, Lanes<8> z,
+                                                         Lanes<8> (&result)[3]) {
+  using R = Lanes<8>;
+  // Differences along x on the four edges, and the values at x; then the same along y and z.
+  R d[4], u[4];
+  for (int e = 0; e < 4; ++e) {
+    d[e] = at(2 * e + 1) - at(2 * e);
+    u[e] = at(2 * e) + x * d[e];
+  }
+  const R lower = u[1] - u[0], upper = u[3] - u[2];
+  const R d_lower = d[0] + y * (d[1] - d[0]), d_upper = d[2] + y * (d[3] - d[2]);
+  result[0] = d_lower + z * (d_upper - d_lower);
+  result[1] = lower + z * (upper - lower);
+  result[2] = (u[2] + y * upper) - (u[0] + y * lower);
 }
 
 /// Weights of the eight points for a block's particles.
@@ -271,7 +318,7 @@ struct Linear {
   using Place = LinearPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>
-  using Scatter = CellScatter<what, NodeStore<what>>;
+  using Scatter = CellScatter<CellSums<what>, NodeStore<what>>;
 
   /// Particles add to the nodes' records themselves ...
   template <NodeFields what>
@@ -298,19 +345,10 @@ struct Linear {
     for_each_cell(place, [&](int node, auto here) {
       const double* lowest = nodes + node_doubles * node;
       for (int i = 0; i < 3; ++i) {
-        const auto v = [&](int n) { return R(lowest[node_doubles * corner_node(n) + i]); };
-        // Differences along x on the four edges, and the values at x; then the same along y and z.
-        R d[4], u[4];
-        for (int e = 0; e < 4; ++e) {
-          d[e] = v(2 * e + 1) - v(2 * e);
-          u[e] = v(2 * e) + x * d[e];
-        }
-        const R lower = u[1] - u[0], upper = u[3] - u[2];
-        const R d_lower = d[0] + y * (d[1] - d[0]), d_upper = d[2] + y * (d[3] - d[2]);
-        R* const g = gradient + 3 * i;
-        g[0] = select(here, d_lower + z * (d_upper - d_lower), g[0]);
-        g[1] = select(here, lower + z * (upper - lower), g[1]);
-        g[2] = select(here, (u[2] + y * upper) - (u[0] + y * lower), g[2]);
+        R d[3];
+        trilinear_differences([&](int n) { return R(lowest[node_doubles * corner_node(n) + i]); }, x, y, z,
+                              d);
+        for (int j = 0; j < 3; ++j) gradient[3 * i + j] = select(here, d[j], gradient[3 * i + j]);
       }
     });
     for (int i = 0; i < 3; ++i) {

@@ -64,7 +64,7 @@ struct Sgmp {
   using Place = LinearPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>
-  using Scatter = CellScatter<what, sgmp::CentreStore<what>>;
+  using Scatter = CellScatter<CellSums<what>, sgmp::CentreStore<what>>;
 
   /// Sums at the centres.
   template <NodeFields what>

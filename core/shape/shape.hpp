@@ -22,7 +22,7 @@
 //   terms
 //   for_each_weight     optional: the same without the gradient, where that costs much
 //   momentum_block      optional: the nodes that momentum and mass reach, where forces reach more
-//   asks_for_cells      optional: whether BrickFrame::cells must be there
+//   needs_cells      optional: whether BrickFrame::cells must be there
 //
 // Kernels identify a node by its number in the brick's node block and read records of node_doubles.
 #pragma once
@@ -57,8 +57,8 @@ struct NodeOffset {
 
 /// Whether the shape functions need to know which cells hold particles.
 template <class S>
-inline constexpr bool asks_for_cells = requires {
-  requires S::asks_for_cells;
+inline constexpr bool needs_cells = requires {
+  requires S::needs_cells;
 };
 
 /// The nodes that the momentum and mass of a brick's particles reach.

@@ -11,7 +11,7 @@ namespace mpm::core {
 /// before(body, place, block, used) for every block of a component, then its contribution to the nodes.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what, class F>
-void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, F before) {
+void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F before) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame = this->frame(s);
@@ -24,9 +24,7 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, F before) {
   typename S::template Sums<what> sums(contributions);
   typename S::template Scatter<what> cell;
   cell.clear();
-  SiteAverages* const pressures = maps_force(what) && averages_volume_change()
-                                      ? &scratch_[static_cast<std::size_t>(omp_get_thread_num())].averages
-                                      : nullptr;
+  SiteAverages* const pressures = maps_force(what) && averages_volume_change() ? &at.averages : nullptr;
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
     if (!holds(tile, component)) continue;
@@ -114,9 +112,9 @@ void PassesWith<S, T>::fold_at_walls(Slot s, int field, double* contributions) {
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
 void PassesWith<S, T>::map_to_grid() {
-  map_bricks<what>([this](Slot s, Scratch&) {
+  map_bricks<what>([this](Slot s, Scratch& at) {
     for_each_own_field(s, [&](std::int32_t component) {
-      map_brick<what>(s, component, [](int, const Place&, double*, int) {});
+      map_brick<what>(s, component, at, [](int, const Place&, double*, int) {});
     });
   });
 }

@@ -106,15 +106,16 @@ CellsInUse::Cells CellsInUse::read_from_nodes(Slot s) const {
 void CellsInUse::find() {
   BrickGrid& grid = *model_.grid;
   cells_.resize(static_cast<std::size_t>(grid.owned() + grid.ghosts()));
+  const auto find_cells = [&](Slot s) {
+    prefetch_coming_bricks(grid, s);
+    cells_[static_cast<std::size_t>(s)] = cells_of(s);
+  };
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
-    cells_[static_cast<std::size_t>(s)] = cells_of(static_cast<Slot>(s));
-    write_to_nodes(static_cast<Slot>(s));
+    find_cells(s);
+    write_to_nodes(s);
   });
   halo_.begin(grid, field);
-  for_each_by_threads(grid.boundary(), grid.owned(), 4, [&](int s) {
-    prefetch_coming_bricks(grid, static_cast<Slot>(s));
-    cells_[static_cast<std::size_t>(s)] = cells_of(static_cast<Slot>(s));
-  });
+  for_each_by_threads(grid.boundary(), grid.owned(), 4, find_cells);
 }
 
 void CellsInUse::finish_exchange() {
@@ -153,7 +154,7 @@ void CellsInUse::combine(Slot s) {
 std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo) {
   return with_shape(model.scene->grid.shape,
                     [&]<class S>(std::type_identity<S>) -> std::unique_ptr<CellsInUse> {
-                      if constexpr (asks_for_cells<S>) return std::make_unique<CellsInUse>(model, halo);
+                      if constexpr (needs_cells<S>) return std::make_unique<CellsInUse>(model, halo);
                       return nullptr;
                     });
 }

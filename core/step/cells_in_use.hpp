@@ -33,7 +33,7 @@ class CellsInUse {
   std::vector<Cells> cells_;  ///< by slot, ghosts included
 };
 
-/// Null for shape functions that do not ask which cells are in use.
+/// Null for shape functions that do not depend on which cells are in use.
 std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo);
 
 }  // namespace mpm::core

@@ -25,7 +25,7 @@ class ExplicitIntegrator final : public Integrator {
 
  private:
   Model& model_;
-  std::unique_ptr<CellsInUse> cells_;  ///< null where nobody asks for them
+  std::unique_ptr<CellsInUse> cells_;  ///< null for shape functions without them
   std::unique_ptr<Conduction> heat_;
   std::unique_ptr<Passes> passes_;
 };

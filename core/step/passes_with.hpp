@@ -113,7 +113,7 @@ class PassesWith final : public Passes {
   template <NodeFields what>
   void map_to_grid();
   template <NodeFields what, class F>
-  void map_brick(Slot s, std::int32_t component, F before);
+  void map_brick(Slot s, std::int32_t component, Scratch& at, F before);
   void map_surface(Slot s, std::int32_t component);
   template <NodeFields what>
   void fold_at_walls(Slot s, int field, double* contributions);
@@ -426,11 +426,12 @@ void PassesWith<S, T>::update_velocities_and_map_back() {
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       SpreadPrefetch room = prefetch_motion(s);
       const BrickFrame frame = this->frame(s);
-      map_brick<mapped::momentum>(s, component, [&](int body, const Place& place, double* block, int used) {
-        nodes.next();
-        room.next();
-        update_velocities(s, frame, body, place, block, used, at);
-      });
+      map_brick<mapped::momentum>(s, component, at,
+                                  [&](int body, const Place& place, double* block, int used) {
+                                    nodes.next();
+                                    room.next();
+                                    update_velocities(s, frame, body, place, block, used, at);
+                                  });
     });
     if (contact_ && contact_->meets(s)) {
       for (std::size_t k = 0; k < at.fields.size(); ++k)
@@ -477,7 +478,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
       at.field.take_strain(frame(s), at.nodes.data());
       auto nodes = prefetch_nodes<NodeArray::second>(s);
       stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
-      map_brick<mapped::force>(s, component, [](int, const Place&, double*, int) {});
+      map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});
     });
   });
 }

@@ -47,6 +47,18 @@ void Stepper::step() {
     before = now;
   }
   if (!failure_.empty()) throw NumericalFailure(failure_);
+  if (collapsed_) fail_collapsed();
+}
+
+void Stepper::fail_collapsed() {
+  const Clock& clock = model_.clock;
+  const std::string fastest = fastest_in_words(model_, communication_),
+                    hottest = hottest_in_words(model_, communication_);
+  throw NumericalFailure(fmt::format(
+      "step {}, time {:.9g}: the critical time step has fallen to {:.3g}, {:.1g} of the first one; the "
+      "fastest: {}; the hottest: {}",
+      clock.step, clock.time, clock.critical_dt, clock.critical_dt / clock.first_critical_dt, fastest,
+      hottest));
 }
 
 void Stepper::choose_time_step() {
@@ -96,11 +108,7 @@ void Stepper::reduce_status() {
     if (what.empty()) what = "a particle in migration has a state that is not finite";
   } else if (std::isfinite(clock.first_critical_dt) &&
              clock.critical_dt < smallest_step_ratio * clock.first_critical_dt) {
-    what = fmt::format(
-        "the critical time step has fallen to {:.3g}, {:.1g} of the first one; the fastest: {}; the hottest: "
-        "{}",
-        clock.critical_dt, clock.critical_dt / clock.first_critical_dt,
-        fastest_in_words(model_, communication_), hottest_in_words(model_, communication_));
+    collapsed_ = true;  // said in step(), once the particles that change bricks have arrived
   }
   if (!what.empty()) failure_ = fmt::format("step {}, time {:.9g}: {}", clock.step, clock.time, what);
 }

@@ -51,6 +51,7 @@ class Stepper {
   std::vector<Phase> make_phases();
   void choose_time_step();
   void reduce_status();
+  [[noreturn]] void fail_collapsed();
 
   Model& model_;
   Communication& communication_;
@@ -59,7 +60,8 @@ class Stepper {
   std::vector<Phase> phases_;
   Incidents incidents_;
   bool needs_bricks_ = false;
-  std::string failure_;  ///< agreed by all ranks; thrown after the migration is complete
+  bool collapsed_ = false;  ///< the critical step, in this step
+  std::string failure_;     ///< agreed by all ranks; thrown after the migration is complete
   bool stop_requested_ = false;
   bool stopping_ = false;
 };

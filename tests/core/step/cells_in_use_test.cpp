@@ -73,7 +73,7 @@ TEST_CASE("A brick knows the cells in use in it and around it, and their images 
   }
 }
 
-TEST_CASE("Only shape functions that ask for cells in use have phases for them") {
+TEST_CASE("Only shape functions that need cells in use have phases for them") {
   for (const ReferenceShape shape : reference_shapes) {
     ReferenceCase c = in_a_corner(0);
     c.shape = shape;

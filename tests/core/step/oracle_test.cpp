@@ -80,7 +80,7 @@ void run_both(ReferenceCase c, int steps, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("A Taylor bar moves as the naive stepper moves it") {
+TEST_CASE("A Taylor bar moves as the naive stepper moves it", "[oracle]") {
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {
       INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
@@ -127,22 +127,23 @@ void tumble(ReferenceScheme scheme, int boundary, int more_x = 0, int more_z = 0
 
 }  // namespace
 
-TEST_CASE("A block tumbles through bricks as the naive stepper moves it") {
+TEST_CASE("A block tumbles through bricks as the naive stepper moves it", "[oracle]") {
   for (const ReferenceScheme scheme : schemes) tumble(scheme, 0);
 }
 
-TEST_CASE("USF and MUSL: a block hits walls as the naive stepper lets it") {
+TEST_CASE("USF and MUSL: a block hits walls as the naive stepper lets it", "[oracle]") {
   for (const int boundary : {1, 2, 4}) {
     tumble(ReferenceScheme::usf, boundary);
     tumble(ReferenceScheme::musl, boundary);
   }
 }
 
-TEST_CASE("USL: a block hits walls as the naive stepper lets it") {
+TEST_CASE("USL: a block hits walls as the naive stepper lets it", "[oracle]") {
   for (const int boundary : {1, 2, 4}) tumble(ReferenceScheme::usl, boundary);
 }
 
-TEST_CASE("Walls at the faces of bricks, one cell and two cells beyond them are as the naive stepper's") {
+TEST_CASE("Walls at the faces of bricks, one cell and two cells beyond them are as the naive stepper's",
+          "[oracle]") {
   for (const int boundary : {1, 2, 4}) {
     tumble(ReferenceScheme::musl, boundary, 2, 1);    // 16 and 12 cells
     tumble(ReferenceScheme::musl, boundary, -1, -2);  // 13 and 9
@@ -150,7 +151,8 @@ TEST_CASE("Walls at the faces of bricks, one cell and two cells beyond them are 
   }
 }
 
-TEST_CASE("XPIC and FMPM: a block flies, hits walls and leaves them as the naive stepper lets it") {
+TEST_CASE("XPIC and FMPM: a block flies, hits walls and leaves them as the naive stepper lets it",
+          "[oracle]") {
   int n = 0;
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {
@@ -171,7 +173,7 @@ TEST_CASE("XPIC and FMPM: a block flies, hits walls and leaves them as the naive
   }
 }
 
-TEST_CASE("Volume changes are averaged as the naive stepper averages them") {
+TEST_CASE("Volume changes are averaged as the naive stepper averages them", "[oracle]") {
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {
       INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
@@ -188,7 +190,7 @@ TEST_CASE("Volume changes are averaged as the naive stepper averages them") {
   }
 }
 
-TEST_CASE("A plate one cell thick between two walls moves as the naive stepper moves it") {
+TEST_CASE("A plate one cell thick between two walls moves as the naive stepper moves it", "[oracle]") {
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {
       for (const int boundary : {0, 1, 2, 4}) {

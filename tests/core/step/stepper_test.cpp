@@ -285,7 +285,7 @@ TEST_CASE("A critical step that collapses ends the run and names the fastest and
   run.step();
   for (const ParticleBlock& block : blocks_of(run.model)) {
     for (int i = 0; i < block.used; ++i)
-      if (block.particle(i)[Column::identity] == 17)
+      if (block.particle(i)[Column::identity] == 17)  // it changes bricks in the next step
         block.data[block.layout->offset(Column::internal_energy) + i] = 1e3;
   }
   run.model.clock.first_critical_dt = 1e9 * run.model.clock.critical_dt;

@@ -214,7 +214,7 @@ struct TransferCase {
   void for_each_node(const std::vector<double>& p, F f) const {
     if constexpr (through_corners<S>)
       for_each_node_of_corners(p, f);
-    else if constexpr (core::asks_for_cells<S>)
+    else if constexpr (core::needs_cells<S>)
       for_each_node_of_cells(p, f);
     else
       for_each_node_of_axes(p, f);
