@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/contact/contact_record.hpp"
 #include "core/exact_sum.hpp"
 #include "core/grid/brick_grid.hpp"
 #include "core/material/constitutive_model.hpp"
@@ -47,6 +48,7 @@ struct Ledger {
   ExactSum removed_mass;   ///< of particles that left the grid or were eroded
   ExactSum removed_kinetic;
   ExactSum removed_internal;
+  ContactRecord contact;
   std::int64_t left_grid = 0;  ///< particles; on this rank
   std::int64_t eroded = 0;
   std::int64_t failed = 0;

@@ -1,29 +1,57 @@
 #include "core/contact/contact.hpp"
 
 #include <algorithm>
-#include <optional>
-
-#include "core/contact/node_contact.hpp"
+#include <cmath>
+#include <limits>
 
 namespace mpm::core {
 
-Contact::Contact(const Model& model) : model_(model) {
+namespace {
+
+/// Automatic weight of the normals of a material (manual 3.9): the stiffer body decides.
+double stiffness(const MaterialInput& material) {
+  constexpr double unknown = -32767;
+  if (material.strength.type == "MooneyRivlin") return std::numeric_limits<double>::infinity();
+  if (material.strength.type == "Rigid") return std::numeric_limits<double>::infinity();
+  return material.strength.value_or("Young", unknown);
+}
+
+}  // namespace
+
+/// The fields at a node that have mass there, and their pairs that may touch.
+struct Contact::Node {
+  std::vector<ContactField> fields;
+  std::vector<Motion> records;
+  std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
+  std::vector<ContactPair> pairs;
+  std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
+
+  void clear() { fields.clear(), records.clear(), number.clear(), pairs.clear(), recorded.clear(); }
+};
+
+Contact::Contact(const Model& model) : model_(model), method_(model.scene->contact.method) {
   const Scene& scene = *model.scene;
-  const std::size_t components = scene.components.size();
-  for (const ComponentInput& component : scene.components) weight_.push_back(component.normal_weight);
-  std::vector<int> material(components, -1);
-  for (const Body& body : model.bodies) material[static_cast<std::size_t>(body.component)] = body.material;
-  friction_.assign(components * components, 0.0);
-  for (std::size_t a = 0; a < components; ++a) {
-    for (std::size_t b = 0; b < components; ++b) {
-      for (const FrictionPair& pair : scene.frictions) {
-        const int first = static_cast<int>(pair.first_material),
-                  second = static_cast<int>(pair.second_material);
-        if ((first == material[a] && second == material[b]) ||
-            (first == material[b] && second == material[a]))
-          friction_[a * components + b] = pair.coefficient;
-      }
-    }
+  const ContactInput& input = scene.contact;
+  if (input.measures_gaps()) largest_gap_ = input.min_distance * model.grid->geometry().smallest_cell();
+  to_faces_ = input.distance == ContactInput::Distance::surfaces;
+  limits_time_step_ = input.limits_time_step;
+  pairs_ = ContactPairs(scene.components.size());
+
+  material_.assign(scene.components.size(), -1);
+  weight_.assign(scene.components.size(), -std::numeric_limits<double>::infinity());
+  for (const Body& body : model.bodies) {
+    const auto c = static_cast<std::size_t>(body.component);
+    material_[c] = body.material;
+    weight_[c] =
+        input.automatic_weights
+            ? std::max(weight_[c], stiffness(scene.materials[static_cast<std::size_t>(body.material)]))
+            : scene.components[c].normal_weight;
+  }
+  const std::size_t materials = scene.materials.size();
+  friction_.assign(materials * materials, 0.0);
+  for (const FrictionPair& pair : scene.frictions) {
+    friction_[pair.first_material * materials + pair.second_material] = pair.coefficient;
+    friction_[pair.second_material * materials + pair.first_material] = pair.coefficient;
   }
 }
 
@@ -56,73 +84,175 @@ void Contact::find_fields(BrickGrid& grid, NodeHalo& halo) {
   }
 }
 
+// --- surfaces ---------------------------------------------------------------------------------------------
+
+double Contact::half_edge(double volume) const { return to_faces_ ? 0.5 * std::cbrt(volume) : 0.0; }
+
+void Contact::take_surfaces(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                            std::vector<FieldNodes>& fields) const {
+  const BoundaryFaces faces(grid, s);
+  const std::span<const std::int32_t> components = seen(s);
+  fields.resize(components.size());
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    FieldNodes& field = fields[k];
+    field.component = components[k];
+    field.surface.resize(static_cast<std::size_t>(node_doubles * shared.nodes()));
+    sum_contributions<NodeArray::fourth>(grid, shared, s, field.component, field.surface.data());
+    faces.for_each_node(field.surface.data(), [](int axis, int, Boundary, double* at) { at[axis] = 0; });
+  }
+}
+
+void Contact::take_reach(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                         std::vector<FieldNodes>& fields) const {
+  const Brick& brick = grid.brick(s);
+  constexpr int width = record_doubles(mapped::reach.array);
+  for (FieldNodes& field : fields) {
+    field.reach.assign(static_cast<std::size_t>(shared.nodes()), no_reach);
+    const double* of_brick[neighbourhood] = {};
+    for (int n = 0; n < neighbourhood; ++n) {
+      const Slot neighbour = brick.neighbour[static_cast<std::size_t>(n)];
+      if (neighbour == no_slot) continue;
+      const int number = grid.field_of(neighbour, field.component);
+      if (number >= 0) of_brick[n] = grid.contributions(mapped::reach.array, neighbour, number);
+    }
+    shared.for_each_node([&](int node, auto shares) {
+      double& farthest = field.reach[static_cast<std::size_t>(node)];
+      for (const SharedNodes::Share& share : shares) {
+        if (const double* at = of_brick[share.neighbour])
+          farthest = std::max(farthest, at[width * share.node]);
+      }
+    });
+  }
+}
+
+ContactSurface Contact::surface(const FieldNodes& field, int node) const {
+  const double* g = field.surface.data() + node_doubles * node;
+  return {{g[0], g[1], g[2]}, weight_[static_cast<std::size_t>(field.component)]};
+}
+
+std::optional<Vec3<double>> Contact::outward(std::span<const FieldNodes> fields, std::size_t field,
+                                             int node) const {
+  const ContactSurface mine = surface(fields[field], node);
+  if (mine.mass_gradient == Vec3<double>{}) return std::nullopt;
+  std::optional<std::size_t> other;
+  int others = 0;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    if (k == field || surface(fields[k], node).mass_gradient == Vec3<double>{}) continue;
+    other = k;
+    ++others;
+  }
+  if (others == 0) return std::nullopt;
+  if (others > 1) return contact_normal(mine, {});
+  // The normal of a pair does not depend on which is the first, but for its sign.
+  if (field < *other) return contact_normal(mine, surface(fields[*other], node));
+  const auto normal = contact_normal(surface(fields[*other], node), mine);
+  if (!normal) return normal;
+  return -1.0 * *normal;
+}
+
+// --- impulses ---------------------------------------------------------------------------------------------
+
+double Contact::friction(std::int32_t a, std::int32_t b) const {
+  const int first = material_[static_cast<std::size_t>(a)], second = material_[static_cast<std::size_t>(b)];
+  if (first < 0 || second < 0) return 0;
+  return friction_[static_cast<std::size_t>(first) * model_.scene->materials.size() +
+                   static_cast<std::size_t>(second)];
+}
+
+bool Contact::find_pairs(std::span<const FieldNodes> fields, int node, Node& at) const {
+  for (std::size_t a = 0; a < at.fields.size(); ++a) {
+    for (std::size_t b = a + 1; b < at.fields.size(); ++b) {
+      const double ratio = at.fields[a].mass / at.fields[b].mass;
+      if (ratio > contact_mass_ratio || ratio * contact_mass_ratio < 1) continue;
+      const FieldNodes &first = fields[at.number[a]], &second = fields[at.number[b]];
+      if (largest_gap_) {
+        const auto n = static_cast<std::size_t>(node);
+        if (!(-(first.reach[n] + second.reach[n]) <= *largest_gap_)) continue;
+      }
+      const std::optional<Vec3<double>> normal = contact_normal(surface(first, node), surface(second, node));
+      if (!normal) continue;
+      at.pairs.push_back(
+          {static_cast<int>(a), static_cast<int>(b), *normal, friction(first.component, second.component)});
+      at.recorded.push_back(pairs_.number(first.component, second.component));
+    }
+  }
+  return !at.pairs.empty();
+}
+
+/// Velocities at the end of the step, and what the particles get.
+void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
+  const std::size_t count = at.fields.size();
+  const auto increment = [&](std::size_t f) {
+    const double* d = at.records[f].increment();
+    return Vec3<double>{d[0], d[1], d[2]};
+  };
+  const bool corrects_start = method_ != ContactInput::Method::bardenhagen;
+  std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
+  for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity;
+  std::vector<Vec3<double>> first_impulse(at.pairs.size());
+  if (corrects_start) {
+    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = taken[f] - increment(f);
+    resolve_contacts(at.fields, at.pairs);
+    for (std::size_t p = 0; p < at.pairs.size(); ++p) first_impulse[p] = at.pairs[p].impulse;
+    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.fields[f].velocity + increment(f);
+    if (method_ == ContactInput::Method::pan)
+      for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity;
+  }
+  for (const ContactPair& pair : at.pairs) {
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    sums.fastest = std::max(sums.fastest, dot(taken[a] - taken[b], pair.normal));
+  }
+  resolve_contacts(at.fields, at.pairs);
+  for (std::size_t f = 0; f < count; ++f) {
+    for (int a = 0; a < 3; ++a) {
+      at.records[f].increment()[a] += at.fields[f].velocity[a] - taken[f][a];
+      at.records[f].velocity()[a] = at.fields[f].velocity[a];
+    }
+  }
+  if (!counts) return;
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    const ContactPair& pair = at.pairs[p];
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    const Vec3<double> impulse = method_ == ContactInput::Method::improved_bardenhagen
+                                     ? pair.impulse + first_impulse[p]
+                                     : pair.impulse;
+    // An impulse P between fields whose relative velocity changes from u to u' takes P.(u + u')/2.
+    const Vec3<double> mean = 0.5 * (taken[a] - taken[b] + at.fields[a].velocity - at.fields[b].velocity);
+    const double normal_part = dot(impulse, pair.normal) * dot(mean, pair.normal);
+    sums.record.dissipated.add(dot(impulse, mean));
+    sums.record.friction_heat.add(dot(impulse, mean) - normal_part);
+    if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
+  }
+}
+
 void Contact::resolve(const BrickGrid& grid, const SharedNodes& shared, Slot s, Velocity which,
                       std::span<FieldNodes> fields, ContactSums& sums) const {
   const BoundaryFaces faces(grid, s);
-  for (FieldNodes& field : fields) {
-    faces.for_each_node(field.surface.data(), [](int axis, int, Boundary, double* at) { at[axis] = 0; });
-  }
   const Brick& brick = grid.brick(s);
-  std::vector<ContactField> at_node;
-  std::vector<Motion> records;
-  std::vector<std::size_t> field_of;
-  std::vector<ContactPair> pairs;
-  const auto velocity = [&](const Motion& record) {
-    double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
-    return Vec3<double>{v[0], v[1], v[2]};
-  };
+  sums.record.impulses.resize(3 * pairs_.size());
+  Node at;
   shared.for_each_node([&](int node, auto shares) {
-    at_node.clear(), records.clear(), field_of.clear(), pairs.clear();
+    at.clear();
     for (std::size_t f = 0; f < fields.size(); ++f) {
       const Motion record{fields[f].motion.data() + node_doubles * node};
       if (!(record.mass() > 0)) continue;
-      at_node.push_back({record.mass(), velocity(record)});
-      records.push_back(record);
-      field_of.push_back(f);
+      const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
+      at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
+      at.records.push_back(record);
+      at.number.push_back(f);
     }
-    if (at_node.size() < 2) return;
-    const auto surface = [&](std::size_t f) {
-      const double* g = fields[field_of[f]].surface.data() + node_doubles * node;
-      return ContactSurface{{g[0], g[1], g[2]},
-                            weight_[static_cast<std::size_t>(fields[field_of[f]].component)]};
-    };
-    for (std::size_t a = 0; a < at_node.size(); ++a) {
-      for (std::size_t b = a + 1; b < at_node.size(); ++b) {
-        const double ratio = at_node[a].mass / at_node[b].mass;
-        if (ratio > contact_mass_ratio || ratio * contact_mass_ratio < 1) continue;
-        const std::optional<Vec3<double>> normal = contact_normal(surface(a), surface(b));
-        if (!normal) continue;
-        pairs.push_back({static_cast<int>(a), static_cast<int>(b), *normal,
-                         friction(fields[field_of[a]].component, fields[field_of[b]].component)});
-      }
-    }
-    if (pairs.empty()) return;
-    double lost = 0;
-    for (const ContactField& f : at_node) lost += 0.5 * f.mass * dot(f.velocity, f.velocity);
-    resolve_contacts(at_node, pairs);
-    for (const ContactField& f : at_node) lost -= 0.5 * f.mass * dot(f.velocity, f.velocity);
-    for (std::size_t f = 0; f < records.size(); ++f) {
-      for (int a = 0; a < 3; ++a) {
-        if (which == Velocity::of_strain) {
-          records[f].strain_velocity()[a] = at_node[f].velocity[a];
-        } else {
-          records[f].increment()[a] += at_node[f].velocity[a] - records[f].velocity()[a];
-          records[f].velocity()[a] = at_node[f].velocity[a];
-        }
-      }
+    if (at.fields.size() < 2 || !find_pairs(fields, node, at)) return;
+    if (which == Velocity::of_strain) {
+      resolve_contacts(at.fields, at.pairs);
+      for (std::size_t f = 0; f < at.records.size(); ++f)
+        for (int a = 0; a < 3; ++a) at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
+      return;
     }
     const bool counts = std::ranges::none_of(shares, [&](const SharedNodes::Share& share) {
       return share.neighbour > self_index &&
              brick.neighbour[static_cast<std::size_t>(share.neighbour)] != no_slot;
     });
-    if (which != Velocity::of_end || !counts) return;
-    sums.dissipated.add(lost);
-    for (const ContactPair& pair : pairs) {
-      if (fields[field_of[static_cast<std::size_t>(pair.first)]].component != 0 ||
-          fields[field_of[static_cast<std::size_t>(pair.second)]].component != 1)
-        continue;
-      for (int a = 0; a < 3; ++a) sums.impulse[a].add(pair.impulse[a]);
-    }
+    resolve_end(at, sums, counts);
   });
   for (FieldNodes& field : fields) faces.fill(field.motion.data());
 }

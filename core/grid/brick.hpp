@@ -93,6 +93,13 @@ struct GridGeometry {
     const auto n = static_cast<double>(cells[static_cast<std::size_t>(axis)]);
     return static_cast<std::int64_t>(c == n && s == n ? c - 1 : c);
   }
+  /// Of node (i, j, k) of a brick (NodeBlockShape).
+  Vec3<double> node_place(BrickCoord b, int i, int j, int k) const {
+    const double along[3] = {double(std::int64_t{brick_cells} * b.x + i),
+                             double(std::int64_t{brick_cells} * b.y + j),
+                             double(std::int64_t{brick_cells} * b.z + k)};
+    return {origin.x + along[0] * cell.x, origin.y + along[1] * cell.y, origin.z + along[2] * cell.z};
+  }
   bool contains(const Vec3<double>& x) const {
     for (int a = 0; a < 3; ++a) {
       const double s = scaled(x[a], origin[a], inverse_cell[a]);

@@ -1,10 +1,10 @@
 // Nodal fields of the background grid, by name.
 //
-// Every brick stores its contributions to its nodes in one to four arrays of records. A field names
+// Every brick stores its contributions to its nodes in one to five arrays of records. A field names
 // consecutive components of an array's record; kernels, sums and the halo exchange use fields. A scheme maps
 // to the grid at most twice per step and needs the first sums again after the second map: hence two arrays.
 // Corrections of the velocities (core/transfer/corrected.hpp) are mapped between the two: the third array.
-// Contact needs the surfaces of the bodies at both: the fourth.
+// Contact needs the surfaces of the bodies at both: the fourth, and how far they reach: the fifth.
 // Fields of different phases may share memory: heat conduction uses the arrays while the mechanics does not.
 //
 // A record of the first array fills a cache line of 64 bytes, one of the others half a line.
@@ -16,9 +16,9 @@
 
 namespace mpm::core {
 
-enum class NodeArray : int { first, second, third, fourth };
+enum class NodeArray : int { first, second, third, fourth, fifth };
 inline constexpr std::array node_arrays{NodeArray::first, NodeArray::second, NodeArray::third,
-                                        NodeArray::fourth};
+                                        NodeArray::fourth, NodeArray::fifth};
 /// Doubles per record of summed nodes, and per record of the first array.
 inline constexpr int node_doubles = 8;
 constexpr int record_doubles(NodeArray of) {
@@ -56,6 +56,8 @@ inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
 inline constexpr NodeFields correction{NodeArray::third, 0, 3};
 // Contact: sum of m grad S.
 inline constexpr NodeFields surface{NodeArray::fourth, 0, 3};
+// Contact: how far a body reaches along its normal; the largest contribution counts, not the sum.
+inline constexpr NodeFields reach{NodeArray::fifth, 0, 1};
 // Heat conduction (conduction.hpp).
 inline constexpr NodeFields heat_capacity{NodeArray::second, 0, 1};
 inline constexpr NodeFields heat{NodeArray::second, 1, 1};
@@ -76,6 +78,7 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"cells in use", node_field::cells_in_use},
     NamedNodeFields{"correction", node_field::correction},
     NamedNodeFields{"surface", node_field::surface},
+    NamedNodeFields{"reach", node_field::reach},
     NamedNodeFields{"heat capacity", node_field::heat_capacity},
     NamedNodeFields{"heat", node_field::heat},
     NamedNodeFields{"heat flow", node_field::heat_flow},
@@ -92,6 +95,7 @@ inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass s
 inline constexpr NodeFields correction = node_field::correction;
 inline constexpr NodeFields cells_in_use = node_field::cells_in_use;
 inline constexpr NodeFields surface = node_field::surface;
+inline constexpr NodeFields reach = node_field::reach;
 inline constexpr NodeFields heat = node_field::heat_capacity | node_field::heat;
 inline constexpr NodeFields heat_flow = node_field::heat_flow | node_field::unresolved_heat;
 }  // namespace mapped

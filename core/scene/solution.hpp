@@ -130,6 +130,9 @@ struct ContactInput {
   bool limits_time_step = false;
   Method method = Method::pan;
   bool record_force = false;
+
+  /// Whether the gap between two bodies decides about their contact.
+  bool measures_gaps() const { return enable && distance != Distance::shared_node && min_distance > 0; }
 };
 
 }  // namespace mpm::core

@@ -82,6 +82,54 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
   if (S::node_block != NodeBlockShape{} && !walls.none()) walls.fold(what, contributions);
 }
 
+/// Maps how far a component's particles reach from each node along the outward normal of their field.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_reach(Slot s, std::int32_t component, std::span<const FieldNodes> fields) {
+  constexpr int width = record_doubles(mapped::reach.array);
+  BrickGrid& grid = *model_.grid;
+  const NodeBlockShape shape = grid.shape();
+  const BrickFrame frame = this->frame(s);
+  double* reach = grid.contributions(mapped::reach.array, s, field_of(s, component));
+  std::fill_n(reach, width * shape.nodes(), no_reach);
+  // At each node its place and the field's normal; none where the field is alone.
+  struct At {
+    Vec3<double> node, normal;
+    bool meets = false;
+  };
+  std::vector<At> at(static_cast<std::size_t>(shape.nodes()));
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (component != every_component && fields[f].component != component) continue;
+    if (component == every_component && grid.field_of(s, fields[f].component) != 0) continue;
+    for (int k = shape.lowest(); k <= shape.highest(); ++k) {
+      for (int j = shape.lowest(); j <= shape.highest(); ++j) {
+        for (int i = shape.lowest(); i <= shape.highest(); ++i) {
+          const int node = shape.index(i, j, k);
+          const auto normal = contact_->outward(fields, f, node);
+          if (normal)
+            at[static_cast<std::size_t>(node)] = {grid.geometry().node_place(grid.brick(s).coord, i, j, k),
+                                                  *normal, true};
+        }
+      }
+    }
+  }
+  for_each_block(s, component, columns_to_mass + 1,
+                 [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+                   const Place place(frame, layout, block);
+                   const double* x = block + layout.offset(Column::position_x);
+                   const double* volume = block + layout.offset(Column::volume);
+                   for (int l = 0; l < used; ++l) {
+                     const Vec3<double> centre{x[l], x[block_lanes + l], x[2 * block_lanes + l]};
+                     const double half = contact_->half_edge(volume[l]);
+                     for_each_weight<S>(place, l, frame.inverse_cell, [&](int node, double) {
+                       const At& there = at[static_cast<std::size_t>(node)];
+                       if (!there.meets) return;
+                       double& farthest = reach[width * node];
+                       farthest = std::max(farthest, dot(centre - there.node, there.normal) + half);
+                     });
+                   }
+                 });
+}
+
 /// Sums a tile's pressures in its sites.
 template <ShapePolicy S, TransferPolicy T>
 [[gnu::noinline]] void PassesWith<S, T>::sum_pressures(const BrickFrame& frame, const ParticleTile& tile,

@@ -44,6 +44,10 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     then("velocity fields of components", [&] { pass.find_fields(); });
     then("surfaces to grid", [&] { pass.map_surfaces(); });
     then("exchange surfaces", [&] { pass.finish_exchange(); });
+    if (model_.scene->contact.measures_gaps()) {
+      then("gaps to grid", [&] { pass.map_reach(); });
+      then("exchange gaps", [&] { pass.finish_exchange(); });
+    }
   }
 
   switch (model_.scene->solution.scheme) {

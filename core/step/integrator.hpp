@@ -38,6 +38,7 @@ struct StepStatistics {
   OffendingParticles vanishing,
       negative;                 ///< particles of negative volume and energy, where the scene checks for them
   ExactSum work;                ///< external work
+  ContactRecord contact;
   OffendingParticle undefined;  ///< for which an expression of the input has no finite value
 };
 

@@ -40,6 +40,7 @@ NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
   if (conducts || scene.solution.scheme != Scheme::usl) arrays.add(NodeArray::second);
   if (orders_of(scene.solution) > 1) arrays.add(NodeArray::third);
   if (scene.contact.enable) arrays.add(NodeArray::fourth);
+  if (scene.contact.measures_gaps()) arrays.add(NodeArray::fifth);
   return arrays;
 }
 

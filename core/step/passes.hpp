@@ -25,6 +25,7 @@ class Passes {
   /// where there is contact.
   virtual void find_fields() = 0;
   virtual void map_surfaces() = 0;
+  virtual void map_reach() = 0;
 
   /// Particles to grid. Bricks shared with other ranks come first; their exchange is in progress when this
   /// returns.

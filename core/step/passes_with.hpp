@@ -40,6 +40,7 @@ class PassesWith final : public Passes {
 
   void find_fields() override { contact_->find_fields(*model_.grid, halo_); }
   void map_surfaces() override;
+  void map_reach() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
   void finish_exchange() override { halo_.end(*model_.grid); }
@@ -115,6 +116,7 @@ class PassesWith final : public Passes {
   template <NodeFields what, class F>
   void map_brick(Slot s, std::int32_t component, Scratch& at, F before);
   void map_surface(Slot s, std::int32_t component);
+  void map_reach(Slot s, std::int32_t component, std::span<const FieldNodes> fields);
   template <NodeFields what>
   void fold_at_walls(Slot s, int field, double* contributions);
   void sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at);
@@ -385,15 +387,11 @@ template <class Update, class F>
 template <ShapePolicy S, TransferPolicy T>
 template <class Update>
 [[gnu::noinline]] void PassesWith<S, T>::meet(Slot s, Scratch& at, Contact::Velocity which, Update update) {
-  const std::span<const std::int32_t> seen = contact_->seen(s);
-  at.fields.resize(seen.size());
-  for (std::size_t k = 0; k < seen.size(); ++k) {
-    FieldNodes& field = at.fields[k];
-    field.component = seen[k];
-    update(seen[k], k);
-    field.motion.assign(at.nodes.data(), at.nodes.data() + at.nodes.size());
-    field.surface.resize(at.nodes.size());
-    sum<NodeArray::fourth>(shared_, s, seen[k], field.surface.data());
+  contact_->take_surfaces(*model_.grid, shared_, s, at.fields);
+  if (contact_->measures_gaps()) contact_->take_reach(*model_.grid, shared_, s, at.fields);
+  for (std::size_t k = 0; k < at.fields.size(); ++k) {
+    update(at.fields[k].component, k);
+    at.fields[k].motion.assign(at.nodes.data(), at.nodes.data() + at.nodes.size());
   }
   contact_->resolve(*model_.grid, shared_, s, which, at.fields, at.contact);
 }
@@ -411,6 +409,15 @@ template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::map_surfaces() {
   map_bricks<mapped::surface>([this](Slot s, Scratch&) {
     if (contact_->meets(s)) for_each_own_field(s, [&](std::int32_t component) { map_surface(s, component); });
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_reach() {
+  map_bricks<mapped::reach>([this](Slot s, Scratch& at) {
+    if (!contact_->meets(s)) return;
+    contact_->take_surfaces(*model_.grid, shared_, s, at.fields);
+    for_each_own_field(s, [&](std::int32_t component) { map_reach(s, component, at.fields); });
   });
 }
 
@@ -528,6 +535,11 @@ StepStatistics PassesWith<S, T>::take_statistics() {
     total.vanishing.merge(w.statistics.vanishing);
     total.negative.merge(w.statistics.negative);
     total.work += w.statistics.work;
+    if (contact_) {
+      total.contact += w.contact.record;
+      total.fastest = std::max(total.fastest, contact_->speed_of_step(w.contact));
+      w.contact = {};
+    }
     w.statistics = {};
   }
   return total;
