@@ -47,7 +47,7 @@ Contact::Contact(const Model& model) : model_(model), method_(model.scene->conta
             ? std::max(weight_[c], stiffness(scene.materials[static_cast<std::size_t>(body.material)]))
             : scene.components[c].normal_weight;
   }
-  const std::size_t materials = scene.materials.size();
+  const std::size_t materials = model.materials.size();
   friction_.assign(materials * materials, 0.0);
   for (const FrictionPair& pair : scene.frictions) {
     friction_[pair.first_material * materials + pair.second_material] = pair.coefficient;
@@ -155,7 +155,7 @@ std::optional<Vec3<double>> Contact::outward(std::span<const FieldNodes> fields,
 double Contact::friction(std::int32_t a, std::int32_t b) const {
   const int first = material_[static_cast<std::size_t>(a)], second = material_[static_cast<std::size_t>(b)];
   if (first < 0 || second < 0) return 0;
-  return friction_[static_cast<std::size_t>(first) * model_.scene->materials.size() +
+  return friction_[static_cast<std::size_t>(first) * model_.materials.size() +
                    static_cast<std::size_t>(second)];
 }
 

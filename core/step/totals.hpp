@@ -41,6 +41,8 @@ struct Totals : Quantities {
   std::int64_t failed = 0;
   // The ledger, over all ranks.
   double external_work = 0;
+  double dissipated_by_contact = 0;  ///< energy
+  double friction_heat = 0;          ///< the part of it that friction took
   double removed_mass = 0;
   double removed_kinetic = 0;
   double removed_internal = 0;
@@ -65,7 +67,8 @@ Totals compute_energy_totals(const Model& model, Reductions& ranks);
 
 struct EnergyBalance {
   double total = 0;  ///< kinetic + internal of the particles present
-  /// Present and removed energy, less external work and initial energy; relative to the largest of these.
+  /// Present and removed energy and what contact has dissipated, less external work and initial energy;
+  /// relative to the largest of these.
   double relative_drift = 0;
 };
 EnergyBalance energy_balance(const Totals& totals, double initial_energy);

@@ -41,6 +41,8 @@ core::ContactInput build_contact(const Node& root);
 core::SolutionInput build_solution(const Node& root, const BuildContext& context);
 /// Reports incompatible choices of shape function, transfer and bodies.
 void check_method(const Node& root, const core::Scene& scene, const BuildContext& context);
+/// Reports what contact cannot do.
+void check_contact(const Node& root, const core::Scene& scene, const BuildContext& context);
 core::OutputInput build_output(const Node& root, double end_time, const BuildContext& context);
 core::DecompositionInput build_decomposition(const Node& root, const BuildContext& context);
 core::FixedLayer build_fixed_layer(const Node& node, const BuildContext& context);

@@ -54,6 +54,7 @@ core::Scene build(const Node& root, const BuildContext& context) {
   scene.detonations = build_detonations(root, context);
   scene.solution = build_solution(root, context);
   check_method(root, scene, context);
+  check_contact(root, scene, context);
   scene.output = build_output(root, scene.solution.end_time, context);
   scene.decomposition = build_decomposition(root, context);
   return scene;

@@ -77,7 +77,7 @@ double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b
 
 HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
                          std::optional<Continuation> continuation, core::Reductions& ranks)
-    : targets_(targets_of(*model.scene)) {
+    : targets_(targets_of(*model.scene)), forces_(*model.scene) {
   for (Target& t : targets_) {
     t.first = record_;
     record_ += first_value + t.variables.size();
@@ -93,7 +93,7 @@ HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
 bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
   std::size_t length = 0;
   for (const Target& t : targets_) length += t.particle ? 2 + t.values.size() : 0;
-  if (tracked.size() != length) return false;
+  if (tracked.size() != length + forces_.memory_length()) return false;
   auto next = tracked.begin();
   for (Target& t : targets_) {
     if (!t.particle) continue;
@@ -101,6 +101,7 @@ bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
     t.present = *next++ != 0;
     for (double& value : t.values) value = std::bit_cast<double>(*next++);
   }
+  forces_.recall(std::span(tracked).last(forces_.memory_length()));
   return true;
 }
 
@@ -154,6 +155,7 @@ std::string HistoryFile::head() const {
     }
     if (t.particle) add(fmt::format("present[particle{}]", n));
   }
+  for (const std::string& column : forces_.columns()) add(column);
   return head;
 }
 
@@ -174,7 +176,7 @@ std::string HistoryFile::legend() const {
     text +=
         "# present[particle]: 1; 0 once it is eroded or has left the grid; its other columns then keep their "
         "last values\n";
-  return text;
+  return text + forces_.legend();
 }
 
 void HistoryFile::look_up(const core::Model& model, int reach, std::vector<double>& values) const {
@@ -276,6 +278,7 @@ void HistoryFile::add(const core::Model& model, const core::Energies& energies, 
                       model.clock.step, model.clock.time, particles, t.identity));
     }
   }
+  for (const double force : forces_.next(model, ranks)) put(force);
   file_->add(model.clock.step, row);
 }
 
@@ -287,6 +290,8 @@ std::vector<std::uint64_t> HistoryFile::tracked() const {
     memory.push_back(t.present ? 1 : 0);
     for (const double value : t.values) memory.push_back(std::bit_cast<std::uint64_t>(value));
   }
+  const std::vector<std::uint64_t> of_forces = forces_.memory();
+  memory.insert(memory.end(), of_forces.begin(), of_forces.end());
   return memory;
 }
 

@@ -15,6 +15,7 @@
 #include "core/communication/reductions.hpp"
 #include "core/model.hpp"
 #include "core/step/totals.hpp"
+#include "io/output/contact_forces.hpp"
 #include "io/output/table_file.hpp"
 #include "io/output/variables.hpp"
 
@@ -74,6 +75,7 @@ class HistoryFile {
   void average(const core::Model& model, const Target& target, std::vector<double>& values) const;
 
   std::vector<Target> targets_;
+  ContactForces forces_;
   std::size_t record_ = 0;  ///< doubles exchanged per row
   std::optional<TableFile> file_;
   std::vector<std::string> gone_;

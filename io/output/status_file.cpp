@@ -28,6 +28,10 @@ std::string head_of(const core::Model& model) {
   };
   for (const core::Body& b : model.bodies) add_group("body", b.name);
   for (const auto& m : model.materials) add_group("material", m->name());
+  if (model.scene->contact.enable) {
+    add("contact_dissipation");
+    add("friction_heat");
+  }
   if (model.scene->output.statistics.memory) {
     add("memory_max");
     add("memory_sum");
@@ -80,6 +84,10 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
   for (int a = 0; a < 3; ++a) add(totals.momentum[a]);
   for (const core::BodyTotals& b : totals.bodies) add_group(b);
   for (const core::Quantities& sum : material_sums(model, totals)) add_group(sum);
+  if (model.scene->contact.enable) {
+    add(totals.dissipated_by_contact);
+    add(totals.friction_heat);
+  }
   if (memory_) {
     const MemoryUse use = peak_memory(ranks);
     add(static_cast<double>(use.largest));

@@ -22,7 +22,7 @@ Json energy_json(const core::Model& model, const core::Totals& totals, const Run
   return {{"kinetic", totals.kinetic},
           {"internal", totals.internal},
           {"external_work", totals.external_work},
-          {"dissipated_by_contact", report.dissipated_by_contact},
+          {"dissipated_by_contact", totals.dissipated_by_contact},
           {"total", balance.total},
           {"initial_total", model.initial_energy},
           {"relative_drift", balance.relative_drift}};

@@ -25,7 +25,6 @@ struct RunReport {
   std::vector<std::pair<std::string, core::Spread>> phases;
   /// Sum over the steps of this run of the particles in each.
   double particle_steps = 0;
-  double dissipated_by_contact = 0;  ///< energy
 };
 
 /// The text of the file; phase times are means over the ranks. Undefined numbers are null.

@@ -22,6 +22,23 @@ constexpr SumName sum_names[] = {{"external_work", &Ledger::external_work},
                                  {"removed_mass", &Ledger::removed_mass},
                                  {"removed_kinetic", &Ledger::removed_kinetic},
                                  {"removed_internal", &Ledger::removed_internal}};
+/// Only of scenes with contact; then its impulses follow.
+constexpr const char* contact_sums = "contact";
+
+std::vector<core::ExactSum> sums_of(const core::ContactRecord& contact) {
+  if (contact.empty()) return {};
+  std::vector<core::ExactSum> sums{contact.dissipated, contact.friction_heat};
+  sums.insert(sums.end(), contact.impulses.begin(), contact.impulses.end());
+  return sums;
+}
+core::ContactRecord contact_of(std::span<const core::ExactSum> sums) {
+  core::ContactRecord contact;
+  if (sums.size() < 2) return contact;
+  contact.dissipated = sums[0];
+  contact.friction_heat = sums[1];
+  contact.impulses.assign(sums.begin() + 2, sums.end());
+  return contact;
+}
 
 struct CountName {
   const char* name;
@@ -98,6 +115,10 @@ Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::R
     counts.push_back(entry(ledger.body_eroded, b));
     counts.push_back(entry(ledger.body_left, b));
   }
+  if (model.scene->contact.enable) {
+    ledger.contact.impulses.resize(3 * core::ContactPairs(model.scene->components.size()).size());
+    for (const core::ExactSum& sum : sums_of(ledger.contact)) sums.push_back(sum);
+  }
   ranks.sum(std::span(sums));
   ranks.sum(std::span(counts));
   std::size_t s = 0, n = 0;
@@ -105,6 +126,8 @@ Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::R
     sums[s].normalise();
     ledger.*sum = sums[s++];
   }
+  for (std::size_t i = s; i < sums.size(); ++i) sums[i].normalise();
+  ledger.contact = contact_of(std::span(sums).subspan(s));
   for (const auto& [name, count] : count_names) ledger.*count = counts[n++];
   for (const auto& [name, count] : event_names) ledger.events.*count = static_cast<long>(counts[n++]);
   for (BodyRecord& b : bodies) {
@@ -137,6 +160,12 @@ std::vector<TileRecord> read_tiles(hid_t file) {
 void write_ledger(hid_t file, const Ledger& ledger) {
   const hdf5::Handle group = hdf5::create_group(file, "books");
   for (const auto& [name, sum] : sum_names) hdf5::write_all(group, name, (ledger.*sum).raw());
+  if (!ledger.contact.empty()) {
+    std::vector<std::int64_t> limbs;
+    for (const core::ExactSum& sum : sums_of(ledger.contact))
+      limbs.insert(limbs.end(), sum.raw().begin(), sum.raw().end());
+    hdf5::write_all(group, contact_sums, limbs);
+  }
   for (const auto& [name, count] : count_names) hdf5::write_attribute(group, name, ledger.*count);
   for (const auto& [name, count] : event_names)
     hdf5::write_attribute(group, name, std::int64_t{ledger.events.*count});
@@ -150,6 +179,15 @@ Ledger read_ledger(hid_t file) {
     const auto raw = (ledger.*sum).raw();
     if (limbs.size() != raw.size()) throw FileError("an exact sum has the wrong number of limbs");
     std::copy(limbs.begin(), limbs.end(), raw.begin());
+  }
+  if (hdf5::has_dataset(group, contact_sums)) {
+    const std::vector<std::int64_t> limbs = hdf5::read_all_int64(group, contact_sums);
+    const std::size_t width = core::ExactSum{}.raw().size();
+    if (limbs.size() % width != 0) throw FileError("an exact sum has the wrong number of limbs");
+    std::vector<core::ExactSum> sums(limbs.size() / width);
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      std::copy_n(limbs.begin() + static_cast<std::ptrdiff_t>(i * width), width, sums[i].raw().begin());
+    ledger.contact = contact_of(sums);
   }
   for (const auto& [name, count] : count_names) {
     // Files of earlier versions do not have all of them.

@@ -1,0 +1,97 @@
+// Refuses what contact cannot do, with the lines of the input.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "io/input/build.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+bool takes_part(const core::BodyInput& body) { return !body.deactivated && !body.for_bool; }
+
+double friction(const core::Scene& scene, std::size_t a, std::size_t b) {
+  for (const core::FrictionPair& pair : scene.frictions)
+    if ((pair.first_material == a && pair.second_material == b) ||
+        (pair.first_material == b && pair.second_material == a))
+      return pair.coefficient;
+  return 0;
+}
+
+/// Of the bodies that take part.
+std::vector<std::size_t> materials_of(const core::ComponentInput& component) {
+  std::vector<std::size_t> materials;
+  for (const core::BodyInput& body : component.bodies) {
+    if (takes_part(body) && std::ranges::find(materials, body.material) == materials.end())
+      materials.push_back(body.material);
+  }
+  return materials;
+}
+
+/// The surface of a component has one friction against each other component.
+void check_friction(const Node& node, std::size_t c, const core::Scene& scene, const BuildContext& context) {
+  const std::vector<std::size_t> mine = materials_of(scene.components[c]);
+  for (std::size_t other = 0; other < scene.components.size(); ++other) {
+    if (other == c) continue;
+    for (const std::size_t theirs : materials_of(scene.components[other])) {
+      for (const std::size_t material : mine) {
+        if (material >= scene.materials.size() || theirs >= scene.materials.size()) return;
+        if (friction(scene, material, theirs) == friction(scene, mine.front(), theirs)) continue;
+        return node.report(
+            context.diagnostics,
+            fmt::format("its materials '{}' and '{}' have different friction against '{}': contact has one "
+                        "coefficient for a pair of components. Give the bodies components of their own",
+                        scene.materials[mine.front()].name, scene.materials[material].name,
+                        scene.materials[theirs].name));
+      }
+    }
+  }
+}
+
+void check_rigid(const Node& node, const core::ComponentInput& component, const core::Scene& scene,
+                 const BuildContext& context) {
+  std::size_t bodies = 0, rigid = 0;
+  for (const core::BodyInput& body : component.bodies) {
+    if (!takes_part(body) || body.material >= scene.materials.size()) continue;
+    ++bodies;
+    if (scene.materials[body.material].strength.type == "Rigid") ++rigid;
+  }
+  if (rigid > 0 && bodies > 1)
+    node.report(context.diagnostics,
+                "a rigid body in contact must be alone in its component, which moves as one: give the other "
+                "bodies components of their own");
+}
+
+}  // namespace
+
+void check_contact(const Node& root, const core::Scene& scene, const BuildContext& context) {
+  const std::optional<Node> contact = root.child("Contact");
+  if (!contact || !scene.contact.enable) return;
+  const auto present = std::ranges::count_if(
+      scene.components, [](const auto& c) { return std::ranges::any_of(c.bodies, takes_part); });
+  if (present < 2)
+    contact->report(
+        context.diagnostics, "enable",
+        "contact acts between components, and there is only one with bodies: give bodies that are "
+        "to meet components of their own, or set enable to 0");
+  const std::optional<Node> grid = root.child("Grid"), solution = root.child("Solution");
+  if (grid && scene.grid.shape == core::ShapeFunction::ddmp)
+    grid->report(context.diagnostics, "shape",
+                 "is not available with Contact: its gradients are means over cells of all components; use "
+                 "SGMP or another shape function");
+  const core::Transfer transfer = scene.solution.transfer;
+  if (solution && (transfer == core::Transfer::xpic || transfer == core::Transfer::fmpm))
+    solution->report(
+        context.diagnostics, "transfer",
+        "is not available with Contact, whose impulses its higher orders do not see: use FLIP, PIC "
+        "or an affine transfer");
+  const std::vector<Node> components = root.children("Component");
+  for (std::size_t c = 0; c < std::min(components.size(), scene.components.size()); ++c) {
+    check_friction(components[c], c, scene, context);
+    check_rigid(components[c], scene.components[c], scene, context);
+  }
+}
+
+}  // namespace mpm::io

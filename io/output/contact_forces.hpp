@@ -1,0 +1,39 @@
+// Columns of Job_curv.dat with the forces between components: their mean since the row before, so that a sum
+// of force times interval over the rows is the impulse exactly. Component 1 acts on component 2 with the
+// force of the last three columns (manual 3.9); the other pairs come before them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/communication/reductions.hpp"
+#include "core/model.hpp"
+
+namespace mpm::io {
+
+class ContactForces {
+ public:
+  /// No columns unless the scene records forces.
+  explicit ContactForces(const core::Scene& scene);
+
+  const std::vector<std::string>& columns() const { return columns_; }
+  std::string legend() const;
+  /// The forces of the present row, zero in the first. Collective.
+  std::vector<double> next(const core::Model& model, core::Reductions& ranks);
+
+  /// State for restart files.
+  std::size_t memory_length() const { return columns_.empty() ? 0 : 1 + impulses_.size(); }
+  std::vector<std::uint64_t> memory() const;
+  /// `memory` has memory_length() entries.
+  void recall(std::span<const std::uint64_t> memory);
+
+ private:
+  std::vector<std::string> columns_;
+  std::vector<std::size_t> order_;  ///< of the columns in the record
+  double time_ = 0;                 ///< of the last row
+  std::vector<double> impulses_;    ///< until then, in the order of the record
+};
+
+}  // namespace mpm::io
