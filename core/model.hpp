@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/contact/contact_record.hpp"
+#include "core/contact/rigid_state.hpp"
 #include "core/exact_sum.hpp"
 #include "core/grid/brick_grid.hpp"
 #include "core/material/constitutive_model.hpp"
@@ -28,6 +29,7 @@ struct Body {
   const ConstitutiveModel* model = nullptr;
   std::optional<Vec3<double>> prescribed_velocity;
   bool rigid = false;  ///< moves freely under gravity where no velocity is prescribed
+  std::optional<RigidState> rigid_state;  ///< in contact; the same on all ranks
   bool no_output = false;
   /// Memory of this rank's particles; bodies with the same columns share one.
   std::shared_ptr<BlockPool> pool;

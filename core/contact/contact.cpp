@@ -12,7 +12,6 @@ namespace {
 double stiffness(const MaterialInput& material) {
   constexpr double unknown = -32767;
   if (material.strength.type == "MooneyRivlin") return std::numeric_limits<double>::infinity();
-  if (material.strength.type == "Rigid") return std::numeric_limits<double>::infinity();
   return material.strength.value_or("Young", unknown);
 }
 
@@ -20,16 +19,21 @@ double stiffness(const MaterialInput& material) {
 
 /// The fields at a node that have mass there, and their pairs that may touch.
 struct Contact::Node {
+  Vec3<double> place{};
   std::vector<ContactField> fields;
+  std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
   std::vector<Motion> records;
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
   std::vector<ContactPair> pairs;
   std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
 
-  void clear() { fields.clear(), records.clear(), number.clear(), pairs.clear(), recorded.clear(); }
+  void clear() {
+    fields.clear(), rigid.clear(), records.clear(), number.clear(), pairs.clear(), recorded.clear();
+  }
 };
 
-Contact::Contact(const Model& model) : model_(model), method_(model.scene->contact.method) {
+Contact::Contact(const Model& model, const RigidBodies* rigid)
+    : model_(model), rigid_(rigid), method_(model.scene->contact.method) {
   const Scene& scene = *model.scene;
   const ContactInput& input = scene.contact;
   if (input.measures_gaps()) largest_gap_ = input.min_distance * model.grid->geometry().smallest_cell();
@@ -42,6 +46,11 @@ Contact::Contact(const Model& model) : model_(model), method_(model.scene->conta
   for (const Body& body : model.bodies) {
     const auto c = static_cast<std::size_t>(body.component);
     material_[c] = body.material;
+    // The surface of a rigid body is exact (thesis 5-10).
+    if (body.rigid) {
+      weight_[c] = std::numeric_limits<double>::infinity();
+      continue;
+    }
     weight_[c] =
         input.automatic_weights
             ? std::max(weight_[c], stiffness(scene.materials[static_cast<std::size_t>(body.material)]))
@@ -162,8 +171,10 @@ double Contact::friction(std::int32_t a, std::int32_t b) const {
 bool Contact::find_pairs(std::span<const FieldNodes> fields, int node, Node& at) const {
   for (std::size_t a = 0; a < at.fields.size(); ++a) {
     for (std::size_t b = a + 1; b < at.fields.size(); ++b) {
+      const bool any_rigid = at.rigid[a] >= 0 || at.rigid[b] >= 0;
       const double ratio = at.fields[a].mass / at.fields[b].mass;
-      if (ratio > contact_mass_ratio || ratio * contact_mass_ratio < 1) continue;
+      if (!any_rigid && (ratio > contact_mass_ratio || ratio * contact_mass_ratio < 1)) continue;
+      if (std::isinf(at.fields[a].mass) && std::isinf(at.fields[b].mass)) continue;  // both are driven
       const FieldNodes &first = fields[at.number[a]], &second = fields[at.number[b]];
       if (largest_gap_) {
         const auto n = static_cast<std::size_t>(node);
@@ -184,7 +195,7 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   const std::size_t count = at.fields.size();
   const auto increment = [&](std::size_t f) {
     const double* d = at.records[f].increment();
-    return Vec3<double>{d[0], d[1], d[2]};
+    return at.rigid[f] < 0 ? Vec3<double>{d[0], d[1], d[2]} : Vec3<double>{};
   };
   const bool corrects_start = method_ != ContactInput::Method::bardenhagen;
   std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
@@ -204,6 +215,7 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   }
   resolve_contacts(at.fields, at.pairs);
   for (std::size_t f = 0; f < count; ++f) {
+    if (at.rigid[f] >= 0) continue;
     for (int a = 0; a < 3; ++a) {
       at.records[f].increment()[a] += at.fields[f].velocity[a] - taken[f][a];
       at.records[f].velocity()[a] = at.fields[f].velocity[a];
@@ -222,6 +234,14 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
     sums.record.dissipated.add(dot(impulse, mean));
     sums.record.friction_heat.add(dot(impulse, mean) - normal_part);
     if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
+    const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
+      if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
+      const double given = 0.5 * dot(on_it, taken[f] + at.fields[f].velocity);
+      sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
+          on_it, at.place - rigid_->state(at.rigid[f]).centre, given);
+    };
+    on(a, -1.0 * impulse);
+    on(b, impulse);
   }
 }
 
@@ -230,14 +250,27 @@ void Contact::resolve(const BrickGrid& grid, const SharedNodes& shared, Slot s, 
   const BoundaryFaces faces(grid, s);
   const Brick& brick = grid.brick(s);
   sums.record.impulses.resize(3 * pairs_.size());
+  if (rigid_ != nullptr) sums.rigid.resize(rigid_->count());
   Node at;
+  const NodeBlockShape shape = grid.shape();
+  const auto place = [&](int node) {
+    const int side = shape.side(), low = shape.lowest();
+    return grid.geometry().node_place(brick.coord, node % side + low, node / side % side + low,
+                                      node / (side * side) + low);
+  };
   shared.for_each_node([&](int node, auto shares) {
     at.clear();
+    at.place = place(node);
     for (std::size_t f = 0; f < fields.size(); ++f) {
       const Motion record{fields[f].motion.data() + node_doubles * node};
       if (!(record.mass() > 0)) continue;
       const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
-      at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
+      const int number = rigid(fields[f].component);
+      at.rigid.push_back(number);
+      if (number >= 0)
+        at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
+      else
+        at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
       at.records.push_back(record);
       at.number.push_back(f);
     }
@@ -245,7 +278,8 @@ void Contact::resolve(const BrickGrid& grid, const SharedNodes& shared, Slot s, 
     if (which == Velocity::of_strain) {
       resolve_contacts(at.fields, at.pairs);
       for (std::size_t f = 0; f < at.records.size(); ++f)
-        for (int a = 0; a < 3; ++a) at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
+        for (int a = 0; at.rigid[f] < 0 && a < 3; ++a)
+          at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
       return;
     }
     const bool counts = std::ranges::none_of(shares, [&](const SharedNodes::Share& share) {

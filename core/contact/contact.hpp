@@ -25,6 +25,7 @@
 #include "core/communication/node_halo.hpp"
 #include "core/contact/contact_record.hpp"
 #include "core/contact/node_contact.hpp"
+#include "core/contact/rigid_bodies.hpp"
 #include "core/exact_sum.hpp"
 #include "core/model.hpp"
 #include "core/step/node_update.hpp"
@@ -48,12 +49,14 @@ struct FieldNodes {
 /// What contact adds to in a step, by thread.
 struct ContactSums {
   ContactRecord record;
-  double fastest = 0;  ///< largest speed of approach of two fields in contact
+  std::vector<RigidImpulse> rigid;  ///< by rigid body
+  double fastest = 0;               ///< largest speed of approach of two fields in contact
 };
 
 class Contact {
  public:
-  explicit Contact(const Model& model);
+  /// `rigid`: the rigid bodies; null without.
+  Contact(const Model& model, const RigidBodies* rigid);
 
   /// Gives the grid's bricks their fields. Collective, with the neighbouring ranks.
   void find_fields(BrickGrid& grid, NodeHalo& halo);
@@ -102,10 +105,13 @@ class Contact {
   struct Node;
   ContactSurface surface(const FieldNodes& field, int node) const;
   double friction(std::int32_t a, std::int32_t b) const;
+  /// Number of the rigid body that is a component; -1: none.
+  int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
   bool find_pairs(std::span<const FieldNodes> fields, int node, Node& at) const;
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
 
   const Model& model_;
+  const RigidBodies* rigid_;
   ContactInput::Method method_;
   std::optional<double> largest_gap_;  ///< length
   bool to_faces_ = false;              ///< gaps between the particles' faces

@@ -208,6 +208,7 @@ template <ShapePolicy S, TransferPolicy T>
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place,
                                          double* block, int used, Scratch& at) {
+  if (rigid(body) >= 0) return;
   if (loads_.act(*model_.grid, s, body))
     at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data());
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
@@ -233,6 +234,7 @@ void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int bo
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at) {
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
+  if (const int number = rigid(body); number >= 0) return rigid_->move(number, layout, block);
   const bool does_work = forces_.damping != 0 || forces_.gravity != Vec3<double>{};
   if (does_work) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.old);
   if (loads_.motion(body).kind != BodyMotion::Kind::free)

@@ -74,6 +74,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
   }
+  if (rigid_) then("rigid bodies", [&] { pass.move_rigid_bodies(); });
   return step;
 }
 
@@ -81,7 +82,8 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
     : model_(model),
       cells_(make_cells_in_use(model, communication.halo)),
       heat_(make_conduction(model, communication.halo)),
-      passes_(make_passes(model, communication.halo)) {}
+      rigid_(make_rigid_bodies(model, communication)),
+      passes_(make_passes(model, communication.halo, rigid_.get())) {}
 
 double ExplicitIntegrator::next_step(const Clock& clock) const {
   const TimeStepInput& how = model_.scene->solution.time_step;

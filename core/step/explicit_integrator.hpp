@@ -1,6 +1,7 @@
 // The explicit schemes MUSL, USF and USL as lists of phases (explicit_integrator.cpp).
 #pragma once
 
+#include "core/contact/rigid_bodies.hpp"
 #include "core/step/cells_in_use.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/integrator.hpp"
@@ -27,6 +28,7 @@ class ExplicitIntegrator final : public Integrator {
   Model& model_;
   std::unique_ptr<CellsInUse> cells_;  ///< null for shape functions without them
   std::unique_ptr<Conduction> heat_;
+  std::unique_ptr<RigidBodies> rigid_;  ///< null without any in contact
   std::unique_ptr<Passes> passes_;
 };
 

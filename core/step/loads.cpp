@@ -87,7 +87,9 @@ Loads::Loads(const Model& model) : model_(&model), motions_(model.bodies.size())
                             !input.surface_loads.empty());
     for (const SurfaceLoad& load : input.surface_loads)
       mine.surfaces.push_back({{}, &load, load.ramp.value_or(geometry.smallest_cell())});
-    acts = acts || mine.loaded || input.constrain_rigid_position;
+    const bool turned =
+        input.prescribed_acceleration && input.prescribed_acceleration->angular_amplitude != Vec3<double>{};
+    acts = acts || mine.loaded || input.constrain_rigid_position || turned;
   }
   if (!acts) bodies_.clear();
   add_functions(model, inputs);
@@ -153,6 +155,18 @@ void Loads::begin_step(double time, double dt) {
     }
     for (Surface& s : mine.surfaces) set_stress(s, model_->bodies[b]);
   }
+}
+
+Vec3<double> Loads::angular_acceleration(int body) const {
+  Vec3<double> a{};
+  if (!any()) return a;
+  const BodyInput* input = bodies_[static_cast<std::size_t>(body)].input;
+  if (input == nullptr || !input->prescribed_acceleration) return a;
+  const PrescribedAcceleration& load = *input->prescribed_acceleration;
+  for (int i = 0; i < 3; ++i)
+    a[i] = load.angular_amplitude[i] *
+           between(load.points, middle_, [i](const auto& p) { return p.angular_factor[i]; });
+  return a;
 }
 
 /// T of a surface load in this step, or the part of it that is the same in all places.

@@ -75,6 +75,8 @@ class Loads {
   Vec3<double> acceleration(int body) const {
     return any() ? bodies_[static_cast<std::size_t>(body)].acceleration : Vec3<double>{};
   }
+  /// Angular acceleration of a rigid body at the middle of this step, from PrescribedAcceleration.
+  Vec3<double> angular_acceleration(int body) const;
   /// How the body's velocities evolve in this step.
   const BodyMotion& motion(int body) const { return motions_[static_cast<std::size_t>(body)]; }
   bool nonreflecting() const { return nonreflecting_; }

@@ -4,11 +4,11 @@
 
 namespace mpm::core {
 
-std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo) {
+std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo, RigidBodies* rigid) {
   using Made = std::unique_ptr<Passes>;
   return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> Made {
     return with_transfer<S>(model.scene->solution, [&]<class T>(std::type_identity<T>) -> Made {
-      return make_passes_with<S, T>(model, halo);
+      return make_passes_with<S, T>(model, halo, rigid);
     });
   });
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/contact/rigid_bodies.hpp"
 #include "core/step/integrator.hpp"
 #include "core/step/loads.hpp"
 
@@ -26,6 +27,8 @@ class Passes {
   virtual void find_fields() = 0;
   virtual void map_surfaces() = 0;
   virtual void map_reach() = 0;
+  /// Rigid bodies at the end of the step, with the impulses of contact on them. Only where there are any.
+  virtual void move_rigid_bodies() = 0;
 
   /// Particles to grid. Bricks shared with other ranks come first; their exchange is in progress when this
   /// returns.
@@ -57,9 +60,10 @@ class Passes {
 
 /// With shape functions S and transfer T; instantiated in passes_<shape>.cpp.
 template <class S, class T>
-std::unique_ptr<Passes> make_passes_with(Model& model, NodeHalo& halo);
+std::unique_ptr<Passes> make_passes_with(Model& model, NodeHalo& halo, RigidBodies* rigid);
 /// The passes for the scene's shape functions and transfer: the only place where they are chosen.
-std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo);
+/// `rigid`: the rigid bodies in contact; null without.
+std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo, RigidBodies* rigid);
 /// The columns that the scene's shape functions and transfer add to every particle.
 ColumnSet shape_columns(const Scene& scene);
 ColumnSet transfer_columns(const Scene& scene);

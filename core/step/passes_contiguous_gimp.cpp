@@ -4,10 +4,10 @@
 
 namespace mpm::core {
 
-template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Flip>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Apic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Tpic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Aflip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Flip>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, FlipPic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Apic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Tpic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Aflip>(Model&, NodeHalo&, RigidBodies*);
 
 }  // namespace mpm::core

@@ -6,14 +6,15 @@
 
 namespace mpm::core {
 
-template std::unique_ptr<Passes> make_passes_with<Linear, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<Sgmp, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<Ddmp, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<UniformGimp, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<Cpdi, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<Cpdi2, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Corrected>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Corrected>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Linear, Corrected>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<Sgmp, Corrected>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<Ddmp, Corrected>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<UniformGimp, Corrected>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<ContiguousGimp, Corrected>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<Cpdi, Corrected>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<Cpdi2, Corrected>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Corrected>(Model&, NodeHalo&,
+                                                                               RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Corrected>(Model&, NodeHalo&, RigidBodies*);
 
 }  // namespace mpm::core

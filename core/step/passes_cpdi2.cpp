@@ -4,7 +4,7 @@
 
 namespace mpm::core {
 
-template std::unique_ptr<Passes> make_passes_with<Cpdi2, Flip>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<Cpdi2, FlipPic>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<Cpdi2, Flip>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<Cpdi2, FlipPic>(Model&, NodeHalo&, RigidBodies*);
 
 }  // namespace mpm::core

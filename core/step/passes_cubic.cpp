@@ -4,10 +4,10 @@
 
 namespace mpm::core {
 
-template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Flip>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<CubicBSpline, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Apic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Tpic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Aflip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Flip>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, FlipPic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Apic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Tpic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<CubicBSpline, Aflip>(Model&, NodeHalo&, RigidBodies*);
 
 }  // namespace mpm::core

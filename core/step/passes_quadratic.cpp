@@ -4,10 +4,10 @@
 
 namespace mpm::core {
 
-template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Flip>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, FlipPic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Apic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Tpic>(Model&, NodeHalo&);
-template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Aflip>(Model&, NodeHalo&);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Flip>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, FlipPic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Apic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Tpic>(Model&, NodeHalo&, RigidBodies*);
+template std::unique_ptr<Passes> make_passes_with<QuadraticBSpline, Aflip>(Model&, NodeHalo&, RigidBodies*);
 
 }  // namespace mpm::core

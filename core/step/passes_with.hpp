@@ -28,19 +28,21 @@ namespace mpm::core {
 template <ShapePolicy S, TransferPolicy T>
 class PassesWith final : public Passes {
  public:
-  PassesWith(Model& model, NodeHalo& halo);
+  PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid);
 
   const Loads& loads() const override { return loads_; }
   void begin_step(double length) override {
     dt = length;
     transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
     loads_.begin_step(model_.clock.time, dt);
+    if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, dt);
     begin_corrections();
   }
 
   void find_fields() override { contact_->find_fields(*model_.grid, halo_); }
   void map_surfaces() override;
   void map_reach() override;
+  void move_rigid_bodies() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
   void finish_exchange() override { halo_.end(*model_.grid); }
@@ -154,6 +156,9 @@ class PassesWith final : public Passes {
     return moves_corrected() ? corrected_nodes(s) : at.nodes.data();
   }
 
+  /// Number of the rigid body in contact that is this body; -1: its particles move with the grid or alone.
+  int rigid(int body) const { return rigid_ == nullptr ? -1 : rigid_->of_body(body); }
+
   // Operations on a block or a batch.
   void take_velocities(const BrickFrame& frame, const Place& place, const ColumnLayout& layout, double* block,
                        Scratch& at) const;
@@ -199,6 +204,7 @@ class PassesWith final : public Passes {
 
   Model& model_;
   NodeHalo& halo_;
+  RigidBodies* rigid_;  ///< in contact; null without
   SharedNodes shared_;
   SharedNodes momentum_shared_;
   NodeForces forces_;
@@ -228,9 +234,10 @@ class PassesWith final : public Passes {
 inline constexpr double usl_mass_floor = 0.2;
 
 template <ShapePolicy S, TransferPolicy T>
-PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
+PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
     : model_(model),
       halo_(halo),
+      rigid_(rigid),
       shared_(model.grid->shape()),
       momentum_shared_(model.grid->shape(), momentum_block<S>),
       loads_(model),
@@ -249,7 +256,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo)
   }
   velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
   erosion_volume_ = solution.volume.erode.value_or(0);
-  if (model.scene->contact.enable) contact_ = std::make_unique<Contact>(model);
+  if (model.scene->contact.enable) contact_ = std::make_unique<Contact>(model, rigid);
   wave_weight_ = 1 / wave_limit(*model.scene);
 #pragma omp parallel
   flush_denormals_to_zero();
@@ -422,6 +429,24 @@ void PassesWith<S, T>::map_reach() {
 }
 
 template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::move_rigid_bodies() {
+  std::vector<RigidImpulse> impulses(rigid_->count());
+  for (Scratch& w : scratch_) {
+    for (std::size_t r = 0; r < w.contact.rigid.size(); ++r) impulses[r] += w.contact.rigid[r];
+    w.contact.rigid.clear();
+  }
+  rigid_->end_step(impulses, scratch_[0].statistics.work, scratch_[0].contact.record);
+  for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch&) {
+    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
+      const int number = rigid(tile.body);
+      if (number < 0) continue;
+      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+      for (const auto block : tile.blocks) rigid_->set_velocities(number, pool.layout(), pool.block(block));
+    }
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities_and_map_back() {
   motion_.resize(static_cast<std::size_t>(motion_doubles()) *
                  (contact_ ? contact_->all_seen() : static_cast<std::size_t>(model_.grid->owned())));
@@ -546,8 +571,8 @@ StepStatistics PassesWith<S, T>::take_statistics() {
 }
 
 template <class S, class T>
-std::unique_ptr<Passes> make_passes_with(Model& model, NodeHalo& halo) {
-  return std::make_unique<PassesWith<S, T>>(model, halo);
+std::unique_ptr<Passes> make_passes_with(Model& model, NodeHalo& halo, RigidBodies* rigid) {
+  return std::make_unique<PassesWith<S, T>>(model, halo, rigid);
 }
 
 }  // namespace mpm::core

@@ -55,10 +55,6 @@ core::PrescribedAcceleration build_acceleration(const Node& node, const BuildCon
   core::PrescribedAcceleration load;
   load.linear_amplitude = node.reals("ax", "ay", "az");
   load.angular_amplitude = node.reals("arx", "ary", "arz");
-  if (load.angular_amplitude != core::Vec3<double>{})
-    node.report(
-        context.diagnostics, "arx",
-        "angular accelerations turn rigid bodies, which is not implemented yet: set arx, ary, arz to 0");
   for (const Node& point : node.children("Coefficient")) {
     load.points.push_back(
         {point.real("time"), point.reals("cx", "cy", "cz"), point.reals("crx", "cry", "crz")});
@@ -193,6 +189,19 @@ void check_rigid_expressions(const core::BodyInput& body, const Node& node, cons
         ->report(context.diagnostics, e.attribute, "a rigid body moves as a whole: expected a number");
 }
 
+/// Angular accelerations turn rigid bodies in contact only.
+void check_rotation(const core::BodyInput& body, const Node& node, bool rigid, const core::Scene& scene,
+                    const BuildContext& context) {
+  const auto& load = body.prescribed_acceleration;
+  if (!load || load->angular_amplitude == core::Vec3<double>{}) return;
+  if (rigid && scene.contact.enable) return;
+  const std::optional<Node> at = node.child("PrescribedAcceleration");
+  if (!at) return;
+  at->report(context.diagnostics, "arx",
+             rigid ? "turns rigid bodies in contact only: set Contact enable to 1, or arx, ary, arz to 0"
+                   : "angular accelerations turn rigid bodies only: set arx, ary, arz to 0");
+}
+
 /// A rigid body acts on others through contact only: in a single velocity field it would exert no force, so
 /// it may not be combined with deformable bodies.
 void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<Node>& nodes,
@@ -205,6 +214,7 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
   for (const core::BodyInput* b : bodies)
     if (takes_part(*b) && !rigid(*b)) deformable = deformable == nullptr ? b : deformable;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (takes_part(*bodies[i])) check_rotation(*bodies[i], nodes[i], rigid(*bodies[i]), scene, context);
     if (!takes_part(*bodies[i]) || !rigid(*bodies[i])) continue;
     for (const Node& load : nodes[i].children("Traction"))
       load.report(context.diagnostics, "has no effect on a rigid body; use PrescribedAcceleration");

@@ -251,10 +251,6 @@ double read_double(hid_t object, const std::string& name) {
 }
 bool has_attribute(hid_t object, const std::string& name) { return H5Aexists(object, name.c_str()) > 0; }
 
-bool has_dataset(hid_t parent, const std::string& name) {
-  return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
-}
-
 std::int64_t read_int64(hid_t object, const std::string& name) {
   std::int64_t value = 0;
   check(H5Aread(open_attribute(object, name), H5T_NATIVE_INT64, &value), "read attribute '" + name + "'");

@@ -31,6 +31,11 @@ std::string head_of(const core::Model& model) {
   if (model.scene->contact.enable) {
     add("contact_dissipation");
     add("friction_heat");
+    for (const core::Body& b : model.bodies) {
+      if (!b.rigid) continue;
+      for (const char* column : {"fx", "fy", "fz", "mx", "my", "mz"})
+        add(fmt::format("{}[contact:{}]", column, safe_name(b.name)));
+    }
   }
   if (model.scene->output.statistics.memory) {
     add("memory_max");
@@ -87,6 +92,12 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
   if (model.scene->contact.enable) {
     add(totals.dissipated_by_contact);
     add(totals.friction_heat);
+    for (const core::Body& b : model.bodies) {
+      if (!b.rigid) continue;
+      const core::RigidState s = b.rigid_state.value_or(core::RigidState{});
+      for (int a = 0; a < 3; ++a) add(s.force[a]);
+      for (int a = 0; a < 3; ++a) add(s.moment[a]);
+    }
   }
   if (memory_) {
     const MemoryUse use = peak_memory(ranks);

@@ -1,6 +1,8 @@
 #include "io/restart/contents.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -180,7 +182,7 @@ Ledger read_ledger(hid_t file) {
     if (limbs.size() != raw.size()) throw FileError("an exact sum has the wrong number of limbs");
     std::copy(limbs.begin(), limbs.end(), raw.begin());
   }
-  if (hdf5::has_dataset(group, contact_sums)) {
+  if (hdf5::has_link(group, contact_sums)) {
     const std::vector<std::int64_t> limbs = hdf5::read_all_int64(group, contact_sums);
     const std::size_t width = core::ExactSum{}.raw().size();
     if (limbs.size() % width != 0) throw FileError("an exact sum has the wrong number of limbs");
@@ -198,6 +200,8 @@ Ledger read_ledger(hid_t file) {
   return ledger;
 }
 
+constexpr const char* rigid_motion = "rigid_motion";
+
 void write_body(hid_t group, const BodyRecord& b) {
   hdf5::write_attribute(group, "name", b.name);
   hdf5::write_attribute(group, "component", b.component);
@@ -210,6 +214,10 @@ void write_body(hid_t group, const BodyRecord& b) {
   hdf5::write_attribute(group, "particles", b.particles);
   hdf5::write_attribute(group, "eroded", b.eroded);
   hdf5::write_attribute(group, "left", b.left);
+  if (b.rigid) {
+    const auto values = std::bit_cast<std::array<double, core::RigidState::size>>(*b.rigid);
+    hdf5::write_all(group, rigid_motion, std::span<const double>(values));
+  }
 }
 
 BodyRecord read_body(hid_t group) {
@@ -225,6 +233,13 @@ BodyRecord read_body(hid_t group) {
   b.particles = hdf5::read_int64(group, "particles");
   b.eroded = hdf5::read_int64(group, "eroded");
   b.left = hdf5::read_int64(group, "left");
+  if (hdf5::has_link(group, rigid_motion)) {
+    const std::vector<double> values = hdf5::read_all_double(group, rigid_motion);
+    std::array<double, core::RigidState::size> state{};
+    if (values.size() != state.size()) throw FileError("the motion of a rigid body has the wrong length");
+    std::ranges::copy(values, state.begin());
+    b.rigid = std::bit_cast<core::RigidState>(state);
+  }
   return b;
 }
 
@@ -335,7 +350,7 @@ RestartContents contents_of(const core::Model& model, const RestartExtra& extra,
     c.bodies.push_back({b.name, scene.components[static_cast<std::size_t>(b.component)].name,
                         scene.materials[static_cast<std::size_t>(b.material)].name, b.component, b.material,
                         b.model->reference_density(), b.no_output, columns_of(b.pool->layout().set()),
-                        order.particles[i], 0, 0});
+                        order.particles[i], 0, 0, b.rigid_state});
   }
   c.ledger = summed(model, c.bodies, ranks);
   return c;
@@ -347,6 +362,7 @@ std::uint64_t expected_bytes(const RestartContents& c) {
   std::uint64_t bytes =
       262144 + c.extra.scene_text.size() + sizeof(TileRecord) * c.tiles.size() + 8 * c.extra.tracked.size();
   for (const auto& [name, mark] : c.extra.marks) bytes += 2048 + mark.size();
+  bytes += sizeof(core::ExactSum) * (2 + c.ledger.contact.impulses.size());
   for (const BodyRecord& b : c.bodies)
     bytes += 16384 + 8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
   return bytes;

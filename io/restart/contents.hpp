@@ -33,6 +33,7 @@ struct BodyRecord {
   std::int64_t particles = 0;
   std::int64_t eroded = 0;
   std::int64_t left = 0;
+  std::optional<core::RigidState> rigid;  ///< of rigid bodies in contact
 };
 
 struct RestartContents {

@@ -1,0 +1,191 @@
+#include "core/contact/rigid_bodies.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/particle_range.hpp"
+
+namespace mpm::core {
+
+void RigidImpulse::add(const Vec3<double>& p, const Vec3<double>& arm, double given) {
+  const Vec3<double> h = cross(arm, p);
+  for (int a = 0; a < 3; ++a) {
+    impulse[a].add(p[a]);
+    moment[a].add(h[a]);
+  }
+  energy.add(given);
+  ++contacts;
+}
+
+RigidImpulse& RigidImpulse::operator+=(const RigidImpulse& other) {
+  for (int a = 0; a < 3; ++a) {
+    impulse[a] += other.impulse[a];
+    moment[a] += other.moment[a];
+  }
+  energy += other.energy;
+  contacts += other.contacts;
+  return *this;
+}
+
+RigidBodies::RigidBodies(Model& model, Reductions& ranks) : model_(model), ranks_(ranks) {
+  by_component_.assign(model.scene->components.size(), -1);
+  by_body_.assign(model.bodies.size(), -1);
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (!body.rigid) continue;
+    const int number = static_cast<int>(bodies_.size());
+    by_component_[static_cast<std::size_t>(body.component)] = by_body_[b] = number;
+    const bool driven =
+        body.prescribed_velocity || (b < inputs.size() && inputs[b]->constrain_rigid_position);
+    bodies_.push_back({static_cast<int>(b), driven, 0});
+  }
+  node_mass_.resize(bodies_.size());
+  find_states(ranks);
+}
+
+void RigidBodies::find_states(Reductions& ranks) {
+  const bool known = std::ranges::all_of(bodies_, [&](const Rigid& r) {
+    return model_.bodies[static_cast<std::size_t>(r.body)].rigid_state.has_value();
+  });
+  if (known) return;
+  // First mass, centre and momentum, then inertia and angular momentum about the centre.
+  constexpr std::size_t first_sums = 7, second_sums = 9;
+  std::vector<ExactSum> sums(first_sums * bodies_.size());
+  const auto over_particles = [&](auto f) {
+    for (const ConstParticleBlock& block : blocks_of(std::as_const(model_))) {
+      const int number = of_body(block.body);
+      if (number < 0) continue;
+      for (const ConstParticle p : block)
+        f(static_cast<std::size_t>(number), p[Column::mass], p.vector(Column::position_x),
+          p.vector(Column::velocity_x));
+    }
+  };
+  over_particles([&](std::size_t r, double m, const Vec3<double>& x, const Vec3<double>& v) {
+    ExactSum* s = &sums[first_sums * r];
+    s[0].add(m);
+    for (int a = 0; a < 3; ++a) {
+      s[1 + a].add(m * x[a]);
+      s[4 + a].add(m * v[a]);
+    }
+  });
+  ranks.sum(std::span<ExactSum>(sums));
+  std::vector<RigidState> found(bodies_.size());
+  for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    const ExactSum* s = &sums[first_sums * r];
+    RigidState& state = found[r];
+    state.mass = s[0].value();
+    if (!(state.mass > 0)) continue;
+    for (int a = 0; a < 3; ++a) {
+      state.centre[a] = s[1 + a].value() / state.mass;
+      state.velocity[a] = s[4 + a].value() / state.mass;
+    }
+  }
+  sums.assign(second_sums * bodies_.size(), {});
+  over_particles([&](std::size_t r, double m, const Vec3<double>& x, const Vec3<double>& v) {
+    ExactSum* s = &sums[second_sums * r];
+    const Vec3<double> d = x - found[r].centre, l = cross(d, v - found[r].velocity);
+    const double values[second_sums] = {d.y * d.y + d.z * d.z,
+                                        d.x * d.x + d.z * d.z,
+                                        d.x * d.x + d.y * d.y,
+                                        -d.x * d.y,
+                                        -d.y * d.z,
+                                        -d.x * d.z,
+                                        l.x,
+                                        l.y,
+                                        l.z};
+    for (std::size_t i = 0; i < second_sums; ++i) s[i].add(m * values[i]);
+  });
+  ranks.sum(std::span<ExactSum>(sums));
+  for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    const ExactSum* s = &sums[second_sums * r];
+    RigidState& state = found[r];
+    state.inertia = {s[0].value(), s[1].value(), s[2].value(), s[3].value(), s[4].value(), s[5].value()};
+    state.spin = spin_of(state.inertia, {s[6].value(), s[7].value(), s[8].value()});
+    model_.bodies[static_cast<std::size_t>(bodies_[r].body)].rigid_state = state;
+  }
+}
+
+const RigidState& RigidBodies::state(int number) const {
+  return *model_.bodies[static_cast<std::size_t>(bodies_[static_cast<std::size_t>(number)].body)].rigid_state;
+}
+
+void RigidBodies::begin_step(const Loads& loads, const Vec3<double>& gravity, double dt) {
+  dt_ = dt;
+  for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    Rigid& rigid = bodies_[r];
+    RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
+    rigid.energy_before = kinetic_energy(state);
+    const BodyMotion& motion = loads.motion(rigid.body);
+    state.velocity = motion.kind == BodyMotion::Kind::prescribed
+                         ? motion.velocity.common
+                         : state.velocity + dt * (gravity + loads.acceleration(rigid.body));
+    state.spin = state.spin + dt * loads.angular_acceleration(rigid.body);
+    node_mass_[r] =
+        rigid.driven ? std::numeric_limits<double>::infinity() : state.mass / std::max(state.contacts, 1.0);
+  }
+}
+
+void RigidBodies::move(int number, const ColumnLayout& layout, double* block) const {
+  const RigidState& s = state(number);
+  const Mat3<double> turn = rotation(dt_ * s.spin);
+  const Vec3<double> centre = s.centre + dt_ * s.velocity;
+  double* x = block + layout.offset(Column::position_x);
+  for (int i = 0; i < block_lanes; ++i) {
+    const Vec3<double> at =
+        centre + turn * (Vec3<double>{x[i], x[block_lanes + i], x[2 * block_lanes + i]} - s.centre);
+    for (int a = 0; a < 3; ++a) x[block_lanes * a + i] = at[a];
+  }
+}
+
+void RigidBodies::set_velocities(int number, const ColumnLayout& layout, double* block) const {
+  const RigidState& s = state(number);
+  const double* x = block + layout.offset(Column::position_x);
+  double* v = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < block_lanes; ++i) {
+    const Vec3<double> at = velocity_at(s, {x[i], x[block_lanes + i], x[2 * block_lanes + i]});
+    for (int a = 0; a < 3; ++a) v[block_lanes * a + i] = at[a];
+  }
+}
+
+void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, ContactRecord& contact) {
+  constexpr std::size_t sums_of_body = 7;
+  std::vector<ExactSum> sums(sums_of_body * bodies_.size());
+  std::vector<std::int64_t> contacts(bodies_.size());
+  for (std::size_t r = 0; r < std::min(impulses.size(), bodies_.size()); ++r) {
+    ExactSum* s = &sums[sums_of_body * r];
+    for (int a = 0; a < 3; ++a) {
+      s[a] = impulses[r].impulse[a];
+      s[3 + a] = impulses[r].moment[a];
+    }
+    s[6] = impulses[r].energy;
+    contacts[r] = impulses[r].contacts;
+  }
+  ranks_.sum(std::span<ExactSum>(sums));
+  ranks_.sum(std::span<std::int64_t>(contacts));
+  for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    const Rigid& rigid = bodies_[r];
+    RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
+    const ExactSum* s = &sums[sums_of_body * r];
+    const Vec3<double> impulse{s[0].value(), s[1].value(), s[2].value()},
+        moment{s[3].value(), s[4].value(), s[5].value()};
+    const double without_contact = kinetic_energy(state), given = s[6].value();
+    core::end_step(state, dt_, impulse, moment, rigid.driven);
+    state.contacts = static_cast<double>(contacts[r]);
+    if (ranks_.rank() != 0) continue;
+    work.add(without_contact - rigid.energy_before);
+    if (rigid.driven)
+      work.add(-given);
+    else
+      contact.dissipated.add(given - (kinetic_energy(state) - without_contact));
+  }
+}
+
+std::unique_ptr<RigidBodies> make_rigid_bodies(Model& model, Reductions& ranks) {
+  const bool any = std::ranges::any_of(model.bodies, [](const Body& b) { return b.rigid; });
+  if (!model.scene->contact.enable || !any) return nullptr;
+  return std::make_unique<RigidBodies>(model, ranks);
+}
+
+}  // namespace mpm::core

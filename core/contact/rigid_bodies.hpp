@@ -1,0 +1,73 @@
+// Rigid bodies in contact with others (thesis chapter 5; manual 3.2.1.13, 3.6.8): fixed, driven, or free with
+// six degrees of freedom. Their particles carry mass and surface to the grid; their motion is one state per
+// body (rigid_state.hpp), the same bits on every rank.
+//
+// At a node a driven body has infinite mass. A free one has its mass over the number of nodes at which it
+// touched others in the step before, so that the impulses of all of them stop it and no more (mass
+// splitting, as in node_contact.hpp).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/communication/reductions.hpp"
+#include "core/exact_sum.hpp"
+#include "core/model.hpp"
+#include "core/step/loads.hpp"
+
+namespace mpm::core {
+
+/// Of contact on one rigid body in a step, by thread.
+struct RigidImpulse {
+  ExactSum impulse[3], moment[3];
+  ExactSum energy;  ///< that the nodes give to it
+  std::int64_t contacts = 0;
+
+  void add(const Vec3<double>& p, const Vec3<double>& arm, double given);
+  RigidImpulse& operator+=(const RigidImpulse& other);
+};
+
+class RigidBodies {
+ public:
+  /// States that the model does not have yet follow from the particles. Collective.
+  RigidBodies(Model& model, Reductions& ranks);
+
+  std::size_t count() const { return bodies_.size(); }
+  /// Number of the rigid body that is this component, or body; -1: deformable.
+  int of_component(std::int32_t component) const {
+    return by_component_[static_cast<std::size_t>(component)];
+  }
+  int of_body(int body) const { return by_body_[static_cast<std::size_t>(body)]; }
+  const RigidState& state(int number) const;
+  /// Mass of a rigid body at a node.
+  double mass_at_node(int number) const { return node_mass_[static_cast<std::size_t>(number)]; }
+
+  /// The motion that the bodies would have without contact.
+  void begin_step(const Loads& loads, const Vec3<double>& gravity, double dt);
+  /// Moves a block of a rigid body's particles.
+  void move(int number, const ColumnLayout& layout, double* block) const;
+  /// With the impulses of all threads, per body: the motion at the end of the step. The work of loads and
+  /// drives is added to `work`, what contact has dissipated beyond the nodes' sums to `contact`. Collective.
+  void end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, ContactRecord& contact);
+  void set_velocities(int number, const ColumnLayout& layout, double* block) const;
+
+ private:
+  struct Rigid {
+    int body = 0;
+    bool driven = false;
+    double energy_before = 0;  ///< kinetic, at the start of the step
+  };
+  void find_states(Reductions& ranks);
+
+  Model& model_;
+  Reductions& ranks_;
+  double dt_ = 0;
+  std::vector<Rigid> bodies_;
+  std::vector<double> node_mass_;
+  std::vector<int> by_component_, by_body_;
+};
+
+/// Null without contact or without rigid bodies. Collective.
+std::unique_ptr<RigidBodies> make_rigid_bodies(Model& model, Reductions& ranks);
+
+}  // namespace mpm::core
