@@ -199,7 +199,8 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   };
   const bool corrects_start = method_ != ContactInput::Method::bardenhagen;
   std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
-  for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity;
+  std::vector<Vec3<double>> start(count);  // velocity at the start of the step, as the particles have it
+  for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity, start[f] = taken[f] - increment(f);
   std::vector<Vec3<double>> first_impulse(at.pairs.size());
   if (corrects_start) {
     for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = taken[f] - increment(f);
@@ -228,8 +229,9 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
     const Vec3<double> impulse = method_ == ContactInput::Method::improved_bardenhagen
                                      ? pair.impulse + first_impulse[p]
                                      : pair.impulse;
-    // An impulse P between fields whose relative velocity changes from u to u' takes P.(u + u')/2.
-    const Vec3<double> mean = 0.5 * (taken[a] - taken[b] + at.fields[a].velocity - at.fields[b].velocity);
+    // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
+    // of the fields is u at its start and u' with all increments that the particles get.
+    const Vec3<double> mean = start[a] - start[b] + 0.5 * (increment(a) - increment(b));
     const double normal_part = dot(impulse, pair.normal) * dot(mean, pair.normal);
     sums.record.dissipated.add(dot(impulse, mean));
     sums.record.friction_heat.add(dot(impulse, mean) - normal_part);
