@@ -190,6 +190,21 @@ bool Contact::find_pairs(std::span<const FieldNodes> fields, int node, Node& at)
   return !at.pairs.empty();
 }
 
+/// An impulse of this step has done its work where the end of the step finds two fields at rest against each
+/// other. The strain must then not part them: that would be work without a source.
+void Contact::hold_pairs(Node& at) const {
+  constexpr double round_off = 1e-10;
+  for (ContactPair& pair : at.pairs) {
+    const double *v = at.records[static_cast<std::size_t>(pair.first)].velocity(),
+                 *w = at.records[static_cast<std::size_t>(pair.second)].velocity();
+    const Vec3<double> a{v[0], v[1], v[2]}, b{w[0], w[1], w[2]}, relative = a - b;
+    const double most = round_off * std::sqrt(std::max(dot(a, a), dot(b, b)));
+    if (!(std::abs(dot(relative, pair.normal)) <= most)) continue;
+    const bool sticks = std::sqrt(dot(relative, relative)) <= most;
+    pair.holds = sticks ? ContactPair::Holds::all : ContactPair::Holds::normal;
+  }
+}
+
 /// Velocities at the end of the step, and what the particles get.
 void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   const std::size_t count = at.fields.size();
@@ -200,7 +215,8 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   const bool corrects_start = method_ != ContactInput::Method::bardenhagen;
   std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
   std::vector<Vec3<double>> start(count);  // velocity at the start of the step, as the particles have it
-  for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity, start[f] = taken[f] - increment(f);
+  for (std::size_t f = 0; f < count; ++f)
+    taken[f] = at.fields[f].velocity, start[f] = taken[f] - increment(f);
   std::vector<Vec3<double>> first_impulse(at.pairs.size());
   if (corrects_start) {
     for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = taken[f] - increment(f);
@@ -277,7 +293,8 @@ void Contact::resolve(const BrickGrid& grid, const SharedNodes& shared, Slot s, 
       at.number.push_back(f);
     }
     if (at.fields.size() < 2 || !find_pairs(fields, node, at)) return;
-    if (which == Velocity::of_strain) {
+    if (which != Velocity::of_end) {
+      if (which == Velocity::of_strain_after_end) hold_pairs(at);
       resolve_contacts(at.fields, at.pairs);
       for (std::size_t f = 0; f < at.records.size(); ++f)
         for (int a = 0; at.rigid[f] < 0 && a < 3; ++a)

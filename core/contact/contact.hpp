@@ -94,7 +94,8 @@ class Contact {
   /// no surface.
   std::optional<Vec3<double>> outward(std::span<const FieldNodes> fields, std::size_t field, int node) const;
 
-  enum class Velocity { of_end, of_strain };
+  /// MUSL's strain velocity comes after that of the end of the step, which the fields' motion still has.
+  enum class Velocity { of_end, of_strain, of_strain_after_end };
   /// Changes the velocities of a brick's fields, with take_surfaces() done, and of those at the end of the
   /// step the increments that the particles get. Adds to `sums` what happens at nodes that no later brick
   /// has.
@@ -108,6 +109,7 @@ class Contact {
   /// Number of the rigid body that is a component; -1: none.
   int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
   bool find_pairs(std::span<const FieldNodes> fields, int node, Node& at) const;
+  void hold_pairs(Node& at) const;
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
 
   const Model& model_;

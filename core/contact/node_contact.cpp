@@ -13,10 +13,13 @@ constexpr int most_sweeps = 200;
 constexpr double rest = 1e-13;  // of the largest speed
 
 /// The part of `p` along `n` is made not negative, the rest at most `friction` times as long.
-Vec3<double> within_cone(const Vec3<double>& p, const Vec3<double>& n, double friction) {
-  const double along = std::max(dot(p, n), 0.0);
+Vec3<double> within_cone(const Vec3<double>& p, const ContactPair& pair) {
+  if (pair.holds == ContactPair::Holds::all) return p;
+  const Vec3<double>& n = pair.normal;
+  const double friction = pair.friction, pressing = std::max(dot(p, n), 0.0);
+  const double along = pair.holds == ContactPair::Holds::normal ? dot(p, n) : pressing;
   const Vec3<double> tangential = p - dot(p, n) * n;
-  const double length = std::sqrt(dot(tangential, tangential)), most = friction * along;
+  const double length = std::sqrt(dot(tangential, tangential)), most = friction * pressing;
   return along * n + (length > most ? most / length : 1.0) * tangential;
 }
 
@@ -41,7 +44,7 @@ void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pai
       const double mass = 1 / (parts[a] / fields[a].mass + parts[b] / fields[b].mass);
       const Vec3<double> approach = fields[a].velocity - fields[b].velocity;
       const Vec3<double> before = pair.impulse;
-      pair.impulse = within_cone(before + mass * approach, pair.normal, pair.friction);
+      pair.impulse = within_cone(before + mass * approach, pair);
       const Vec3<double> more = pair.impulse - before;
       change[a] = change[a] - (1 / fields[a].mass) * more;
       change[b] = change[b] + (1 / fields[b].mass) * more;

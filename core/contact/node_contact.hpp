@@ -32,7 +32,9 @@ struct ContactPair {
   int first = 0, second = 0;  ///< numbers of the fields
   Vec3<double> normal{};      ///< unit vector from the first to the second
   double friction = 0;        ///< Coulomb's coefficient
-  Vec3<double> impulse{};     ///< result: on the second; the first gets the opposite
+  enum class Holds { nothing, normal, all };
+  Holds holds = Holds::nothing;  ///< what the impulse brings to rest whatever its sign
+  Vec3<double> impulse{};        ///< result: on the second; the first gets the opposite
 };
 
 /// Two fields whose masses differ by more than this factor do not touch: the velocity of the lighter one is

@@ -483,7 +483,7 @@ void PassesWith<S, T>::update_stress_and_move() {
       sum<NodeArray::second>(momentum_shared_, s, component, at.sums.data());
       second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
     };
-    for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component) {
+    for_each_field(s, at, Contact::Velocity::of_strain_after_end, update, [&](std::int32_t component) {
       at.field.take_motion(at.nodes.data());
       at.field.take_strain(frame(s), at.nodes.data());
       auto nodes = prefetch_nodes<NodeArray::second>(s);
