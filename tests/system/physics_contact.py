@@ -1,0 +1,233 @@
+"""Contact between deformable bodies, with Coulomb friction, against exact solutions: a block that slides or sticks, discs
+that rebound, blocks that glide over each other, three bodies at a corner, and the books of impulse and energy.
+
+Gaps are in cells. Prints what it measures."""
+
+import itertools
+import math
+
+import _cases
+import _mpm
+import numpy as np
+
+SHAPES = ("linear", "uGIMP", "QuadraticBSpline", "SGMP")
+SHARED_NODE, SURFACES = "", 'distance_type="2" min_distance="0.05"'
+YOUNG = 1000.0
+EVERY_STEP = '<TimeHistory var="pres"><Point x="1" y="1" z="0.5"/></TimeHistory>'
+
+
+def component(name, bodies, weight=0.0):
+    return f'<Component name="{name}" normal_vector_weight="{weight}">{bodies}</Component>'
+
+
+def scene(components, grid, solution, output, shape="linear", kind=1, distance=SURFACES, friction=0.0, young=YOUNG):
+    material = _mpm.material(strength=f'type="IsoElastic" Young="{young}" Poisson="0.3" bq1="0" bq2="0"')
+    rubs = f'<Friction><Coefficient value="{friction}" mat1="soft" mat2="soft"/></Friction>'
+    return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">', material, rubs, *components,
+                      grid.replace("<Grid>", f'<Grid shape="{shape}">'),
+                      f'<Contact enable="1" contact_type="{kind}" {distance} record_contact_force="1"/>', solution,
+                      f"<Output>{output}</Output>", "</PeneBlast>", ""])
+
+
+def sliding(friction, kind, distance, shape="linear", end=4.0, output="", **more):
+    """A block on a base that is held from below, under a body force along its plane at 30 degrees to the x axis. The
+    weight comes on slowly, then the rest: the plane's slope has the tangent 0.6."""
+    slope = "0.6*min(max((t-0.5)/0.25,0),1)"
+    force = (f'<BodyForce bx="{math.cos(math.radians(30))!r}*{slope}" by="{math.sin(math.radians(30))!r}*{slope}" '
+             'bz="-min(t/0.5,1)"/>')
+    # The base's normals are those of its plane; those of the block tilt at its edges.
+    bodies = [component("base", _mpm.block("base", (0, 0, 0), (12, 10, 2)), 1),
+              component("top", _mpm.block("top", (2.2, 2.3, 2), (5, 4, 1), more=force))]
+    return scene(bodies, _mpm.grid((0, 0, 0), (12, 10, 6), "000010"), _mpm.solution(end),
+                 f'<Console print_time="{end / 40}"/>' + output, shape, kind, distance, friction, 1e4, **more)
+
+
+def discs(kind, distance, shape, rings=0, end=3.6, output="", speed=0.5, friction=0.0, offset=0.0):
+    """Two discs of radius 5, 0.6 apart, in a layer of one cell between symmetry planes."""
+
+    def disc(name, x, y, velocity):
+        return component(name, f'<Body name="{name}" material="soft" type="Cylinder"><Geometry dp_bottom="0.5" dp_top="0.5" '
+                         f'x0="{x}" y0="{y}" z0="0" Bottom_Outer_Radius="5" Top_Outer_Radius="5" height="1" '
+                         f'discretization="{rings}"/><InitialVelocity vx="{velocity}" vy="0" vz="0"/></Body>')
+
+    return scene([disc("left", 6.23, 7.35, speed), disc("right", 16.83, 7.35 + offset, -speed)],
+                 _mpm.grid((-2, 0, 0), (25, 16, 1), "000022"), _mpm.solution(end),
+                 f'<Console print_time="{end / 50}"/>' + EVERY_STEP + output, shape, kind, distance, friction)
+
+
+def gliding(shape, cells, weight, distance, friction=0.0, output="", end=1.2):
+    """A block of 4 x 3 x 2 that strikes a larger free one from above, obliquely; `cells` of the grid along a length of 1."""
+    lower = _mpm.block("lower", (1, 1, 1), (7, 6, 2), dp=0.5 / cells)
+    upper = _mpm.block("upper", (2.3, 2.2, 3.1), (4, 3, 2), (1.3, 0.75, -0.5), dp=0.5 / cells)
+    return scene([component("lower", lower, weight), component("upper", upper)],
+                 _mpm.grid((0, 0, 0), (9, 8, 8), cell=1 / cells), _mpm.solution(end),
+                 f'<Console print_time="{end / 4}"/>' + EVERY_STEP + output, shape, 1, distance, friction)
+
+
+CORNER = {"left": _mpm.block("left", (1.4, 2, 1.2), (3, 3, 3), (0.6, 0.1, 0)),
+          "right": _mpm.block("right", (4.5, 2.2, 1.4), (3, 3, 3), (-0.5, 0, 0.2)),
+          "above": _mpm.block("above", (2.6, 1.8, 4.5), (4, 3, 2), (0, 0.2, -0.8))}
+
+
+def corner(order, output="", end=1.5, kind=1, distance=SURFACES):
+    """Three blocks that press on each other along one edge."""
+    return scene([component(name, CORNER[name]) for name in order], _mpm.grid((0, 0, 0), (9, 7, 8)), _mpm.solution(end),
+                 f'<Console print_time="{end / 4}"/>' + output, "linear", kind, distance, 0.3)
+
+
+class Contact(_mpm.Case):
+    def go(self, text, folder="run", **how):
+        outcome = self.run_in(folder, [self.write(text)], **how)
+        return outcome.state, _mpm.summary(self.folder / folder), _cases.status(self.folder / folder)
+
+    def forces(self, folder="run"):
+        found = _mpm.table(self.folder / folder / "case_curv.dat")
+        return np.array(found["time"]), np.column_stack([found[f"contact_{a}[1,2]"] for a in "xyz"])
+
+    def test_sliding(self):
+        """g_t - mu g_n along the plane, off both axes; friction heat mu N s."""
+        along = np.array([math.cos(math.radians(30)), math.sin(math.radians(30))])
+        for kind, distance, shape in [*itertools.product((0, 1, 2), (SURFACES,), ("linear",)),
+                                      (1, SHARED_NODE, "linear"), *((1, SURFACES, s) for s in SHAPES[1:])]:
+            with self.subTest(kind=kind, distance=distance, shape=shape):
+                _, summary, status = self.go(sliding(0.3, kind, distance, shape))
+                time = status["time"]
+                velocity = np.column_stack([status[f"v{a}[body:top]"] for a in "xy"])
+                speed, across = velocity @ along, velocity @ np.array([-along[1], along[0]])
+                late = time >= 1
+                acceleration = np.polyfit(time[late], speed[late], 1)[0]
+                first = np.argmax(late)
+                slid = np.trapz(speed[first:], time[first:])
+                heat = (status["friction_heat"][-1] - status["friction_heat"][first]) / (0.3 * 20 * slid)
+                drift = summary["energy"]["relative_drift"]
+                print(f"sliding type {kind} {distance or 'shared node':38} {shape:16} a/exact - 1 {acceleration / 0.3 - 1:+.5f} "
+                      f"heat/(mu N s) - 1 {heat - 1:+.5f} across/along {across[-1] / speed[-1]:+.1e} slid {slid:.3f} "
+                      f"drift {drift:+.1e}")
+                self.assertGreater(slid, 1.2)
+                self.assertAlmostEqual(acceleration / 0.3, 1, delta=0.002)
+                self.assertAlmostEqual(heat, 1, delta=0.005)
+                self.assertLess(abs(across[-1] / speed[-1]), 1e-3)
+                self.assertLess(abs(drift), 0.02 if kind == 0 else 0.002)
+
+    def test_sticking(self):
+        """With friction above the slope it stays, but for its elastic shear."""
+        for kind, shape in [(0, "linear"), (1, "linear"), (2, "linear"), *((1, s) for s in SHAPES[1:])]:
+            with self.subTest(kind=kind, shape=shape):
+                _, summary, status = self.go(sliding(0.7, kind, SURFACES, shape))
+                time = status["time"]
+                moved = math.hypot(*(np.trapz(status[f"v{a}[body:top]"], time) for a in "xy"))
+                print(f"sticking type {kind} {shape:16} moved {moved:.1e} cells heat {summary_heat(status):.1e}")
+                self.assertLess(moved, 1e-3)
+                self.assertLess(summary_heat(status), 0.002)  # of 16 where it slides with 0.3
+
+    def test_rebound_of_discs(self):
+        """Head on: the energy that is left, kinetic and elastic, and the gap at the first force. Discs keep vibrating."""
+        for shape, kind, distance in itertools.product(SHAPES, (0, 1, 2), (SHARED_NODE, SURFACES)):
+            with self.subTest(shape=shape, kind=kind, distance=distance):
+                _, summary, status = self.go(discs(kind, distance, shape))
+                time, force = self.forces()
+                gap = 0.6 - time[np.argmax(force[:, 0] != 0) - 1]
+                kinetic, total = (status[name][-1] / status[name][0] for name in ("kinetic", "total"))
+                scale = status["px[body:left]"][0]
+                momentum = max(np.abs(status[name]).max() for name in ("px", "py", "pz")) / scale
+                print(f"discs {shape:16} type {kind} {distance or 'shared node':38} lost {1 - total:+.4f} kinetic {kinetic:.4f} "
+                      f"restitution {status['vx[body:right]'][-1] / 0.5:.4f} gap {gap:.3f} "
+                      f"drift {summary['energy']['relative_drift']:+.1e} momentum {momentum:.1e}")
+                self.assertLess(momentum, 1e-12)
+                self.assertGreater(status["vx[body:right]"][-1], 0.38)
+                self.assertEqual(force[-1, 0], 0, "they have parted")
+                self.assertLess(total, 1.001, "nothing is gained")
+                if kind == 0:
+                    self.assertGreater(total, 0.98)
+                self.assertGreater(total, 0.88)
+                if distance == SURFACES:
+                    self.assertLess(gap, 0.17)
+                else:
+                    self.assertGreater(gap, 0.5, "bodies that share nodes touch from afar")
+
+    def test_gap_of_discs_of_rings(self):
+        """Rings have the surface where the disc has it, blocks of cubes only on the average."""
+        for shape in ("linear", "QuadraticBSpline"):
+            self.go(discs(1, SURFACES, shape, rings=1, end=1.0))
+            time, force = self.forces()
+            gap = 0.6 - time[np.argmax(force[:, 0] != 0) - 1]
+            print(f"rings {shape:16} gap {gap:.3f}")
+            self.assertLess(gap, 0.08)
+
+    def test_gliding(self):
+        """Without friction the momentum along the faces stays, body by body, where the wide body's normals decide."""
+        for shape, cells, weight in [*itertools.product(SHAPES, (1,), (0, 1)), ("linear", 2, 0), ("linear", 2, 1)]:
+            with self.subTest(shape=shape, cells=cells, weight=weight):
+                _, summary, status = self.go(gliding(shape, cells, weight, SURFACES))
+                first = math.hypot(1.3, 0.75) * 24
+                change = math.hypot(*(status[f"p{a}[body:upper]"][-1] - status[f"p{a}[body:upper]"][0] for a in "xy"))
+                stopped = status["pz[body:upper]"][-1] - status["pz[body:upper]"][0]
+                print(f"gliding {shape:16} cells {cells} weight {weight} tangential/first {change / first:.1e} "
+                      f"tangential/normal impulse {change / stopped:.1e} drift {summary['energy']['relative_drift']:+.1e}")
+                self.assertGreater(stopped, 0.6 * 24 * 0.5)
+                self.assertLess(np.abs([status[f"p{a}"][-1] - status[f"p{a}"][0] for a in "xyz"]).max() / first, 1e-12)
+                self.assertLess(change / stopped, 1e-3 if weight else 0.3)
+
+    def test_three_bodies_at_a_corner(self):
+        """The order of the components in the input does not matter."""
+        pictures = '<PostProcessing time_interval="1.5" h5part="1" var="SigmaX"/>'
+
+        def motion(order, kind):
+            _, summary, status = self.go(corner(order, pictures, kind=kind), "-".join(order))
+            states = _cases.States(self.folder / "-".join(order))
+            names = ("x", "y", "z", "velocity_0", "velocity_1", "velocity_2", "SigmaX")
+            first = np.column_stack([states.column(a, 0) for a in "xyz"])
+            last = np.column_stack([states.column(name) for name in names])
+            bodies = {body["name"]: np.array(body["centre"] + body["velocity"]) for body in summary["bodies"]}
+            momentum = max(abs(status[f"p{a}"][-1] - status[f"p{a}"][0]) for a in "xyz")
+            return last[np.lexsort(first.T)], bodies, momentum
+
+        for kind in (0, 1, 2):
+            alone, bodies, _ = motion(("left", "right", "above"), kind)
+            changes = [np.abs(bodies[name][3:] - v).max() for name, v in
+                       (("left", (0.6, 0.1, 0)), ("right", (-0.5, 0, 0.2)), ("above", (0, 0.2, -0.8)))]
+            self.assertGreater(min(changes), 0.1, "all three are struck")
+            for order in itertools.permutations(CORNER):
+                with self.subTest(kind=kind, order=order):
+                    other, others, momentum = motion(order, kind)
+                    difference = max(np.abs(others[name] - bodies[name]).max() for name in CORNER)
+                    print(f"corner type {kind} {'-'.join(order):16} bodies {difference:.1e} particles {np.abs(other - alone).max():.1e} "
+                          f"momentum {momentum:.1e}")
+                    self.assertLess(momentum / (24 * 0.8), 1e-12)
+                    self.assertLess(difference, 1e-10)
+                    self.assertLess(np.abs(other[:, :6] - alone[:, :6]).max(), 1e-5)  # single precision
+
+    def test_forces_are_the_change_of_momentum(self):
+        """Also through a restart in the middle, which goes on with the same bits and rows."""
+        restart = '<Restart time_interval="0.6"/>'
+        for name, text in (("gliding", gliding("linear", 1, 0, SURFACES, 0.4, restart)),
+                           ("discs", discs(0, SURFACES, "QuadraticBSpline", 0, 1.2, restart, 1.0, 0.4, 2.0))):
+            with self.subTest(name):
+                state, summary, status = self.go(text, "whole")
+                second = summary["bodies"][1]["name"]
+                halfway = min(_mpm.restarts(self.folder / "whole"), key=lambda path: int(path.stem.rpartition("_")[2]))
+                again = self.run_in("again", [halfway])
+                self.assertEqual(again.state, state)
+                table, rest = (rows(self.folder / folder / "case_curv.dat") for folder in ("whole", "again"))
+                self.assertLess(len(rest), len(table))
+                self.assertEqual(rest, table[len(table) - len(rest):])
+                time, force = self.forces("whole")
+                impulse = (force[1:] * np.diff(time)[:, None]).sum(axis=0)
+                change = np.array([status[f"p{a}[body:{second}]"][-1] - status[f"p{a}[body:{second}]"][0] for a in "xyz"])
+                error = np.abs(impulse - change).max() / np.abs(change).max()
+                print(f"forces {name}: impulse {impulse}, relative error {error:.1e}, {len(table)} rows, {len(rest)} after the restart")
+                self.assertLess(error, 1e-10)
+                self.assertGreater(np.count_nonzero(force[:, 0]), 20)
+                self.assertGreater(summary["energy"]["dissipated_by_contact"], 0)
+
+
+def summary_heat(status):
+    return status["friction_heat"][-1]
+
+
+def rows(path):
+    return [line for line in path.read_text().splitlines() if line and not line.startswith("#")]
+
+
+if __name__ == "__main__":
+    _mpm.main()
