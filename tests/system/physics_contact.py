@@ -124,7 +124,7 @@ class Contact(_mpm.Case):
                 _, summary, status = self.go(sliding(0.7, kind, SURFACES, shape))
                 time = status["time"]
                 moved = math.hypot(*(np.trapz(status[f"v{a}[body:top]"], time) for a in "xy"))
-                print(f"sticking type {kind} {shape:16} moved {moved:.1e} cells heat {status["friction_heat"][-1]:.1e}")
+                print(f"sticking type {kind} {shape:16} moved {moved:.1e} cells heat {status['friction_heat'][-1]:.1e}")
                 self.assertLess(moved, 1e-3)
                 self.assertLess(status["friction_heat"][-1], 0.005)  # of 10 where it slides with 0.3
 
@@ -145,9 +145,10 @@ class Contact(_mpm.Case):
                 self.assertGreater(status["vx[body:right]"][-1], 0.38)
                 self.assertEqual(force[-1, 0], 0, "they have parted")
                 self.assertLess(total, 1.001, "nothing is gained")
-                if kind == 0:
-                    self.assertGreater(total, 0.98)
-                self.assertGreater(total, 0.88)
+                # Impulses that the particles do not get cost nothing; the others equalise light nodes in every step.
+                self.assertGreater(total, 0.88 if kind else 0.99 if distance else 0.98)
+                if kind != 0:
+                    self.assertLess(abs(summary["energy"]["relative_drift"]), 0.2)
                 if distance == SURFACES:
                     self.assertLess(gap, 0.17)
                 else:
@@ -155,7 +156,7 @@ class Contact(_mpm.Case):
 
     def test_gap_between_faces(self):
         """The first force comes in the step in which the faces, or centres, come as near as min_distance."""
-        for shape, kind, (measure, most) in itertools.product(SHAPES, (0, 1, 2), ((1, 0.8), (2, 0.05), (2, 0.3))):
+        for shape, kind, (measure, most) in itertools.product(SHAPES, (0, 1), ((1, 0.8), (2, 0.05), (2, 0.3))):
             with self.subTest(shape=shape, kind=kind, measure=measure, most=most):
                 self.go(bars(kind, f'distance_type="{measure}" min_distance="{most}"', shape, 0.7))
                 time, force = self.forces()
@@ -178,7 +179,15 @@ class Contact(_mpm.Case):
                 print(f"bars {shape:16} type {kind} {distance or 'shared node':38} lost {1 - total:+.4f} "
                       f"restitution {status['vx[body:right]'][-1] / 0.5:.4f} "
                       f"time/(2 L/c) {(time[on[-1]] - time[on[0]]) / (20 / speed):.3f} "
-                      f"mean force/exact {force[on, 0].mean() / (4 * speed * 0.5):.3f} drift {summary['energy']['relative_drift']:+.1e}")
+                      f"drift {summary['energy']['relative_drift']:+.1e}")
+                self.assertEqual(force[-1, 0], 0, "they have parted")
+                self.assertGreater(status["vx[body:right]"][-1], 0.82 * 0.5)
+                self.assertGreater(total, 0.85)
+                self.assertLess(total, 1.02)
+                if distance == SURFACES:
+                    self.assertAlmostEqual((time[on[-1]] - time[on[0]]) / (20 / speed), 1.05, delta=0.05)
+                if kind != 0:
+                    self.assertLess(abs(summary["energy"]["relative_drift"]), 0.15)
 
     def test_gap_of_discs_of_rings(self):
         """Rings have the surface where the disc has it, blocks of cubes only on the average."""
@@ -201,7 +210,9 @@ class Contact(_mpm.Case):
                       f"tangential/normal impulse {change / stopped:.1e} drift {summary['energy']['relative_drift']:+.1e}")
                 self.assertGreater(stopped, 0.6 * 24 * 0.5)
                 self.assertLess(np.abs([status[f"p{a}"][-1] - status[f"p{a}"][0] for a in "xyz"]).max() / first, 1e-12)
-                self.assertLess(change / stopped, 1e-3 if weight else 0.3)
+                # Equal weights: normals at the upper block's edges tilt, as if its friction were 0.1 to 0.4. Smooth
+                # shapes see the edges of the lower block from further away, too.
+                self.assertLess(change / stopped, (1e-3 if shape in SHAPES[:2] else 0.03) if weight else 0.45)
 
     def test_three_bodies_at_a_corner(self):
         """The order of the components in the input does not matter."""

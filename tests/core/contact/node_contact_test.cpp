@@ -57,6 +57,26 @@ TEST_CASE("Contact of two fields: they part freely, stop along the normal, and k
   CHECK(length(smooth.pairs[0].impulse - (10.0 / 7 * dot(u, n)) * n) < 1e-15);
 }
 
+TEST_CASE("Contact of two fields that hold: nothing parts them") {
+  for (const double sign : {1.0, -1.0}) {
+    Two held;
+    held.pairs[0].normal = sign * held.pairs[0].normal;
+    const Vector n = held.pairs[0].normal, u = held.approach(), p = momentum(held.fields);
+    held.pairs[0].holds = ContactPair::Holds::normal;
+    resolve_contacts(held.fields, held.pairs);
+    CHECK(std::abs(dot(held.approach(), n)) < 1e-15);
+    CHECK(length(held.approach() - (u - dot(u, n) * n)) < 1e-15);
+    CHECK(length(momentum(held.fields) - p) < 1e-15);
+
+    Two stuck;
+    stuck.pairs[0].normal = n;
+    stuck.pairs[0].holds = ContactPair::Holds::all;
+    resolve_contacts(stuck.fields, stuck.pairs);
+    CHECK(length(stuck.approach()) < 1e-15);
+    CHECK(length(momentum(stuck.fields) - p) < 1e-15);
+  }
+}
+
 TEST_CASE("Contact of two fields: Coulomb's friction, off all axes") {
   Two at;
   const Vector n = at.pairs[0].normal, u = at.approach(), along = dot(u, n) * n, across = u - along;
