@@ -194,10 +194,13 @@ bool Contact::find_pairs(std::span<const FieldNodes> fields, int node, Node& at)
 /// other. The strain must then not part them: that would be work without a source.
 void Contact::hold_pairs(Node& at) const {
   constexpr double round_off = 1e-10;
+  const auto of_end = [&](std::size_t f) {
+    const double* v = at.records[f].velocity();
+    return at.rigid[f] < 0 ? Vec3<double>{v[0], v[1], v[2]} : at.fields[f].velocity;
+  };
   for (ContactPair& pair : at.pairs) {
-    const double *v = at.records[static_cast<std::size_t>(pair.first)].velocity(),
-                 *w = at.records[static_cast<std::size_t>(pair.second)].velocity();
-    const Vec3<double> a{v[0], v[1], v[2]}, b{w[0], w[1], w[2]}, relative = a - b;
+    const Vec3<double> a = of_end(static_cast<std::size_t>(pair.first)),
+                       b = of_end(static_cast<std::size_t>(pair.second)), relative = a - b;
     const double most = round_off * std::sqrt(std::max(dot(a, a), dot(b, b)));
     if (!(std::abs(dot(relative, pair.normal)) <= most)) continue;
     const bool sticks = std::sqrt(dot(relative, relative)) <= most;
@@ -239,6 +242,9 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
     }
   }
   if (!counts) return;
+  const auto given = [&](std::size_t f) {
+    return at.rigid[f] < 0 ? increment(f) : at.fields[f].velocity - taken[f];
+  };
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
@@ -247,16 +253,16 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
                                      : pair.impulse;
     // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
     // of the fields is u at its start and u' with all increments that the particles get.
-    const Vec3<double> mean = start[a] - start[b] + 0.5 * (increment(a) - increment(b));
+    const Vec3<double> mean = start[a] - start[b] + 0.5 * (given(a) - given(b));
     const double normal_part = dot(impulse, pair.normal) * dot(mean, pair.normal);
     sums.record.dissipated.add(dot(impulse, mean));
     sums.record.friction_heat.add(dot(impulse, mean) - normal_part);
     if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
     const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
       if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
-      const double given = 0.5 * dot(on_it, taken[f] + at.fields[f].velocity);
+      const double work = 0.5 * dot(on_it, taken[f] + at.fields[f].velocity);
       sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
-          on_it, at.place - rigid_->state(at.rigid[f]).centre, given);
+          on_it, at.place - rigid_->state(at.rigid[f]).centre, work);
     };
     on(a, -1.0 * impulse);
     on(b, impulse);
