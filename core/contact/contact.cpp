@@ -220,10 +220,12 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   std::vector<Vec3<double>> start(count);  // velocity at the start of the step, as the particles have it
   for (std::size_t f = 0; f < count; ++f)
     taken[f] = at.fields[f].velocity, start[f] = taken[f] - increment(f);
+  std::vector<Vec3<double>> nodal_start = start;  // with Pan's first impulses
   std::vector<Vec3<double>> first_impulse(at.pairs.size());
   if (corrects_start) {
     for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = taken[f] - increment(f);
     resolve_contacts(at.fields, at.pairs);
+    for (std::size_t f = 0; f < count; ++f) nodal_start[f] = at.fields[f].velocity;
     for (std::size_t p = 0; p < at.pairs.size(); ++p) first_impulse[p] = at.pairs[p].impulse;
     for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.fields[f].velocity + increment(f);
     if (method_ == ContactInput::Method::pan)
@@ -253,10 +255,15 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
                                      : pair.impulse;
     // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
     // of the fields is u at its start and u' with all increments that the particles get.
-    const Vec3<double> mean = start[a] - start[b] + 0.5 * (given(a) - given(b));
-    const double normal_part = dot(impulse, pair.normal) * dot(mean, pair.normal);
-    sums.record.dissipated.add(dot(impulse, mean));
-    sums.record.friction_heat.add(dot(impulse, mean) - normal_part);
+    const Vec3<double> half = 0.5 * (given(a) - given(b)), mean = start[a] - start[b] + half;
+    // Pan's first impulses stop the approach of the nodes without stopping that of the particles, and the
+    // strain follows the nodes: their approach counts.
+    const Vec3<double> approach =
+        method_ == ContactInput::Method::pan ? nodal_start[a] - nodal_start[b] + half : mean;
+    const double pressing = dot(impulse, pair.normal);
+    const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
+    sums.record.dissipated.add(pressing * dot(approach, pair.normal) + heat);
+    sums.record.friction_heat.add(heat);
     if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
     const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
       if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
