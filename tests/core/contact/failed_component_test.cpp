@@ -145,7 +145,7 @@ TEST_CASE("Failed particles part from their body without tension, and press on i
         if (speed > 0)
           CHECK(parted[1] == Approx(first).epsilon(0.08));  // all but the pull of the first step
         else
-          CHECK(parted[1] == Approx(held[1]).margin(0.15 * std::abs(first)));  // the same pressure
+          CHECK(parted[1] == Approx(held[1]).margin(0.25 * std::abs(first)));  // about the same pressure
       }
     }
   }
