@@ -13,14 +13,21 @@
 
 namespace mpm::core {
 
-/// The blocks of these bricks' tiles of the bodies [first_body, last_body).
+/// The blocks of these bricks' tiles of the bodies [first_body, last_body), of a component or of all.
 template <class M>
 class BlockRange {
   using Value = std::conditional_t<std::is_const_v<M>, const double, double>;
 
  public:
-  BlockRange(M& model, std::span<const Brick> bricks, int first_body, int last_body)
-      : model_(model), bricks_(bricks), first_body_(first_body), last_body_(last_body) {}
+  static constexpr std::int32_t all_components = -1;
+
+  BlockRange(M& model, std::span<const Brick> bricks, int first_body, int last_body,
+             std::int32_t component = all_components)
+      : model_(model),
+        bricks_(bricks),
+        first_body_(first_body),
+        last_body_(last_body),
+        component_(component) {}
 
   class Iterator {
    public:
@@ -53,7 +60,7 @@ class BlockRange {
         for (tile_ = tile; tile_ < brick_->tiles.size(); ++tile_) {
           const ParticleTile& c = brick_->tiles[tile_];
           if (c.body >= of_->last_body_) break;
-          if (c.blocks.empty()) continue;
+          if (c.blocks.empty() || !of_->holds(c)) continue;
           pool_ = of_->model_.bodies[static_cast<std::size_t>(c.body)].pool.get();
           return;
         }
@@ -71,9 +78,14 @@ class BlockRange {
   std::default_sentinel_t end() const { return {}; }
 
  private:
+  bool holds(const ParticleTile& tile) const {
+    return component_ == all_components || tile.component == component_;
+  }
+
   M& model_;
   std::span<const Brick> bricks_;
   int first_body_, last_body_;
+  std::int32_t component_;
 };
 
 /// Of all particles of this rank.
@@ -90,6 +102,11 @@ BlockRange<M> blocks_of(M& model, const Brick& brick) {
 template <class M>
 BlockRange<M> blocks_of(M& model, const Brick& brick, int first_body, int last_body) {
   return {model, {&brick, 1}, first_body, last_body};
+}
+/// Of one of a brick's tiles.
+template <class M>
+BlockRange<M> blocks_of(M& model, const Brick& brick, const ParticleTile& tile) {
+  return {model, {&brick, 1}, tile.body, tile.body + 1, tile.component};
 }
 
 }  // namespace mpm::core

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/failed_component.hpp"
+
 namespace mpm::core {
 
 namespace {
@@ -39,7 +41,7 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
   if (input.measures_gaps()) largest_gap_ = input.min_distance * model.grid->geometry().smallest_cell();
   to_faces_ = input.distance == ContactInput::Distance::surfaces;
   limits_time_step_ = input.limits_time_step;
-  pairs_ = ContactPairs(scene.components.size());
+  pairs_ = ContactPairs(component_count(scene));
 
   material_.assign(scene.components.size(), -1);
   weight_.assign(scene.components.size(), -std::numeric_limits<double>::infinity());
@@ -55,6 +57,10 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
         input.automatic_weights
             ? std::max(weight_[c], stiffness(scene.materials[static_cast<std::size_t>(body.material)]))
             : scene.components[c].normal_weight;
+  }
+  if (has_failed_component(scene)) {
+    material_.push_back(-1);  // no friction
+    weight_.push_back(failed_normal_weight);
   }
   const std::size_t materials = model.materials.size();
   friction_.assign(materials * materials, 0.0);
@@ -72,8 +78,7 @@ void Contact::find_fields(BrickGrid& grid, NodeHalo& halo) {
   std::vector<std::vector<std::int32_t>> of_slot(static_cast<std::size_t>(grid.owned() + grid.ghosts()));
   for (Slot s = 0; s < grid.owned(); ++s) {
     for (const ParticleTile& tile : grid.brick(s).tiles)
-      insert(of_slot[static_cast<std::size_t>(s)],
-             model_.bodies[static_cast<std::size_t>(tile.body)].component);
+      insert(of_slot[static_cast<std::size_t>(s)], tile.component);
   }
   halo.exchange_components(grid, of_slot);
   grid.set_components(of_slot);

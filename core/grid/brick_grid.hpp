@@ -38,7 +38,8 @@ class AlignedDoubles {
 struct Brick {
   BrickCoord coord;
   std::array<Slot, neighbourhood> neighbour{};  ///< owned or ghost slots; no_slot where no brick exists
-  std::vector<ParticleTile> tiles;              ///< in ascending order of body; none is empty after migration
+  /// In ascending order of body, then component; none is empty after migration.
+  std::vector<ParticleTile> tiles;
   std::size_t particles() const {
     std::size_t n = 0;
     for (const ParticleTile& c : tiles) n += c.count;

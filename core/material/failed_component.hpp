@@ -14,7 +14,16 @@ struct FailedComponentRule {
   /// `block`: from the lane on.
   template <class T>
   MaskOf<T> holds(const ColumnLayout& layout, const double* block) const {
-    const auto at = [&](Column c) { return load<T>(block + layout.offset(c)); };
+    return holds_with<T>(layout, [&](Column c) { return load<T>(block + layout.offset(c)); });
+  }
+  /// For a particle whose columns are stored consecutively.
+  bool holds_for(const ColumnLayout& layout, const double* columns) const {
+    return holds_with<double>(layout, [&](Column c) { return columns[layout.index(c)]; });
+  }
+
+ private:
+  template <class T, class At>
+  MaskOf<T> holds_with(const ColumnLayout& layout, At at) const {
     MaskOf<T> joins{};
     if (layout.has(Column::failed)) joins = at(Column::failed) > 0.5;
     if (layout.has(Column::damage)) {

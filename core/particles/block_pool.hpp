@@ -56,9 +56,11 @@ class BlockPools {
   std::vector<std::shared_ptr<BlockPool>> pools_;
 };
 
-/// The particles of one body in one brick: all blocks but the last are full.
+/// The particles of one body in one brick, or those of them that are in the failed component: all blocks but
+/// the last are full.
 struct ParticleTile {
   int body = 0;
+  std::int32_t component = 0;  ///< the body's, or failed_component()
   std::uint32_t count = 0;
   std::vector<BlockIndex> blocks;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include "core/contact/failed_component.hpp"
 #include "core/shape/linear.hpp"
 #include "core/threads.hpp"
 
@@ -11,11 +12,13 @@ namespace mpm::core {
 
 namespace {
 
-ParticleTile& tile_of(Brick& brick, int body) {
-  const auto at = std::lower_bound(brick.tiles.begin(), brick.tiles.end(), body,
-                                   [](const ParticleTile& c, int b) { return c.body < b; });
-  if (at != brick.tiles.end() && at->body == body) return *at;
-  return *brick.tiles.insert(at, ParticleTile{body, 0, {}});
+ParticleTile& tile_of(Brick& brick, int body, std::int32_t component) {
+  const auto at = std::lower_bound(brick.tiles.begin(), brick.tiles.end(), std::pair(body, component),
+                                   [](const ParticleTile& c, const std::pair<int, std::int32_t>& wanted) {
+                                     return std::pair(c.body, c.component) < wanted;
+                                   });
+  if (at != brick.tiles.end() && at->body == body && at->component == component) return *at;
+  return *brick.tiles.insert(at, ParticleTile{body, component, 0, {}});
 }
 
 /// Particle order[p] becomes particle p.
@@ -43,6 +46,11 @@ void reorder(BlockPool& pool, ParticleTile& tile, const std::vector<std::uint32_
 }
 
 }  // namespace
+
+void append(Model& model, Brick& brick, int body, const double* columns) {
+  append(*model.bodies[static_cast<std::size_t>(body)].pool,
+         tile_of(brick, body, component_of(model, body, columns)), columns);
+}
 
 void sort_by_site(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, ParticleTile& tile) {
   const BrickFrame frame(grid.geometry(), brick);
@@ -118,8 +126,7 @@ void insert_particles(Model& model, const MigrationBuffer& particles) {
   for_each_by_threads(std::size_t{0}, groups.size() - 1, 16, [&](std::size_t g) {
     for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
       const Arrival& a = arrivals[i];
-      append(*model.bodies[static_cast<std::size_t>(a.body)].pool, tile_of(model.grid->brick(a.slot), a.body),
-             &particles.columns[particles.offsets[a.index]]);
+      append(model, model.grid->brick(a.slot), a.body, &particles.columns[particles.offsets[a.index]]);
     }
   });
 }

@@ -9,6 +9,9 @@
 
 namespace mpm::core {
 
+/// Appends a particle of a body to a brick's tile of its component (core/contact/failed_component.hpp).
+void append(Model& model, Brick& brick, int body, const double* columns);
+
 /// Appends particles to their bricks, which must be ours, in ascending order of identity per tile.
 void insert_particles(Model& model, const MigrationBuffer& particles);
 

@@ -63,6 +63,19 @@ struct Scene {
   Provenance provenance;
 };
 
+/// Whether failed particles form a component of their own.
+inline bool has_failed_component(const Scene& scene) {
+  return scene.contact.enable && scene.contact.failed_to_component;
+}
+/// Its number, where components are counted as in Scene::components.
+inline std::int32_t failed_component(const Scene& scene) {
+  return static_cast<std::int32_t>(scene.components.size());
+}
+/// Of the scene's components, with that of failed particles.
+inline std::size_t component_count(const Scene& scene) {
+  return scene.components.size() + (has_failed_component(scene) ? 1 : 0);
+}
+
 /// Throws std::out_of_range if there is no body at `place`.
 inline const BodyInput& body_at(const Scene& scene, BodyPlace place) {
   return scene.components.at(place.component).bodies.at(place.body);

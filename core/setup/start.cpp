@@ -110,7 +110,7 @@ Fastest initialise(Model& model, const std::vector<bool>& wanted) {
         for (int i = 0; i < batch.particles; ++i) fastest.offer(tile.body, batch, i, wave_weight);
         batch = {};
       };
-      for (const ParticleBlock& block : blocks_of(model, brick, tile.body, tile.body + 1)) {
+      for (const ParticleBlock& block : blocks_of(model, brick, tile)) {
         batch.layout = block.layout;
         batch.block[batch.blocks++] = block.data;
         batch.particles += block.used;

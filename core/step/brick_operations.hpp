@@ -296,8 +296,9 @@ template <ShapePolicy S, TransferPolicy T>
                    update_domains(body, frame, layout, 0, block, used, at);
                    for (int l = 0; l < used; l += real_width)
                      fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
-                   find_departing(c, b, frame, erosion_volume_, layout, block, used,
-                                  departing_[static_cast<std::size_t>(s)]);
+                   find_departing(c, b, frame, erosion_volume_,
+                                  failed_.of(model_.grid->brick(s).tiles[static_cast<std::size_t>(c)]),
+                                  layout, block, used, departing_[static_cast<std::size_t>(s)]);
                  });
   at.add_work_of_brick();
   return std::sqrt(fastest_square);
@@ -393,8 +394,8 @@ template <bool moves, class F>
     if constexpr (moves) {
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
-        find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, *batch.layout, batch.block[b],
-                       tile.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
+        find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, failed_.of(tile), *batch.layout,
+                       batch.block[b], tile.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
       }
     }
   };

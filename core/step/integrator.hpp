@@ -22,11 +22,11 @@ struct Phase {
   double seconds = 0;  ///< wall-clock time of this rank since the run began
 };
 
-/// A particle that leaves its brick.
+/// A particle that leaves its brick or its component.
 struct DepartingParticle {
   int tile = 0;
   std::uint32_t index = 0;
-  bool eroded = false;  ///< to be deleted; otherwise it has left its brick
+  bool eroded = false;  ///< to be deleted
 };
 
 /// What a rank collects during a step, to be combined over the ranks at its end.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "core/contact/failed_component.hpp"
 #include "core/particles/tile_order.hpp"
 #include "core/threads.hpp"
 
@@ -87,7 +88,8 @@ void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departin
       dispose(static_cast<std::size_t>(tile.body), columns, l.eroded, mine);
     } else {
       const BrickCoord to = grid.geometry().brick_at(x);
-      if (to == brick.coord) continue;  // on the grid's upper face, or within round-off of its own brick
+      // On the grid's upper face, or within round-off of its own brick.
+      if (to == brick.coord && component_of(model_, tile.body, columns) == tile.component) continue;
       if (!adjacent(to, brick.coord)) {
         report(body, " moved by more than one brick in one step");
         continue;

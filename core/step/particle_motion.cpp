@@ -114,8 +114,8 @@ void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch
 }
 
 void find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
-                    const ColumnLayout& layout, const double* block, int used,
-                    std::vector<DepartingParticle>& departing) {
+                    const FailedComponent::Membership& membership, const ColumnLayout& layout,
+                    const double* block, int used, std::vector<DepartingParticle>& departing) {
   const auto add = [&](int lane, bool eroded) {
     departing.push_back(
         {tile, static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(lane), eroded});
@@ -131,7 +131,9 @@ void find_departing(int tile, std::size_t b, const BrickFrame& frame, double ero
       add(i, true);
     }
   }
-  unsigned outside = lanes_outside(frame, layout, block, used) & ~gone;
+  unsigned outside = lanes_outside(frame, layout, block, used);
+  if (membership.rule != nullptr) outside |= membership.misplaced(layout, block, used);
+  outside &= ~gone;
   for (; outside != 0; outside &= outside - 1) add(__builtin_ctz(outside), false);
 }
 

@@ -2,6 +2,7 @@
 // the less frequent parts of a block's update.
 #pragma once
 
+#include "core/contact/failed_component.hpp"
 #include "core/material/batch.hpp"
 #include "core/shape/brick_frame.hpp"
 #include "core/step/integrator.hpp"
@@ -56,10 +57,10 @@ void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_
 /// Records the particles of vanishing volume or negative energy, where the scene checks for them.
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch, StepStatistics& statistics);
 
-/// Records the particles of a block that are eroded or have left the brick. Particles smaller than
-/// `erosion_volume` are eroded.
+/// Records the particles of a block that are eroded, have left the brick, or belong to another tile of it.
+/// Particles smaller than `erosion_volume` are eroded.
 void find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
-                    const ColumnLayout& layout, const double* block, int used,
-                    std::vector<DepartingParticle>& departing);
+                    const FailedComponent::Membership& membership, const ColumnLayout& layout,
+                    const double* block, int used, std::vector<DepartingParticle>& departing);
 
 }  // namespace mpm::core

@@ -89,8 +89,7 @@ class PassesWith final : public Passes {
   void for_each_batch(Slot s, std::int32_t component, const BrickFrame& frame, Scratch& at, E tile_work,
                       F block_work, G batch_work);
   bool holds(const ParticleTile& tile, std::int32_t component) const {
-    return component == every_component ||
-           model_.bodies[static_cast<std::size_t>(tile.body)].component == component;
+    return component == every_component || tile.component == component;
   }
   /// Velocity field of a component in a brick that holds particles of it.
   int field_of(Slot s, std::int32_t component) const {
@@ -210,6 +209,7 @@ class PassesWith final : public Passes {
   NodeForces forces_;
   Loads loads_;
   std::unique_ptr<Contact> contact_;  ///< null without contact
+  FailedComponent failed_;
   T transfer_;
   const Scheme scheme_;
   const int orders_;
@@ -241,6 +241,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       shared_(model.grid->shape()),
       momentum_shared_(model.grid->shape(), momentum_block<S>),
       loads_(model),
+      failed_(model),
       transfer_(model.scene->solution),
       scheme_(model.scene->solution.scheme),
       orders_(orders_of(model.scene->solution)) {

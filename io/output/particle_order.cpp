@@ -11,6 +11,7 @@ namespace mpm::io {
 
 namespace {
 
+/// Sorts are stable: a brick's tiles of the same body stay in their order.
 bool before(const TileRecord& a, const TileRecord& b) {
   return std::tie(a.body, a.brick) < std::tie(b.body, b.brick);
 }
@@ -30,8 +31,8 @@ void collect(const core::Model& model, std::vector<TileRecord>& records, std::ve
       entries.push_back({{core::key_of(brick.coord), tile.body, tile.count, 0}, {s, static_cast<int>(c), 0}});
     }
   }
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return before(a.record, b.record); });
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return before(a.record, b.record); });
   for (const Entry& e : entries) {
     records.push_back(e.record);
     places.push_back(e.place);
@@ -62,7 +63,7 @@ std::vector<TileRecord> all_records(const std::vector<TileRecord>& mine, core::R
     all.resize(old + part.size() / sizeof(TileRecord));
     if (!part.empty()) std::memcpy(all.data() + old, part.data(), part.size());
   }
-  std::sort(all.begin(), all.end(), before);
+  std::stable_sort(all.begin(), all.end(), before);
   return all;
 }
 

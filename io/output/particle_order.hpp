@@ -1,5 +1,5 @@
 // The order of particles in files that hold all of them: body after body, within a body brick after brick by
-// key, within a brick as stored. It does not depend on ranks or threads.
+// key, within a brick as stored, those in the failed component last. It does not depend on ranks or threads.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@
 
 namespace mpm::io {
 
-/// The particles of one body in one brick.
+/// The particles of one body in one brick; those in the failed component have a record of their own, after
+/// it.
 struct TileRecord {
   core::BrickKey brick = 0;
   std::int64_t body = 0;
@@ -49,8 +50,7 @@ inline const core::ParticleTile& tile_at(const core::Model& model, const TilePla
   return model.grid->brick(place.slot).tiles[static_cast<std::size_t>(place.tile)];
 }
 inline core::BlockRange<const core::Model> blocks_at(const core::Model& model, const TilePlace& place) {
-  const int body = tile_at(model, place).body;
-  return blocks_of(model, std::as_const(*model.grid).brick(place.slot), body, body + 1);
+  return blocks_of(model, std::as_const(*model.grid).brick(place.slot), tile_at(model, place));
 }
 
 /// Hash of a record, from all its rows of `columns` doubles.

@@ -87,7 +87,9 @@ std::vector<std::string> absence_notices(const std::vector<Variable>& variables,
 
 BodyFacts facts_of(const core::Model& model, std::size_t body) {
   const core::Body& b = model.bodies[body];
-  return {static_cast<int>(body), b.component + 1, b.material, b.model->reference_density()};
+  BodyFacts facts{static_cast<int>(body), b.component + 1, b.material, b.model->reference_density()};
+  if (core::has_failed_component(*model.scene)) facts.failed = b.model->failed_component_rule();
+  return facts;
 }
 
 double evaluate(Variable v, const core::ConstParticle& p, const BodyFacts& facts) {
@@ -117,7 +119,8 @@ double evaluate(Variable v, const core::ConstParticle& p, const BodyFacts& facts
     case Variable::sigy: return optional(Column::yield_stress);
     case Variable::damg: return optional(Column::damage);
     case Variable::body: return facts.body;
-    case Variable::com: return facts.component;
+    case Variable::com:
+      return facts.failed && facts.failed->holds<double>(p.layout(), &p.nth(0)) ? 0 : facts.component;
     case Variable::mat: return facts.material;
     case Variable::kelv: return optional(Column::temperature);
     case Variable::velocity_0: return at(Column::velocity_x);

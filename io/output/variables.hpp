@@ -72,7 +72,7 @@ inline constexpr std::array<VariableInfo, static_cast<std::size_t>(Variable::cou
     {"sigy", "stress", "yield stress"},
     {"damg", "1", "damage"},
     {"body", "1", "number of the body", true},
-    {"com", "1", "number of the component, from 1", true},
+    {"com", "1", "number of the component, from 1; 0: the failed particles, where they form one", true},
     {"mat", "1", "number of the material", true},
     {"kelv", "temperature", "temperature"},
     {"velocity_0", "velocity", "velocity along x"},
@@ -122,6 +122,7 @@ struct BodyFacts {
   int component = 1;  ///< from 1
   int material = 0;
   double reference_density = 1;
+  std::optional<core::FailedComponentRule> failed{};  ///< where failed particles form component 0
 };
 BodyFacts facts_of(const core::Model& model, std::size_t body);
 

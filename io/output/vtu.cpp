@@ -68,7 +68,8 @@ Piece piece_of(const core::Model& model, const std::vector<std::size_t>& bodies)
       piece.particles += tile.count;
     }
   }
-  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& entry : order) piece.places.push_back(entry.second);
   return piece;
 }

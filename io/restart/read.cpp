@@ -91,21 +91,12 @@ void read_bricks(const std::string& path, const RestartContents& contents, const
     std::vector<double> row;
     for_each_record(path, contents, mine, [&](const TileRecord& record, const double* rows) {
       const Fit::Body& body = *fit.of(record);
-      core::BlockPool& pool = *model.bodies[body.number].pool;
       core::Brick& brick = model.grid->brick(model.grid->find(core::brick_of_key(record.brick)));
-      core::ParticleTile tile;
-      tile.body = static_cast<int>(body.number);
       for (std::uint64_t p = 0; p < record.particles; ++p, rows += body.file_columns) {
         convert(rows, body.source, row);
-        core::append(pool, tile, row.data());
+        core::append(model, brick, static_cast<int>(body.number), row.data());
       }
-      brick.tiles.push_back(std::move(tile));
     });
-    // The scene may number bodies differently from the file.
-    for (core::Brick& brick : model.grid->bricks()) {
-      std::sort(brick.tiles.begin(), brick.tiles.end(),
-                [](const core::ParticleTile& a, const core::ParticleTile& b) { return a.body < b.body; });
-    }
   });
 }
 

@@ -314,6 +314,9 @@ TEST_CASE("particles join the failed component at FailureDamageThreshold", "[phy
               if (point.has(c)) std::fill_n(block.begin() + layout.offset(c), 8, point.value(c));
             }
             const auto holds = rule.holds<core::Real>(layout, block.data());
+            std::vector<double> row;
+            for (int c = 0; c < layout.columns(); ++c) row.push_back(block[static_cast<std::size_t>(8 * c)]);
+            CHECK(core::all(holds) == rule.holds_for(layout, row.data()));
             for (int i = 0; i < core::real_width; ++i)
               CHECK(core::test(holds, i) == rule.holds<double>(layout, block.data()));
             const double damage = point.value(Column::damage);

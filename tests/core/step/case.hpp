@@ -7,6 +7,7 @@
 #include <array>
 #include <cfenv>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -39,10 +40,15 @@ class KeepFloatingPoint {
   std::fenv_t before_;
 };
 
+/// Whether a particle fails at a time.
+using FailsAt = std::function<bool(const ReferenceParticle&, double time)>;
+
 /// The oracle's law, lane by lane. History 0 and 1 are its wave speed and its rate of volumetric strain.
+/// Failed particles, if there are to be any, carry a mark, and stress as before.
 class OracleLaw final : public core::ConstitutiveModel {
  public:
-  explicit OracleLaw(const ReferenceMaterial& material) : material_(material) {}
+  explicit OracleLaw(const ReferenceMaterial& material, FailsAt fails = {})
+      : material_(material), fails_(std::move(fails)) {}
 
   const std::string& name() const override { return name_; }
   double initial_sound_speed() const override { return 0; }
@@ -51,7 +57,10 @@ class OracleLaw final : public core::ConstitutiveModel {
   }
   double reference_density() const override { return material_.density; }
   core::ColumnSet columns(const core::UpdateOptions&) const override {
-    return {core::Column::effective_plastic_strain, core::Column::history_0, core::Column::history_1};
+    core::ColumnSet set{core::Column::effective_plastic_strain, core::Column::history_0,
+                        core::Column::history_1};
+    if (fails_) set.add(core::Column::failed);
+    return set;
   }
 
   void initialise(core::Batch& batch, const core::UpdateOptions&) const override {
@@ -66,6 +75,8 @@ class OracleLaw final : public core::ConstitutiveModel {
       }
       update_stress(material_, batch.cell_size, batch.dt, l, p);
       if (!std::isfinite(p.E)) ++batch.events.not_finite;
+      if (fails_ && fails_(p, batch.time))
+        batch.column(core::Column::failed, i / core::block_lanes)[i % core::block_lanes] = 1;
     });
   }
 
@@ -128,6 +139,7 @@ class OracleLaw final : public core::ConstitutiveModel {
 
   std::string name_ = "oracle";
   ReferenceMaterial material_;
+  FailsAt fails_;
 };
 
 inline core::Scheme scheme_of(ReferenceScheme s) {
@@ -197,7 +209,7 @@ inline void write_box(const core::ColumnLayout& layout, const Vector& half_size,
 }
 
 /// One run of the production stepper. Bodies: particles [0, split) of the case are the first, the rest the
-/// second; with `contact` each is a component.
+/// second; with `contact` each is a component, and so are the particles that `fails` marks.
 struct SmallRun {
   KeepFloatingPoint keep;
   std::shared_ptr<core::Scene> scene = std::make_shared<core::Scene>();
@@ -206,8 +218,9 @@ struct SmallRun {
   std::unique_ptr<core::Stepper> stepper;
 
   explicit SmallRun(const ReferenceCase& c, std::size_t split = std::numeric_limits<std::size_t>::max(),
-                    bool contact = false) {
+                    bool contact = false, FailsAt fails = {}) {
     scene->contact.enable = contact;
+    scene->contact.failed_to_component = contact && fails;
     scene->components.resize(2);
     scene->solution.scheme = scheme_of(c.scheme);
     scene->solution.transfer = transfer_of(c.transfer);
@@ -219,7 +232,7 @@ struct SmallRun {
     scene->solution.gravity = {c.gravity[0], c.gravity[1], c.gravity[2]};
     scene->grid.shape = shape_function_of(c.shape);
     model.scene = scene;
-    model.materials.push_back(std::make_unique<OracleLaw>(c.material));
+    model.materials.push_back(std::make_unique<OracleLaw>(c.material, std::move(fails)));
     core::GridGeometry g;
     for (int a = 0; a < 3; ++a) {
       const auto i = static_cast<std::size_t>(a);

@@ -46,6 +46,7 @@ std::unique_ptr<SmallRun> continued(const SmallRun& from, ReferenceCase c) {
     for (const ParticleTile& tile : brick.tiles) {
       ParticleTile& copy = to->model.grid->brick(to->model.grid->find(brick.coord)).tiles.emplace_back();
       copy.body = tile.body;
+      copy.component = tile.component;
       const auto body = static_cast<std::size_t>(tile.body);
       for (std::uint32_t i = 0; i < tile.count; ++i) {
         extract(*from.model.bodies[body].pool, tile, i, columns.data());

@@ -13,6 +13,7 @@
 
 #include "core/communication/solo.hpp"
 #include "core/model.hpp"
+#include "core/particles/tile_order.hpp"
 
 namespace mpm::tests {
 
@@ -148,11 +149,7 @@ inline void fill(core::Model& model, core::Communication& exchange, const SmallS
   for (const Particle& p : particles) {
     const core::Slot s = model.grid->find(p.brick);
     if (s == core::no_slot || s >= model.grid->owned()) continue;
-    auto& tiles = model.grid->brick(s).tiles;
-    if (tiles.empty() || tiles.back().body != static_cast<int>(p.body)) {
-      tiles.emplace_back().body = static_cast<int>(p.body);
-    }
-    core::append(*model.bodies[p.body].pool, tiles.back(), p.columns.data());
+    core::append(model, model.grid->brick(s), static_cast<int>(p.body), p.columns.data());
   }
   model.clock = {120, 0.25, 1e-3, 1.25e-3, 1.5e-3};
   model.initial_energy = 1e6;

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/particle_range.hpp"
 #include "tests/io/output/small_model.hpp"
 
 using namespace mpm;
@@ -116,6 +117,28 @@ TEST_CASE("Components count from 1, bodies and materials from 0") {
   const io::BodyFacts first = io::facts_of(model, 0), last = io::facts_of(model, 2);
   CHECK((first.component == 1 && first.body == 0 && first.material == 0));
   CHECK((last.component == 2 && last.body == 2));
+}
+
+TEST_CASE("Failed particles are in component 0 where they form one") {
+  core::SoloCommunication solo;
+  for (const bool form_one : {false, true}) {
+    const auto scene = tests::small_scene();
+    scene->contact.enable = true;
+    scene->contact.failed_to_component = form_one;
+    core::Model model = tests::prepared_model(scene);
+    tests::fill(model, solo);
+    int failed = 0, others = 0;
+    for (const core::ConstParticleBlock& block : core::blocks_of(std::as_const(model))) {
+      const io::BodyFacts facts = io::facts_of(model, static_cast<std::size_t>(block.body));
+      for (const core::ConstParticle p : block) {
+        const double component = io::evaluate(Variable::com, p, facts);
+        const bool has_failed = p.layout().has(Column::failed) && p[Column::failed] > 0;
+        CHECK(component == (has_failed && form_one ? 0 : facts.component));
+        ++(has_failed ? failed : others);
+      }
+    }
+    CHECK((failed > 20 && others > 20));
+  }
 }
 
 TEST_CASE("The log says which body lacks what") {

@@ -1,5 +1,6 @@
 #include "io/output/vtu.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 
@@ -92,6 +93,26 @@ TEST_CASE("What a 32-bit real does not hold is cut in grids, too") {
   const Vtu piece(folder / "small_vtu/small_120_0.vtu");
   const auto pressure = piece.values<float>("pres");
   CHECK(std::count(pressure.begin(), pressure.end(), std::numeric_limits<float>::max()) == 300);
+}
+
+TEST_CASE("Failed particles in a component of their own are written once, as component 0") {
+  const Folder folder("vtu_failed");
+  core::SoloCommunication solo;
+  const auto scene = small_scene();
+  scene->contact.enable = scene->contact.failed_to_component = true;
+  core::Model model = prepared_model(scene);
+  fill(model, solo);
+  io::VtuWriter writer({folder.path(), "small", false, io::variables_of({"com", "fail"}), false, {}}, model,
+                       solo);
+  writer.write(model, solo);
+  const Vtu piece(folder / "small_vtu/small_120_0.vtu");
+  auto id = piece.values<std::int64_t>("id");
+  const auto component = piece.values<std::int32_t>("com"), failed = piece.values<std::int32_t>("fail");
+  REQUIRE((id.size() == 601 && component.size() == 601 && failed.size() == 601));
+  for (std::size_t i = 0; i < 601; ++i) CHECK((component[i] == 0) == (failed[i] == 1));
+  CHECK(std::count(component.begin(), component.end(), 0) > 20);
+  std::sort(id.begin(), id.end());
+  for (std::size_t i = 0; i < 601; ++i) CHECK(id[i] == static_cast<std::int64_t>(i));
 }
 
 TEST_CASE("One set of grids per time: well-formed, complete, listed") {

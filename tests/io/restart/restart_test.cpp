@@ -1,5 +1,6 @@
 #include "io/restart/restart.hpp"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -82,6 +83,39 @@ TEST_CASE("A restart file gives back the state to the last bit") {
   CHECK(scene.text == "<PeneBlast/>");
   CHECK(scene.path == "folder/small.xmp");
   CHECK(scene.job_name == "small");
+}
+
+TEST_CASE("The tiles of failed particles return, and follow the scene that is resumed") {
+  const Folder folder("restart_failed");
+  core::SoloCommunication solo;
+  const auto with = small_scene(), without = small_scene();
+  with->contact.enable = with->contact.failed_to_component = true;
+  core::Model parted = prepared_model(with), whole = prepared_model(without);
+  fill(parted, solo), fill(whole, solo);
+  const auto tiles = [](const core::Model& model) {
+    std::vector<std::array<std::int64_t, 4>> all;
+    for (const core::Brick& brick : model.grid->bricks()) {
+      for (const core::ParticleTile& t : brick.tiles)
+        all.push_back({static_cast<std::int64_t>(core::key_of(brick.coord)), t.body, t.component, t.count});
+    }
+    return all;
+  };
+  CHECK(tiles(parted).size() > tiles(whole).size());
+  CHECK(io::state_hash(parted, solo) != io::state_hash(whole, solo));
+  const auto resumed = [&](const core::Model& from, const std::shared_ptr<core::Scene>& scene) {
+    const std::string path = io::write_restart(folder.path(), "small", from, {}, solo);
+    CHECK(io::restart_state_hash(path) == io::state_hash(from, solo));
+    io::verify_restart(path, solo);
+    core::Model to = prepared_model(scene);
+    io::read_restart(path, to, solo);
+    return to;
+  };
+  const core::Model same = resumed(parted, with);
+  CHECK(tiles(same) == tiles(parted));
+  CHECK(same_particles(same, parted));
+  CHECK(io::state_hash(same, solo) == io::state_hash(parted, solo));
+  CHECK(tiles(resumed(whole, with)) == tiles(parted));
+  CHECK(tiles(resumed(parted, without)) == tiles(whole));
 }
 
 TEST_CASE("A state without particles can be stored too") {
