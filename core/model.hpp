@@ -28,7 +28,7 @@ struct Body {
   int material = 0;   ///< index into the scene's materials
   const ConstitutiveModel* model = nullptr;
   std::optional<Vec3<double>> prescribed_velocity;
-  bool rigid = false;  ///< moves freely under gravity where no velocity is prescribed
+  bool rigid = false;                     ///< moves freely under gravity where no velocity is prescribed
   std::optional<RigidState> rigid_state;  ///< in contact; the same on all ranks
   bool no_output = false;
   /// Memory of this rank's particles; bodies with the same columns share one.

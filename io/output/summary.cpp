@@ -17,7 +17,7 @@ namespace {
 
 Json to_json(const core::Vec3<double>& v) { return Json::array({v.x, v.y, v.z}); }
 
-Json energy_json(const core::Model& model, const core::Totals& totals, const RunReport& report) {
+Json energy_json(const core::Model& model, const core::Totals& totals) {
   const core::EnergyBalance balance = core::energy_balance(totals, model.initial_energy);
   return {{"kinetic", totals.kinetic},
           {"internal", totals.internal},
@@ -93,7 +93,7 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
        report.seconds_loop > 0 ? report.particle_steps / report.seconds_loop : 0.0},
       {"bytes_per_particle", bytes_per_particle(model, totals)},
       {"peak_memory_bytes", {{"max", memory.largest}, {"sum", memory.sum}}},
-      {"energy", energy_json(model, totals, report)},
+      {"energy", energy_json(model, totals)},
       {"momentum", to_json(totals.momentum)},
       {"angular_momentum", to_json(totals.angular_momentum)},
       {"bodies", bodies},

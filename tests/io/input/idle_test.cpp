@@ -164,10 +164,10 @@ TEST_CASE("settings of features that are off") {
        "case"},
       {"<Solution>",
        "<Contact enable='0' failure_to_component='1' auto_normal_vector_weight='1' "
-       "normal_vector_excluding_failure_particle='1' distance_type='1' min_distance='0.5' "
+       "distance_type='1' min_distance='0.5' "
        "contact_time_step='1' contact_type='2' record_contact_force='1'/><Solution>",
        "line 25: <Contact>: failure_to_component, auto_normal_vector_weight, "
-       "normal_vector_excluding_failure_particle, distance_type, min_distance, contact_time_step, "
+       "distance_type, min_distance, contact_time_step, "
        "contact_type, record_contact_force have no effect: Contact is off"},
       {"<Solution>", "<Contact enable='0' contact_type='0' min_distance='0.0'/><Solution>", ""},
   });
@@ -267,8 +267,10 @@ TEST_CASE("rigid bodies beside others are refused") {
   std::vector<core::Diagnostic> notes;
   CHECK_THROWS_WITH(
       parse(mixed, notes),
-      "case.xmp:16: <Body material=\"iron\">: a rigid body acts on others only through contact, which is not "
-      "implemented yet: it would pass through 'rod' without exerting a force. Give the body a deformable "
+      "case.xmp:16: <Body material=\"iron\">: a rigid body acts on others only through contact, which is "
+      "off: it "
+      "would pass through 'rod' without exerting a force. Set Contact enable to 1, give the body a "
+      "deformable "
       "material, with PrescribedVelocity where its motion is known (such a body does exert forces), or "
       "remove it; a scene of rigid bodies only is accepted");
   CHECK_NOTHROW(parse(replaced(mixed, "name='second'", "name='second' Deactive='1'"), notes));
