@@ -1,0 +1,129 @@
+"""Rigid bodies in contact with deformable ones: driven, fixed and free, against exact solutions.
+
+Prints what it measures."""
+
+import math
+
+import _cases
+import _mpm
+import numpy as np
+
+RIGID = _mpm.material("iron", 4.0, 'type="Rigid"')
+SURFACES = 'distance_type="2" min_distance="0.05"'
+
+
+def held(vx=0.0, vy=0.0, vz=0.0):
+    return f'<PrescribedVelocity vx="{vx}" vy="{vy}" vz="{vz}"/>'
+
+
+def scene(bodies, grid, solution, soft, friction=0.0, output="", kind=1, distance=SURFACES):
+    components = "".join(f'<Component name="c{i}">{body}</Component>' for i, body in enumerate(bodies))
+    return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">', soft, RIGID,
+                      f'<Friction><Coefficient value="{friction}" mat1="soft" mat2="iron"/></Friction>', components, grid,
+                      f'<Contact enable="1" contact_type="{kind}" {distance} record_contact_force="1"/>', solution,
+                      f"<Output>{output}</Output>", "</PeneBlast>", ""])
+
+
+def incline(angle, friction, cell=0.4, end=1.0):
+    """An elastic ball on a rigid plane at an angle to gravity (P. Huang, thesis, 5.3.2), with coarser cells."""
+    bulk, shear, radius = 7e6, 1.5e6, 1.6
+    young, poisson = 9 * bulk * shear / (3 * bulk + shear), (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear))
+    soft = _mpm.material("soft", 1000.0, f'type="IsoElastic" Young="{young}" Poisson="{poisson}"')
+    ball = (f'<Body name="ball" material="soft" type="Sphere"><Geometry x0="0" y0="0" z0="{radius}" '
+            f'Outer_Radius="{radius}" dp="{cell / 2}" discretization="0"/></Body>')
+    plane = _mpm.block("plane", (-2, -2, -0.8), (10, 4, 0.8), dp=cell / 2, of="iron", more=held())
+    gravity = [10 * math.sin(math.radians(angle)), 0, -10 * math.cos(math.radians(angle))]
+    return scene([ball, plane], _mpm.grid((-2.8, -2.8, -0.8), (9.2, 2.8, 4.4), cell=cell),
+                 _mpm.solution(end, factor=0.4, more='<Gravity ax="{}" ay="{}" az="{}"/>'.format(*gravity)), soft, friction,
+                 f'<Console print_time="{end / 10}"/>')
+
+
+def pressed(shape, end=6.0, output=""):
+    """A platen pushes a column in a rigid sleeve by a quarter of its length, slowly: uniaxial strain."""
+    soft = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0.3"')
+    column = _mpm.block("column", (0, 0, 0), (2, 2, 8), dp=0.5)
+    # The platen moves by a quarter of the column's length with a smooth start and end.
+    speed = f"(-2/{end})*(1-cos(6.283185307179586*t/{end}))"
+    platen = _mpm.block("platen", (0, 0, 8), (2, 2, 1), dp=0.5, of="iron", more=f'<PrescribedVelocity vx="0" vy="0" vz="{speed}"/>')
+    return scene([column, platen], _mpm.grid((0, 0, 0), (2, 2, 11), "222220").replace("<Grid>", f'<Grid shape="{shape}">'),
+                 _mpm.solution(end, factor=0.5), soft, 0,
+                 f'<Console print_time="{end / 40}"/>' + output)
+
+
+def thrown(end=1.5, output="", partition="", kind=1):
+    """A free rigid brick that strikes a free elastic block off its centre, in empty space."""
+    soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
+    bodies = [_mpm.block("block", (2, 2, 2), (6, 6, 3)),
+              _mpm.block("brick", (2.3, 2.2, 5.4), (2, 3, 2), (0.4, 0.2, -2), of="iron")]
+    text = scene(bodies, _mpm.grid((0, 0, 0), (12, 12, 12)), _mpm.solution(end), soft, 0.2,
+                 f'<Console print_time="{end / 20}"/><Restart time_interval="{end / 2}"/>' + output, kind)
+    return text.replace("</PeneBlast>", partition + "</PeneBlast>")
+
+
+class Rigid(_mpm.Case):
+    def go(self, text, folder="run", **how):
+        outcome = self.run_in(folder, [self.write(text)], **how)
+        return outcome.state, _mpm.summary(self.folder / folder), _cases.status(self.folder / folder)
+
+    def test_sliding_down_a_rigid_plane(self):
+        """Friction below 2/7 of the slope: the ball slides with g (sin - mu cos)."""
+        _, summary, _ = self.go(incline(60, 0.2))
+        exact = 0.5 * 10 * (math.sin(math.radians(60)) - 0.2 * math.cos(math.radians(60)))
+        error = summary["bodies"][0]["centre"][0] / exact - 1
+        drift = summary["energy"]["relative_drift"]
+        print(f"sliding ball: centre {100 * error:+.2f} %, drift {drift:+.1e}")
+        self.assertLess(abs(error), 0.005)
+        self.assertLess(abs(drift), 0.01)
+
+    def test_pressing_a_column(self):
+        """Force on the platen against the law in uniaxial strain; the column enters it by less than a fifth of a cell."""
+        for shape in ("uGIMP", "QuadraticBSpline", "SGMP"):
+            with self.subTest(shape=shape):
+                _, summary, status = self.go(pressed(shape))
+                column, platen = summary["bodies"]
+                stretch = platen["lower"][2] - 0.25  # of a column of length 8, to the platen's face
+                stretch /= 8
+                young, poisson = 1000.0, 0.3
+                mu, lame = young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
+                stress = (mu * (stretch**2 - 1) + lame * math.log(stretch)) / stretch
+                force = np.mean(status["fz[contact:platen]"][-5:])
+                entered = 0.25 + 0.25 * stretch - (platen["lower"][2] - column["upper"][2])
+                print(f"platen {shape}: stretch {stretch:.4f}, force {force:.1f}, exact {-4 * stress:.1f}, the column "
+                      f"enters it by {entered:+.3f} cells")
+                self.assertAlmostEqual(stretch, 0.75, delta=1e-3)
+                self.assertAlmostEqual(force / (-4 * stress), 1, delta=0.1)
+                self.assertLess(entered, 0.2)
+
+    def test_free_body_and_block(self):
+        """Momentum is exact; with cells of a third of the bodies, angular momentum and the books of energy are not."""
+        _, summary, status = self.go(thrown())
+        mass = 6 * 2 * 4.0 * 1.0
+        block, brick = summary["bodies"]
+        momentum = np.sum([np.array(b["velocity"]) * b["mass"] for b in (block, brick)], axis=0)
+        first = np.array([0.4, 0.2, -2]) * brick["mass"]
+        start = np.cross([3.3, 3.7, 6.4], first)
+        turned = np.linalg.norm(np.subtract(summary["angular_momentum"], start)) / np.linalg.norm(start)
+        drift = summary["energy"]["relative_drift"]
+        print(f"thrown brick: momentum {np.abs(momentum - first).max() / np.abs(first).max():.1e}, angular momentum "
+              f"{turned:.1e}, velocities {block['velocity'][2]:.3f} and {brick['velocity'][2]:.3f}, drift {drift:+.1e}")
+        self.assertAlmostEqual(brick["mass"], mass, delta=1e-9)
+        self.assertLess(np.abs(momentum - first).max() / np.abs(first).max(), 1e-12)
+        self.assertLess(turned, 0.05)
+        self.assertGreater(brick["velocity"][2], -1.5)
+        self.assertLess(block["velocity"][2], -0.1)
+        self.assertLess(abs(drift), 0.2)
+        self.assertGreater(np.abs(status["mx[contact:brick]"]).max(), 0)
+
+    def test_same_bits(self):
+        """Ranks, threads, partition and restart."""
+        one, _, _ = self.go(thrown(), "one")
+        for ranks, threads, partition in ((2, 1, ""), (3, 2, ""), (4, 1, '<DomainDecomposition method="metis"/>')):
+            with self.subTest(ranks=ranks):
+                other, _, _ = self.go(thrown(partition=partition), f"r{ranks}", ranks=ranks, threads=threads)
+                self.assertEqual(other, one)
+        restart = _mpm.restarts(self.folder / "one")[0]
+        self.assertEqual(self.run_in("resumed", [self.folder / "one" / restart], ranks=2).state, one)
+
+
+if __name__ == "__main__":
+    _mpm.main()
