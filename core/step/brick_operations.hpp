@@ -8,6 +8,43 @@ namespace mpm::core {
 
 // --- particles to grid ------------------------------------------------------------------------------------
 
+/// before(body, place, block, used) for every block of a tile, then its contribution to the nodes. A function
+/// of its own, so that the sums of the current cell stay in registers: 40 % of this pass's time.
+template <ShapePolicy S, TransferPolicy T>
+template <NodeFields what, class Scatter, class F>
+[[gnu::noinline]] void PassesWith<S, T>::map_tile(Slot s, std::size_t c, const BrickFrame& frame, Scratch& at,
+                                                  double* contributions, SpreadPrefetch& room,
+                                                  Scatter& running, double* records, F before) {
+  const BrickGrid& grid = *model_.grid;
+  const ParticleTile& tile = grid.brick(s).tiles[c];
+  const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
+  const BlockPrefetch prefetch(model_, s, c);
+  const ColumnLayout& layout = body.pool->layout();
+  const bool loaded = maps_force(what) && loads_.act(grid, s, tile.body);
+  SiteAverages* const pressures = maps_force(what) && averages_volume_change() ? &at.averages : nullptr;
+  if (pressures != nullptr) sum_pressures(frame, tile, *pressures);
+  Scatter cell = running;
+  // Locates the next block before this one is processed, so that its stores complete before they are read.
+  Place places[2];
+  if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
+  for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+    if constexpr (maps_momentum(what))
+      prefetch.template request<S>(b, layout, maps_force(what) ? columns_to_stress : columns_to_mass);
+    room.next();
+    double* block = body.pool->block(tile.blocks[b]);
+    const int used = tile.used_lanes(b);
+    if (b + 1 < tile.blocks.size())
+      places[(b + 1) % 2].find(frame, layout, body.pool->block(tile.blocks[b + 1]));
+    const Place& place = places[b % 2];
+    before(tile.body, place, block, used);
+    add_block<S, T, what>(frame, place, layout, block, used, cell, records, pressures);
+    if constexpr (maps_force(what)) {
+      if (loaded) add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
+    }
+  }
+  running = cell;
+}
+
 /// before(body, place, block, used) for every block of a component, then its contribution to the nodes.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what, class F>
@@ -24,33 +61,9 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   typename S::template Sums<what> sums(contributions);
   typename S::template Scatter<what> cell;
   cell.clear();
-  SiteAverages* const pressures = maps_force(what) && averages_volume_change() ? &at.averages : nullptr;
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
-    const ParticleTile& tile = brick.tiles[c];
-    if (!holds(tile, component)) continue;
-    const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
-    const BlockPrefetch prefetch(model_, s, c);
-    const ColumnLayout& layout = body.pool->layout();
-    const bool loaded = maps_force(what) && loads_.act(grid, s, tile.body);
-    if (pressures != nullptr) sum_pressures(frame, tile, *pressures);
-    // Locates the next block before this one is processed, so that its stores complete before they are read.
-    Place places[2];
-    if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
-    for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-      if constexpr (maps_momentum(what))
-        prefetch.template request<S>(b, layout, maps_force(what) ? columns_to_stress : columns_to_mass);
-      room.next();
-      double* block = body.pool->block(tile.blocks[b]);
-      const int used = tile.used_lanes(b);
-      if (b + 1 < tile.blocks.size())
-        places[(b + 1) % 2].find(frame, layout, body.pool->block(tile.blocks[b + 1]));
-      const Place& place = places[b % 2];
-      before(tile.body, place, block, used);
-      add_block<S, T, what>(frame, place, layout, block, used, cell, sums.records, pressures);
-      if constexpr (maps_force(what)) {
-        if (loaded) add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
-      }
-    }
+    if (holds(brick.tiles[c], component))
+      map_tile<what>(s, c, frame, at, contributions, room, cell, sums.records, before);
   }
   cell.flush(frame, sums.records);
   sums.finish(frame);

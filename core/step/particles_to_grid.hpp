@@ -28,15 +28,13 @@ template <ShapePolicy S, TransferPolicy T, NodeFields what>
                                              const ColumnLayout& layout, const double* block, int used,
                                              typename S::template Scatter<what>& running, double* records,
                                              const SiteAverages* pressures = nullptr) {
-  typename S::template Scatter<what> sums = running;  // a local copy stays in registers
   typename T::Rows rows;
   if constexpr (maps_momentum(what)) T::template momentum<S>(frame, place, layout, block, rows);
   if constexpr (maps_force(what)) {
     stress_rows(layout, block, rows);
     if (pressures != nullptr) pressures->average_pressures(sites_of(place), layout, block, rows);
   }
-  for (int i = 0; i < used; ++i) sums.add(frame, place, i, rows, records);
-  running = sums;
+  for (int i = 0; i < used; ++i) running.add(frame, place, i, rows, records);
 }
 
 }  // namespace mpm::core

@@ -116,6 +116,9 @@ class PassesWith final : public Passes {
   void map_to_grid();
   template <NodeFields what, class F>
   void map_brick(Slot s, std::int32_t component, Scratch& at, F before);
+  template <NodeFields what, class Scatter, class F>
+  void map_tile(Slot s, std::size_t c, const BrickFrame& frame, Scratch& at, double* contributions,
+                SpreadPrefetch& room, Scatter& running, double* records, F before);
   void map_surface(Slot s, std::int32_t component);
   void map_reach(Slot s, std::int32_t component, std::span<const FieldNodes> fields);
   template <NodeFields what>
@@ -364,8 +367,9 @@ void PassesWith<S, T>::map_bricks(F work) {
 template <ShapePolicy S, TransferPolicy T>
 template <class F>
 [[gnu::always_inline]] inline void PassesWith<S, T>::for_each_own_field(Slot s, F f) {
-  if (!contact_ || model_.grid->velocity_fields(s) < 2) return f(every_component);
-  for (const std::int32_t component : model_.grid->components(s)) f(component);
+  std::span<const std::int32_t> fields(&every_component, 1);
+  if (contact_ && model_.grid->velocity_fields(s) > 1) fields = model_.grid->components(s);
+  for (const std::int32_t component : fields) f(component);
 }
 
 /// For the velocity fields that a brick sees: update(component, k) brings the motion of the field number k
