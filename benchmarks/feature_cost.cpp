@@ -192,10 +192,6 @@ class Contestant {
   std::uint64_t hash() { return io::state_hash(bar_.model, bar_.alone); }
 
  private:
-  static core::Scene endless(core::Scene scene) {
-    scene.solution.end_time = 1e9;
-    return scene;
-  }
   BarRun bar_;
 };
 

@@ -80,7 +80,7 @@ struct Stopwatch {
 Json measure(const BarInput& input, const Options& o) {
   omp_set_num_threads(o.threads);
   const double at_start = peak_memory();
-  BarRun bar(input);
+  BarRun bar(endless(input.scene()));
   Stopwatch watch(*bar.stepper);
   watch.run(o.warm_up);
   const double n = bar.particles();

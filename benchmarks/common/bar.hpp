@@ -84,6 +84,12 @@ struct BarInput {
   core::Scene scene() const { return io::parse_scene(text(), "bar.xmp", physics::catalogue()); }
 };
 
+/// The same scene without an end, so that a measurement may run as long as it needs.
+inline core::Scene endless(core::Scene scene) {
+  scene.solution.end_time = 1e9;
+  return scene;
+}
+
 /// A case in memory, ready to step; on one rank unless the communication says otherwise.
 struct BarRun {
   std::shared_ptr<const core::Scene> scene;

@@ -9,14 +9,17 @@ namespace mpm::io {
 
 ContactForces::ContactForces(const core::Scene& scene) {
   if (!scene.contact.enable || !scene.contact.record_force) return;
-  const auto components = static_cast<std::int32_t>(scene.components.size());
-  const core::ContactPairs pairs(scene.components.size());
+  const auto components = static_cast<std::int32_t>(core::component_count(scene));
+  const core::ContactPairs pairs(core::component_count(scene));
+  const auto shown = [&](std::int32_t c) {  // failed particles are component 0
+    return c < static_cast<std::int32_t>(scene.components.size()) ? c + 1 : 0;
+  };
   impulses_.assign(3 * pairs.size(), 0.0);
   const auto add = [&](std::int32_t a, std::int32_t b) {
     const int number = pairs.number(a, b);
     if (number < 0) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      columns_.push_back(fmt::format("contact_{}[{},{}]", "xyz"[axis], a + 1, b + 1));
+      columns_.push_back(fmt::format("contact_{}[{},{}]", "xyz"[axis], shown(a), shown(b)));
       order_.push_back(3 * static_cast<std::size_t>(number) + axis);
     }
   };

@@ -118,7 +118,7 @@ Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::R
     counts.push_back(entry(ledger.body_left, b));
   }
   if (model.scene->contact.enable) {
-    ledger.contact.impulses.resize(3 * core::ContactPairs(model.scene->components.size()).size());
+    ledger.contact.impulses.resize(3 * core::ContactPairs(core::component_count(*model.scene)).size());
     for (const core::ExactSum& sum : sums_of(ledger.contact)) sums.push_back(sum);
   }
   ranks.sum(std::span(sums));
