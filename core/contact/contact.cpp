@@ -62,6 +62,7 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
     material_.push_back(-1);  // no friction
     weight_.push_back(failed_normal_weight);
   }
+  has_failed_.resize(weight_.size());
   const std::size_t materials = model.materials.size();
   friction_.assign(materials * materials, 0.0);
   for (const FrictionPair& pair : scene.frictions) {
@@ -70,7 +71,8 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
   }
 }
 
-void Contact::find_fields(BrickGrid& grid, NodeHalo& halo) {
+void Contact::find_fields(BrickGrid& grid, NodeHalo& halo, Reductions& ranks) {
+  if (model_.scene->contact.ignore_failed_normals) find_failed(grid, ranks);
   const auto insert = [](std::vector<std::int32_t>& list, std::int32_t component) {
     const auto at = std::lower_bound(list.begin(), list.end(), component);
     if (at == list.end() || *at != component) list.insert(at, component);
@@ -96,6 +98,24 @@ void Contact::find_fields(BrickGrid& grid, NodeHalo& halo) {
     seen_.insert(seen_.end(), seen.begin(), seen.end());
     seen_begin_.push_back(seen_.size());
   }
+}
+
+/// Components with failed particles anywhere (manual 3.9, normal_vector_excluding_failure_particle).
+void Contact::find_failed(const BrickGrid& grid, Reductions& ranks) {
+  std::vector<std::int64_t> failed(has_failed_.size());
+  for (Slot s = 0; s < grid.owned(); ++s) {
+    for (const ParticleTile& tile : grid.brick(s).tiles) {
+      std::int64_t& count = failed[static_cast<std::size_t>(tile.component)];
+      const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+      if (count > 0 || !pool.layout().has(Column::failed)) continue;
+      for (std::size_t b = 0; b < tile.blocks.size() && count == 0; ++b) {
+        const double* column = pool.block(tile.blocks[b]) + pool.layout().offset(Column::failed);
+        if (std::any_of(column, column + tile.used_lanes(b), [](double f) { return f != 0; })) count = 1;
+      }
+    }
+  }
+  ranks.sum(std::span<std::int64_t>(failed));
+  for (std::size_t c = 0; c < failed.size(); ++c) has_failed_[c] = failed[c] > 0;
 }
 
 // --- surfaces ---------------------------------------------------------------------------------------------
@@ -141,7 +161,8 @@ void Contact::take_reach(const BrickGrid& grid, const SharedNodes& shared, Slot 
 
 ContactSurface Contact::surface(const FieldNodes& field, int node) const {
   const double* g = field.surface.data() + node_doubles * node;
-  return {{g[0], g[1], g[2]}, weight_[static_cast<std::size_t>(field.component)]};
+  const auto c = static_cast<std::size_t>(field.component);
+  return {{g[0], g[1], g[2]}, weight_[c], has_failed_[c]};
 }
 
 std::optional<Vec3<double>> Contact::outward(std::span<const FieldNodes> fields, std::size_t field,

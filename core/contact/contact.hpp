@@ -59,7 +59,7 @@ class Contact {
   Contact(const Model& model, const RigidBodies* rigid);
 
   /// Gives the grid's bricks their fields. Collective, with the neighbouring ranks.
-  void find_fields(BrickGrid& grid, NodeHalo& halo);
+  void find_fields(BrickGrid& grid, NodeHalo& halo, Reductions& ranks);
 
   /// Whether several components meet in the neighbourhood of an owned brick.
   bool meets(Slot s) const { return seen(s).size() > 1; }
@@ -104,6 +104,7 @@ class Contact {
 
  private:
   struct Node;
+  void find_failed(const BrickGrid& grid, Reductions& ranks);
   ContactSurface surface(const FieldNodes& field, int node) const;
   double friction(std::int32_t a, std::int32_t b) const;
   /// Number of the rigid body that is a component; -1: none.
@@ -118,6 +119,7 @@ class Contact {
   std::optional<double> largest_gap_;  ///< length
   bool to_faces_ = false;              ///< gaps between the particles' faces
   bool limits_time_step_ = false;
+  std::vector<bool> has_failed_;  ///< by component; all false unless their normals are excluded
   std::vector<double> weight_;    ///< of normals, by component
   std::vector<int> material_;     ///< by component; -1 without bodies
   std::vector<double> friction_;  ///< by two materials

@@ -65,6 +65,7 @@ std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const Co
     return (1 / length) * g;
   };
   const auto a = direction(first.mass_gradient), b = direction(-1.0 * second.mass_gradient);
+  if (a && b && first.excluded != second.excluded) return first.excluded ? b : a;
   if (!a || (b && second.weight > first.weight)) return b;
   if (!b || first.weight > second.weight) return a;
   return direction(*a + *b);

@@ -48,10 +48,11 @@ void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pai
 struct ContactSurface {
   Vec3<double> mass_gradient{};  ///< sum of m grad S over its particles: points outward (4-31)
   double weight = 0;             ///< normal_vector_weight
+  bool excluded = false;         ///< decides only where the other is excluded too
 };
 
-/// Normal from `first` to `second`: that of the larger weight; with equal weights the mean of both (4-32).
-/// None where no surface has a direction.
+/// Normal from `first` to `second`: that of the one that is not excluded, else that of the larger weight;
+/// with equal weights the mean of both (4-32). None where no surface has a direction.
 std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const ContactSurface& second);
 
 }  // namespace mpm::core

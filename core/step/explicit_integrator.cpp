@@ -41,7 +41,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   }
 
   if (model_.scene->contact.enable) {
-    then("velocity fields of components", [&] { pass.find_fields(); });
+    then("velocity fields of components", [&] { pass.find_fields(ranks_); });
     then("surfaces to grid", [&] { pass.map_surfaces(); });
     then("exchange surfaces", [&] { pass.finish_exchange(); });
     if (model_.scene->contact.measures_gaps()) {
@@ -80,6 +80,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
 
 ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communication)
     : model_(model),
+      ranks_(communication.reductions),
       cells_(make_cells_in_use(model, communication.halo)),
       heat_(make_conduction(model, communication.halo)),
       rigid_(make_rigid_bodies(model, communication)),

@@ -26,6 +26,7 @@ class ExplicitIntegrator final : public Integrator {
 
  private:
   Model& model_;
+  Reductions& ranks_;
   std::unique_ptr<CellsInUse> cells_;  ///< null for shape functions without them
   std::unique_ptr<Conduction> heat_;
   std::unique_ptr<RigidBodies> rigid_;  ///< null without any in contact

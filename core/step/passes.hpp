@@ -24,7 +24,7 @@ class Passes {
 
   /// Contact: the velocity fields of the components, then the surfaces of those that meet, to the grid. Only
   /// where there is contact.
-  virtual void find_fields() = 0;
+  virtual void find_fields(Reductions& ranks) = 0;
   virtual void map_surfaces() = 0;
   virtual void map_reach() = 0;
   /// Rigid bodies at the end of the step, with the impulses of contact on them. Only where there are any.

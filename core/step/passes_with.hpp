@@ -39,7 +39,7 @@ class PassesWith final : public Passes {
     begin_corrections();
   }
 
-  void find_fields() override { contact_->find_fields(*model_.grid, halo_); }
+  void find_fields(Reductions& ranks) override { contact_->find_fields(*model_.grid, halo_, ranks); }
   void map_surfaces() override;
   void map_reach() override;
   void move_rigid_bodies() override;

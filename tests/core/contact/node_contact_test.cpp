@@ -167,6 +167,9 @@ TEST_CASE("Normals of contact: the larger weight's, the mean of equal ones, and 
   CHECK(contact_normal({flat.mass_gradient, 2}, tilted).value() == Vector{0, 0, 1});
   CHECK(contact_normal(flat, {tilted.mass_gradient, 2}).value() == -1.0 * unit(tilted.mass_gradient));
   CHECK(contact_normal({{}, 5}, tilted).value() == -1.0 * unit(tilted.mass_gradient));
+  CHECK(contact_normal({flat.mass_gradient, 2, true}, tilted).value() == -1.0 * unit(tilted.mass_gradient));
+  CHECK(contact_normal({flat.mass_gradient, 2, true}, {tilted.mass_gradient, 0, true}).value() ==
+        Vector{0, 0, 1});
   CHECK_FALSE(contact_normal({}, {}).has_value());
   CHECK_FALSE(contact_normal({{1, 0, 0}, 0}, {{1, 0, 0}, 0}).has_value());  // both point the same way
 }

@@ -242,9 +242,8 @@ TEST_CASE("known, but not implemented yet") {
   const std::string zero = "known, but not implemented yet; remove the attribute or set it to its default, 0";
   check_table({
       {"<Solution>",
-       "<Contact enable=\"1\" normal_vector_excluding_failure_particle=\"1\"/><Solution>",
-       {"line 25: <Contact normal_vector_excluding_failure_particle=\"1\">: " + zero,
-        "line 25: <Contact enable=\"1\">: contact acts between components, and there is only one with "
+       "<Contact enable=\"1\"/><Solution>",
+       {"line 25: <Contact enable=\"1\">: contact acts between components, and there is only one with "
         "bodies: "
         "give bodies that are to meet components of their own, or set enable to 0"}},
       {"<Solution>", "<Contact enable=\"0\"/><Solution>", {"ok"}},

@@ -164,10 +164,10 @@ TEST_CASE("settings of features that are off") {
        "case"},
       {"<Solution>",
        "<Contact enable='0' failure_to_component='1' auto_normal_vector_weight='1' "
-       "distance_type='1' min_distance='0.5' "
+       "normal_vector_excluding_failure_particle='1' distance_type='1' min_distance='0.5' "
        "contact_time_step='1' contact_type='2' record_contact_force='1'/><Solution>",
        "line 25: <Contact>: failure_to_component, auto_normal_vector_weight, "
-       "distance_type, min_distance, contact_time_step, "
+       "normal_vector_excluding_failure_particle, distance_type, min_distance, contact_time_step, "
        "contact_type, record_contact_force have no effect: Contact is off"},
       {"<Solution>", "<Contact enable='0' contact_type='0' min_distance='0.0'/><Solution>", ""},
   });
