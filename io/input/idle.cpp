@@ -412,9 +412,38 @@ std::string touching(const Scene& scene) {
   return {};
 }
 
+/// Contact cannot change the motion of driven rigid bodies.
+void note_driven(const Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const auto driven = [](const core::BodyInput& body) {
+    return body.constrain_rigid_position || body.prescribed_velocity.has_value();
+  };
+  const auto fixed = [](const core::BodyInput& body) {
+    return !body.constrain_rigid_position && body.prescribed_velocity == core::Vec3<double>{} &&
+           body.prescribed_velocity_expressions.empty();
+  };
+  const core::BodyInput *moves = nullptr, *other = nullptr;
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    if (!rigid(material_of(scene, body)) || !driven(body)) return;
+    if (moves == nullptr && !fixed(body))
+      moves = &body;
+    else
+      other = &body;
+  });
+  if (moves == nullptr || other == nullptr) return;
+  notes.push_back(
+      {moves->source.file,
+       moves->source.line,
+       "Body",
+       {},
+       {},
+       fmt::format("rigid bodies '{}' and '{}' both have a prescribed motion: where they meet they pass "
+                   "through each other",
+                   moves->name, other->name)});
+}
+
 /// Consequences of several components without contact.
 void note_components(const Scene& scene, std::vector<core::Diagnostic>& notes) {
-  if (scene.contact.enable) return;
+  if (scene.contact.enable) return note_driven(scene, notes);
   const core::ComponentInput* second = nullptr;
   int first = -1, count = 0, rigid_bodies = 0;
   core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {

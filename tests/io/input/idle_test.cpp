@@ -259,6 +259,27 @@ TEST_CASE("several components without contact") {
   CHECK(notes_of(replaced(touching, "name='second'", "name='second' Deactive='1'")).empty());
 }
 
+TEST_CASE("driven rigid bodies pass through each other, in contact too") {
+  const std::string still = "<PrescribedVelocity vx='0' vy='0' vz='0'/>",
+                    falls = "<PrescribedVelocity vx='0' vy='0' vz='-1'/>";
+  const auto passing = [](const std::string& first, const std::string& second) {
+    std::string text =
+        replaced(two_bodies(rigid_bar(), 6, true), "<InitialVelocity", first + "<InitialVelocity");
+    text = replaced(text, "lz='1'/></Body>", "lz='1'/>" + second + "</Body>");
+    const std::vector<std::string> notes =
+        notes_of(replaced(text, "<Solution>", "<Contact enable='1'/><Solution>"), true);
+    return std::ranges::count_if(notes, [](const std::string& note) {
+      return note.find("rigid bodies 'rod' and 'second' both have a prescribed motion") !=
+                 std::string::npos ||
+             note.find("rigid bodies 'second' and 'rod' both have a prescribed motion") != std::string::npos;
+    });
+  };
+  CHECK(passing(falls, still) == 1);
+  CHECK(passing(still, falls) == 1);
+  CHECK(passing(falls, "") == 0);     // the second is free
+  CHECK(passing(still, still) == 0);  // they never meet
+}
+
 TEST_CASE("rigid bodies beside others are refused") {
   const std::string mixed =
       replaced(replaced(two_bodies(bar, 6, true), "material='cu'", "material='iron'"), "</Material>",
