@@ -364,7 +364,7 @@ class Prescribed(Case):
 
         outcome = self.run_in("out", [press("iron")], code=_mpm.INPUT_ERROR)
         self.assertRegex(outcome.complaint, r'case.xmp:\d+: <Body material="iron">: a rigid body acts on others only through '
-                         r"contact, .* pass through 'column' without exerting a force\. Give the body a deformable material")
+                         r"contact, .* pass through 'column' without exerting a force\. Set Contact enable to 1, give the body a deformable material")
         self.run_in("out", [press("soft")])
         column, ram = strict_summary(self.folder / "out")["bodies"]
         self.assertAlmostEqual(ram["lower"][2], 8.25 - 0.5, delta=1e-9)
