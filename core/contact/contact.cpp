@@ -249,7 +249,7 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   std::vector<Vec3<double>> nodal_start = start;  // with Pan's first impulses
   std::vector<Vec3<double>> first_impulse(at.pairs.size());
   if (corrects_start) {
-    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = taken[f] - increment(f);
+    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = start[f];
     resolve_contacts(at.fields, at.pairs);
     for (std::size_t f = 0; f < count; ++f) nodal_start[f] = at.fields[f].velocity;
     for (std::size_t p = 0; p < at.pairs.size(); ++p) first_impulse[p] = at.pairs[p].impulse;

@@ -10,7 +10,16 @@ namespace mpm::io {
 
 namespace {
 
-bool takes_part(const core::BodyInput& body) { return !body.deactivated && !body.for_bool; }
+using Bodies = std::vector<const core::BodyInput*>;
+
+/// The active bodies of each component.
+std::vector<Bodies> bodies_by_component(const core::Scene& scene) {
+  std::vector<Bodies> bodies(scene.components.size());
+  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
+    bodies[static_cast<std::size_t>(component)].push_back(&body);
+  });
+  return bodies;
+}
 
 double friction(const core::Scene& scene, std::size_t a, std::size_t b) {
   for (const core::FrictionPair& pair : scene.frictions)
@@ -20,22 +29,21 @@ double friction(const core::Scene& scene, std::size_t a, std::size_t b) {
   return 0;
 }
 
-/// Of the bodies that take part.
-std::vector<std::size_t> materials_of(const core::ComponentInput& component) {
+std::vector<std::size_t> materials_of(const Bodies& bodies) {
   std::vector<std::size_t> materials;
-  for (const core::BodyInput& body : component.bodies) {
-    if (takes_part(body) && std::ranges::find(materials, body.material) == materials.end())
-      materials.push_back(body.material);
+  for (const core::BodyInput* body : bodies) {
+    if (std::ranges::find(materials, body->material) == materials.end()) materials.push_back(body->material);
   }
   return materials;
 }
 
 /// The surface of a component has one friction against each other component.
-void check_friction(const Node& node, std::size_t c, const core::Scene& scene, const BuildContext& context) {
-  const std::vector<std::size_t> mine = materials_of(scene.components[c]);
-  for (std::size_t other = 0; other < scene.components.size(); ++other) {
+void check_friction(const Node& node, std::size_t c, const std::vector<Bodies>& bodies,
+                    const core::Scene& scene, const BuildContext& context) {
+  const std::vector<std::size_t> mine = materials_of(bodies[c]);
+  for (std::size_t other = 0; other < bodies.size(); ++other) {
     if (other == c) continue;
-    for (const std::size_t theirs : materials_of(scene.components[other])) {
+    for (const std::size_t theirs : materials_of(bodies[other])) {
       for (const std::size_t material : mine) {
         if (material >= scene.materials.size() || theirs >= scene.materials.size()) return;
         if (friction(scene, material, theirs) == friction(scene, mine.front(), theirs)) continue;
@@ -50,15 +58,15 @@ void check_friction(const Node& node, std::size_t c, const core::Scene& scene, c
   }
 }
 
-void check_rigid(const Node& node, const core::ComponentInput& component, const core::Scene& scene,
+void check_rigid(const Node& node, const Bodies& bodies, const core::Scene& scene,
                  const BuildContext& context) {
-  std::size_t bodies = 0, rigid = 0;
-  for (const core::BodyInput& body : component.bodies) {
-    if (!takes_part(body) || body.material >= scene.materials.size()) continue;
-    ++bodies;
-    if (scene.materials[body.material].strength.type == "Rigid") ++rigid;
+  std::size_t known = 0, rigid = 0;
+  for (const core::BodyInput* body : bodies) {
+    if (body->material >= scene.materials.size()) continue;
+    ++known;
+    if (scene.materials[body->material].strength.type == "Rigid") ++rigid;
   }
-  if (rigid > 0 && bodies > 1)
+  if (rigid > 0 && known > 1)
     node.report(context.diagnostics,
                 "a rigid body in contact must be alone in its component, which moves as one: give the other "
                 "bodies components of their own");
@@ -69,8 +77,8 @@ void check_rigid(const Node& node, const core::ComponentInput& component, const 
 void check_contact(const Node& root, const core::Scene& scene, const BuildContext& context) {
   const std::optional<Node> contact = root.child("Contact");
   if (!contact || !scene.contact.enable) return;
-  const auto present = std::ranges::count_if(
-      scene.components, [](const auto& c) { return std::ranges::any_of(c.bodies, takes_part); });
+  const std::vector<Bodies> bodies = bodies_by_component(scene);
+  const auto present = std::ranges::count_if(bodies, [](const Bodies& of) { return !of.empty(); });
   if (present < 2)
     contact->report(
         context.diagnostics, "enable",
@@ -89,8 +97,8 @@ void check_contact(const Node& root, const core::Scene& scene, const BuildContex
         "or an affine transfer");
   const std::vector<Node> components = root.children("Component");
   for (std::size_t c = 0; c < std::min(components.size(), scene.components.size()); ++c) {
-    check_friction(components[c], c, scene, context);
-    check_rigid(components[c], scene.components[c], scene, context);
+    check_friction(components[c], c, bodies, scene, context);
+    check_rigid(components[c], bodies[c], scene, context);
   }
 }
 

@@ -13,19 +13,9 @@ constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::us
 
 /// Two elastic blocks of 4 x 4 x 4 cells with a gap along x between them; the second is `behind` the first.
 ReferenceCase two_blocks(ReferenceShape shape, ReferenceScheme scheme, double gap, const Vector& approach) {
-  ReferenceCase c = tumbling_block();
-  c.shape = shape;
-  c.scheme = scheme;
-  c.material.bq1 = c.material.bq2 = 0;
+  ReferenceCase c = open_space(shape, scheme);
   c.gravity = {};
-  c.cell = {1, 1, 1};
-  c.origin = {0, 0, 0};
-  c.cells = {24, 12, 12};
-  c.boundary.fill(0);
-  c.gimp_half_size = {0.25, 0.25, 0.25};
-  c.dt_factor = 0.4;
-  const ReferenceParticle like = c.particles.front();
-  c.particles.clear();
+  const ReferenceParticle like = tumbling_block().particles.front();
   for (const double first : {4.1, 8.1 + gap}) {
     for (int i = 0; i < 8; ++i) {
       for (int j = 0; j < 8; ++j) {

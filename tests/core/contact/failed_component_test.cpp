@@ -20,17 +20,7 @@ constexpr double middle = 9.1;
 
 /// An elastic bar of 10 x 4 x 4 cells along x whose halves have the velocities -`speed` and `speed`.
 ReferenceCase bar(ReferenceShape shape, ReferenceScheme scheme, double speed) {
-  ReferenceCase c = tumbling_block();
-  c.shape = shape;
-  c.scheme = scheme;
-  c.material.bq1 = c.material.bq2 = 0;
-  c.cell = {1, 1, 1};
-  c.origin = {0, 0, 0};
-  c.cells = {24, 12, 12};
-  c.boundary.fill(0);
-  c.gimp_half_size = {0.25, 0.25, 0.25};
-  c.dt_factor = 0.4;
-  c.particles.clear();
+  ReferenceCase c = open_space(shape, scheme);
   for (int i = 0; i < 20; ++i) {
     for (int j = 0; j < 8; ++j) {
       for (int k = 0; k < 8; ++k) {

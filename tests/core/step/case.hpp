@@ -367,4 +367,20 @@ inline ReferenceCase tumbling_block() {
   return c;
 }
 
+/// The same material in free space of 24 x 12 x 12 unit cells, without particles.
+inline ReferenceCase open_space(ReferenceShape shape, ReferenceScheme scheme) {
+  ReferenceCase c = tumbling_block();
+  c.shape = shape;
+  c.scheme = scheme;
+  c.material.bq1 = c.material.bq2 = 0;
+  c.cell = {1, 1, 1};
+  c.origin = {0, 0, 0};
+  c.cells = {24, 12, 12};
+  c.boundary.fill(0);
+  c.gimp_half_size = {0.25, 0.25, 0.25};
+  c.dt_factor = 0.4;
+  c.particles.clear();
+  return c;
+}
+
 }  // namespace mpm::tests
