@@ -9,11 +9,14 @@
 
 namespace mpm::core {
 
+class NewtonSolver;  // core/implicit/newton_solver.hpp
+
 struct Communication {
   Reductions& reductions;
   BrickDirectory& bricks;
   ParticleTransport& particles;
   NodeHalo& halo;
+  NewtonSolver* newton = nullptr;  ///< of implicit steps; null in explicit runs
 
   /// Most functions need only the reductions.
   operator Reductions&() const { return reductions; }

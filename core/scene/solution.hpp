@@ -64,6 +64,7 @@ struct WarnInput {
 /// Read when the integration is implicit.
 struct ImplicitInput {
   bool quasistatic = false;
+  bool backward_euler = false;  ///< instead of Newmark's rule
   double newmark_beta = 0.25;
   double newmark_gamma = 0.5;
   std::optional<double> time_step;

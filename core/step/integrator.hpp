@@ -60,6 +60,8 @@ class Integrator {
   virtual StepStatistics take_statistics() = 0;
   /// The particles of each brick that have left it or been eroded in the step just completed, by slot.
   virtual std::vector<std::vector<DepartingParticle>>& departing() = 0;
+  /// What the log says of the step; empty where there is nothing beyond the time table.
+  virtual std::string words_of_step() const { return {}; }
 };
 
 /// The scheme that the scene names.

@@ -122,9 +122,9 @@ void Loads::add_functions(const Model& model, const std::vector<const BodyInput*
   }
 }
 
-void Loads::begin_step(double time, double dt) {
+void Loads::begin_step(double time, double dt, double part) {
   dt_ = dt;
-  middle_ = time + 0.5 * dt;
+  middle_ = time + part * dt;
   for (const Held& h : held_) {
     double v[3];
     for (int a = 0; a < 3; ++a) v[a] = (*h.input->prescribed_velocity)[a];

@@ -66,9 +66,9 @@ class Loads {
   /// Largest part of the critical step with non-reflecting faces.
   static constexpr double nonreflecting_factor = 0.5;
 
-  /// Called before a step from `time` to `time + dt`: loads are evaluated at its middle, prescribed
-  /// velocities (ConstrainRigidPosition, expressions) at its end.
-  void begin_step(double time, double dt);
+  /// Called before a step from `time` to `time + dt`: loads are evaluated at its middle or another part of it,
+  /// prescribed velocities (ConstrainRigidPosition, expressions) at its end.
+  void begin_step(double time, double dt, double part = 0.5);
 
   bool any() const { return !bodies_.empty(); }
   /// Per mass, in this step: the part that is the same for all its particles.
@@ -135,7 +135,7 @@ class Loads {
   std::vector<BodyMotion> motions_;
   bool nonreflecting_ = false;
   double dt_ = 0;
-  double middle_ = 0;      ///< time at the middle of the step
+  double middle_ = 0;      ///< time of the loads: the middle of the step, or as begin_step() was told
   double difference_ = 0;  ///< step of the central differences
 };
 

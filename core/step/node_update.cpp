@@ -219,6 +219,14 @@ void BoundaryFaces::fill(double* record) const {
   });
 }
 
+void BoundaryFaces::for_each_tie(const std::function<void(int, int, const bool (&)[3])>& f) const {
+  for_each_outer_node([&](const Face& face, int outer, int, int inside) {
+    bool reverses[3];
+    for (int a = 0; a < 3; ++a) reverses[a] = face.boundary == Boundary::fixed || a == face.axis;
+    f(outer, inside, reverses);
+  });
+}
+
 void BoundaryFaces::mirror(int i, double* record) const {
   for_each_outer_node([&](const Face&, int outer, int, int inside) {
     record[node_doubles * outer + i] = record[node_doubles * inside + i];

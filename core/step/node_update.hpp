@@ -5,6 +5,8 @@
 // coordinates and updated by the same instructions, so they agree bit for bit on any rank.
 #pragma once
 
+#include <functional>
+
 #include "core/grid/brick_grid.hpp"
 
 namespace mpm::core {
@@ -96,6 +98,9 @@ class BoundaryFaces {
   void fill(double* record) const;
   /// Sets component `i` of the outer nodes' records to that of their mirror image.
   void mirror(int i, double* record) const;
+  /// f(outer node, mirror image, whether each component is reversed), in the order of fill(): the mirror image
+  /// may be an outer node of another face, passed before. Of fixed and symmetry faces.
+  void for_each_tie(const std::function<void(int, int, const bool (&)[3])>& f) const;
 
  private:
   struct Face {

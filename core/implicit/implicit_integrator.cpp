@@ -1,0 +1,263 @@
+#include "core/implicit/implicit_integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/step/speeds.hpp"
+#include "core/step/stepper.hpp"
+
+namespace mpm::core {
+
+namespace {
+
+/// Steps with fewer iterations are easy: the next one may be longer.
+constexpr int easy = 8;
+constexpr double growth = 1.5;
+/// A quasi-static run's steps, and a dynamic step over the largest explicit one, where the input names none.
+constexpr double default_load_steps = 20, default_ratio = 20;
+/// The smallest step over the given one, where the input names none.
+constexpr double default_smallest = 1.0 / 1024;
+
+double length_of(const ImplicitInput& input, const Model& model) {
+  if (input.time_step) return *input.time_step;
+  if (input.max_step) return *input.max_step;
+  const double explicit_step = default_ratio * model.clock.first_critical_dt;
+  const double end = model.scene->solution.end_time;
+  if (input.quasistatic || !std::isfinite(explicit_step)) return end / default_load_steps;
+  return explicit_step;
+}
+
+}  // namespace
+
+ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communication, NewtonSolver& solver)
+    : model_(model),
+      ranks_(communication.reductions),
+      solver_(solver),
+      input_(model.scene->solution.implicit.value_or(ImplicitInput{})),
+      cells_(make_cells_in_use(model, communication.halo)),
+      passes_(make_implicit_passes(model)),
+      unknowns_(model, communication) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    moves_bodies_ |= passes_->loads().motion(static_cast<int>(b)).kind == BodyMotion::Kind::prescribed;
+  const double h = model.grid->geometry().smallest_cell();
+  for (const Body& body : model.bodies) {
+    const double c = body.model->initial_sound_speed();
+    held_diagonal_ = std::max(held_diagonal_, body.model->reference_density() * c * c * h);
+  }
+  if (!(held_diagonal_ > 0)) held_diagonal_ = 1;
+}
+
+std::vector<Phase> ImplicitIntegrator::phases() {
+  std::vector<Phase> step;
+  if (cells_) {
+    step.push_back({"cells in use", [this] { cells_->find(); }});
+    step.push_back({"exchange cells", [this] { cells_->finish_exchange(); }});
+  }
+  step.push_back({"particles to grid", [this] { prepare(); }});
+  step.push_back({"Newton's method", [this] { solve(); }});
+  step.push_back({"grid to particles", [this] { move(); }});
+  return step;
+}
+
+double ImplicitIntegrator::next_step(const Clock& clock) const {
+  const double length = length_of(input_, model_);
+  if (next_ > 0) return next_;
+  return clock.step > 0 ? std::min(clock.dt * growth, input_.max_step.value_or(length)) : length;
+}
+
+/// Masses, velocities, external forces and the forces at the start of the step.
+void ImplicitIntegrator::prepare() {
+  const double dt = model_.clock.dt;
+  rule_ = TimeRule::of(input_, dt);
+  passes_->begin_step(dt, rule_.dynamic() ? 0.5 : 1.0);
+  passes_->map_start();
+  unknowns_.exchange(mapped::implicit_start);
+  const std::vector<double> sums = unknowns_.number();
+  unknowns_.hold_walls();
+  if (moves_bodies_) {
+    passes_->map_motion();
+    unknowns_.exchange(mapped::implicit_motion);
+    unknowns_.hold_moved(dt);
+  }
+  const double cutoff = model_.grid->geometry().mass_cutoff;
+  state_.assign(unknowns_.own(), {});
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    NodeState& at = state_[i];
+    const double* sum = sums.data() + node_doubles * i;
+    at.mass = sum[3];
+    for (int a = 0; a < 3; ++a) {
+      at.velocity[a] = at.mass > cutoff ? sum[a] / at.mass : 0;
+      at.external[a] = sum[4 + a];
+    }
+  }
+  const std::vector<double> at_rest(3 * state_.size(), 0.0);
+  unknowns_.distribute(at_rest, displacements_);
+  passes_->map_forces(displacements_);
+  unknowns_.exchange(mapped::implicit_force);
+  const double damping = model_.scene->solution.damping;
+  unknowns_.for_each_own([&](std::size_t i, const double* sum) {
+    NodeState& at = state_[i];
+    for (int a = 0; a < 3; ++a)
+      at.force[a] = at.external[a] + sum[4 + a] - damping * at.mass * at.velocity[a];
+  });
+}
+
+/// Free nodes go on with their velocity.
+std::vector<double> ImplicitIntegrator::first_guess() const {
+  std::vector<double> u(3 * state_.size());
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t at = 3 * i + static_cast<std::size_t>(a);
+      if (held(i, a))
+        u[at] = unknowns_.held_displacements()[at];
+      else if (rule_.dynamic())
+        u[at] = model_.clock.dt * state_[i].velocity[a];
+    }
+  }
+  return u;
+}
+
+bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r) {
+  unknowns_.distribute(u, displacements_);
+  const bool usable = passes_->map_forces(displacements_);
+  unknowns_.exchange(mapped::implicit_force);
+  const double damping = model_.scene->solution.damping;
+  ExactSum squares;
+  unknowns_.for_each_own([&](std::size_t i, const double* sum) {
+    NodeState& at = state_[i];
+    double size = sum[7];
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t k = 3 * i + static_cast<std::size_t>(a);
+      const double inertia = at.mass * (rule_.inertia * u[k] - rule_.start * at.velocity[a]);
+      const double drag = damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a]) +
+                                     rule_.push * at.force[a]);
+      at.reaction[a] = inertia + drag - rule_.carry * at.force[a] - at.external[a] - sum[4 + a];
+      size += std::abs(inertia) + std::abs(at.external[a]);
+      r[k] = held(i, a) ? held_diagonal_ * (u[k] - unknowns_.held_displacements()[k]) : at.reaction[a];
+    }
+    squares.add(size * size);
+  });
+  ranks_.sum(std::span(&squares, 1));
+  force_scale_ = std::sqrt(squares.value());
+  return !ranks_.any(!usable);
+}
+
+void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix) {
+  unknowns_.distribute(u, displacements_);
+  passes_->add_tangent(&displacements_, unknowns_, matrix);
+  const double per_mass = rule_.inertia + model_.scene->solution.damping * rule_.gain;
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    double diagonal[9] = {};
+    for (int a = 0; a < 3; ++a) diagonal[4 * a] = held(i, a) ? held_diagonal_ : per_mass * state_[i].mass;
+    const std::int64_t number = unknowns_.first() + static_cast<std::int64_t>(i);
+    matrix.add(std::span(&number, 1), diagonal);
+  }
+}
+
+std::string ImplicitIntegrator::objection(const NewtonReport& report, std::span<const double> u) const {
+  if (!report.converged) return report.reason;
+  const double cell[3] = {model_.grid->geometry().cell.x, model_.grid->geometry().cell.y,
+                          model_.grid->geometry().cell.z};
+  double farthest = 0;
+  for (std::size_t k = 0; k < u.size(); ++k) farthest = std::max(farthest, std::abs(u[k]) / cell[k % 3]);
+  farthest = ranks_.largest(farthest);
+  if (farthest > 1) return fmt::format("a node moves by {:.3g} cells", farthest);
+  return {};
+}
+
+void ImplicitIntegrator::solve() {
+  const double length = length_of(input_, model_);
+  const NewtonOptions options{input_.relative_tolerance, input_.absolute_tolerance.value_or(0),
+                              input_.max_newton, input_.matrix_free};
+  std::string cuts;
+  for (;;) {
+    std::vector<double> u = first_guess();
+    const NewtonReport report = solver_.solve(*this, u, options);
+    const std::string why = objection(report, u);
+    const double dt = model_.clock.dt;
+    const std::string norms = fmt::format("{:.2e}", fmt::join(report.norms, " "));
+    if (why.empty()) {
+      solution_ = std::move(u);
+      words_ = fmt::format("step {}: time {:.6g}, length {:.4g}; {} unknowns; residual {}; {} linear iterations{}",
+                           model_.clock.step + 1, model_.clock.time + dt, dt, 3 * unknowns_.all(), norms,
+                           report.linear_iterations, cuts);
+      if (report.iterations <= easy) next_ = std::min(dt * growth, input_.max_step.value_or(length));
+      else next_ = dt;
+      return;
+    }
+    cuts += fmt::format("; shortened from {:.4g}: {} (residual {})", dt, why, norms);
+    if (0.5 * dt < input_.min_step.value_or(default_smallest * length)) fail(why + ", residual " + norms);
+    model_.clock.dt = 0.5 * dt;
+    prepare();
+  }
+}
+
+/// Names the node of the largest residual.
+void ImplicitIntegrator::fail(const std::string& why) {
+  OffendingParticle worst;
+  double largest = 0;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    for (int a = 0; a < 3; ++a) {
+      if (held(i, a) || !(std::abs(state_[i].reaction[a]) > largest)) continue;
+      largest = std::abs(state_[i].reaction[a]);
+      at = i;
+    }
+  }
+  const double of_all = ranks_.largest(largest);
+  std::string mine;
+  if (largest == of_all && largest > 0) {
+    const double* x = unknowns_.coordinates().data() + 3 * at;
+    mine = fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
+  }
+  std::string where;
+  for (const std::string& of_rank : ranks_.gather(mine))
+    if (where.empty()) where = of_rank;
+  throw NumericalFailure(fmt::format(
+      "step {}, time {:.9g}: no equilibrium with the smallest step, {:.4g}: {}; the largest residual force, "
+      "{:.4g}, is at node {}. The particles are those at the start of the step. Use smaller steps (Implicit@"
+      "min_step), or a larger rtol",
+      model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where));
+}
+
+void ImplicitIntegrator::move() {
+  const double cutoff = model_.grid->geometry().mass_cutoff;
+  std::vector<double> gained(solution_.size());
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    const NodeState& at = state_[i];
+    double work = 0;
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t k = 3 * i + static_cast<std::size_t>(a);
+      const double u = solution_[k], push = at.mass > cutoff ? rule_.push * at.force[a] / at.mass : 0;
+      work += at.external[a] * u;
+      if (held(i, a)) work += 0.5 * (at.reaction[a] - at.force[a]) * u;
+      const double v = held(i, a) ? u / model_.clock.dt
+                                  : rule_.gain * u + rule_.keep * at.velocity[a] + push;
+      // As in explicit steps, a wall acts on the particles through their stress alone.
+      const bool on_wall = held(i, a) && unknowns_.held_displacements()[k] == 0;
+      gained[k] = at.mass > cutoff && !on_wall ? v - at.velocity[a] : 0;
+      work -= 0.5 * model_.scene->solution.damping * at.mass * (at.velocity[a] + v) * u;
+    }
+    if (work != 0) of_nodes_.work.add(work);
+  }
+  // The last residual of a line search need not be that of the solution.
+  unknowns_.distribute(solution_, displacements_);
+  if (rule_.dynamic()) unknowns_.distribute(gained, velocities_);
+  passes_->move_particles(displacements_, rule_.dynamic() ? &velocities_ : nullptr);
+}
+
+double ImplicitIntegrator::stable_step(const StepStatistics& statistics) const {
+  return critical_step(*model_.grid, statistics.fastest);
+}
+
+StepStatistics ImplicitIntegrator::take_statistics() {
+  StepStatistics all = passes_->take_statistics();
+  all.work += of_nodes_.work;
+  of_nodes_ = {};
+  return all;
+}
+
+}  // namespace mpm::core

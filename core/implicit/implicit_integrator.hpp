@@ -1,0 +1,83 @@
+// Implicit steps (Solution@Integration "impl"): the nodes' displacements u in a step follow from the equation
+// of motion at its end, or from equilibrium,
+//   R(u) = m (inertia u - start v) - carry f - f_ext - f_int(u) = 0      (time_rule.hpp, stress_response.hpp)
+// solved by Newton's method with the laws' consistent tangents. The grid is the configuration at the start of
+// the step; particles keep their state until the step has converged (Guilkey and Weiss, IJNME 57 (2003) 1323,
+// for the method; AMPLE, Coombs and Augarde, Adv. Eng. Softw. 139 (2020) 102748, for the quasi-static form).
+//
+// A step that does not converge, inverts a particle or moves a node by more than a cell is taken again with
+// half its length; steps that were cut grow again.
+#pragma once
+
+#include <memory>
+
+#include "core/implicit/implicit_passes.hpp"
+#include "core/implicit/time_rule.hpp"
+#include "core/step/cells_in_use.hpp"
+#include "core/step/integrator.hpp"
+
+namespace mpm::core {
+
+class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
+ public:
+  /// `solver` outlives the integrator.
+  ImplicitIntegrator(Model& model, Communication& communication, NewtonSolver& solver);
+
+  std::vector<Phase> phases() override;
+  double next_step(const Clock& clock) const override;
+  void begin_step(double) override {}
+  double stable_step(const StepStatistics& statistics) const override;
+  StepStatistics take_statistics() override;
+  std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
+  std::string words_of_step() const override { return words_; }
+
+ private:
+  /// State of an own node in the step; vectors of three.
+  struct NodeState {
+    double mass;
+    double velocity[3];   ///< at the start
+    double external[3];   ///< force
+    double force[3];      ///< all, at the start
+    double reaction[3];   ///< residual of the last evaluation, also of held components
+  };
+
+  // NonlinearProblem.
+  std::int64_t own_nodes() const override { return static_cast<std::int64_t>(unknowns_.own()); }
+  std::int64_t first_node() const override { return unknowns_.first(); }
+  std::int64_t all_nodes() const override { return unknowns_.all(); }
+  std::span<const double> coordinates() const override { return unknowns_.coordinates(); }
+  bool residual(std::span<const double> u, std::span<double> r) override;
+  double force_scale() const override { return force_scale_; }
+  void structure(BlockMatrix& matrix) override { passes_->add_tangent(nullptr, unknowns_, matrix); }
+  void jacobian(std::span<const double> u, BlockMatrix& matrix) override;
+
+  void prepare();
+  void solve();
+  void move();
+  std::vector<double> first_guess() const;
+  /// Why the solution cannot be accepted; empty if it can. The same on all ranks.
+  std::string objection(const NewtonReport& report, std::span<const double> u) const;
+  bool held(std::size_t node, int axis) const { return (unknowns_.held()[node] >> axis & 1) != 0; }
+  void shorten(const std::string& why);
+  [[noreturn]] void fail(const std::string& why);
+
+  Model& model_;
+  Reductions& ranks_;
+  NewtonSolver& solver_;
+  const ImplicitInput input_;
+  std::unique_ptr<CellsInUse> cells_;
+  std::unique_ptr<ImplicitPasses> passes_;
+  NodeUnknowns unknowns_;
+  TimeRule rule_;
+  bool moves_bodies_ = false;   ///< some body has a prescribed motion
+  double held_diagonal_ = 0;    ///< of the Jacobian's held components
+  double next_ = 0;             ///< length of the next step
+  double force_scale_ = 0;
+  std::vector<NodeState> state_;
+  std::vector<double> solution_;
+  AlignedDoubles displacements_, velocities_;  ///< records of the bricks' nodes
+  StepStatistics of_nodes_;
+  std::string words_;
+};
+
+}  // namespace mpm::core

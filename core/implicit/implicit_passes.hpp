@@ -1,0 +1,49 @@
+// The passes over bricks of an implicit step: what particles map to the grid, the forces and their derivative
+// for a displacement of the nodes, and the motion of particles once it is found. implicit_passes_with.hpp
+// implements them for any shape functions.
+#pragma once
+
+#include <memory>
+
+#include "core/implicit/newton_solver.hpp"
+#include "core/implicit/node_unknowns.hpp"
+#include "core/step/integrator.hpp"
+#include "core/step/loads.hpp"
+
+namespace mpm::core {
+
+class ImplicitPasses {
+ public:
+  virtual ~ImplicitPasses() = default;
+
+  virtual const Loads& loads() const = 0;
+  /// Sets the step's length and loads, taken at `part` of it.
+  virtual void begin_step(double dt, double part) = 0;
+
+  // Contributions of this rank's bricks to the first node array.
+  /// mapped::implicit_start; gravity and loads are the external force.
+  virtual void map_start() = 0;
+  /// mapped::implicit_motion.
+  virtual void map_motion() = 0;
+  /// mapped::implicit_force: internal forces at the end of the step, with the nodes' displacements in
+  /// MotionRecords, and the sums of their absolute values.
+  /// The particles do not change. False where one of them inverts or its stress is not finite.
+  virtual bool map_forces(const AlignedDoubles& displacements) = 0;
+
+  /// Adds the derivative of the residual, minus the internal forces, by the unknowns; without `displacements`
+  /// its structure alone. Held components have neither rows nor columns.
+  virtual void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
+                           BlockMatrix& matrix) = 0;
+
+  /// Moves the particles by the displacements, updates their stress and, where the step is dynamic, adds the
+  /// increments of `velocities` (4..6 of its records) to theirs; quasi-static particles are at rest.
+  virtual void move_particles(const AlignedDoubles& displacements, const AlignedDoubles* velocities) = 0;
+
+  virtual std::vector<std::vector<DepartingParticle>>& departing() = 0;
+  virtual StepStatistics take_statistics() = 0;
+};
+
+/// For the scene's shape functions.
+std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model);
+
+}  // namespace mpm::core

@@ -1,0 +1,13 @@
+#include "core/implicit/implicit_passes_with.hpp"
+#include "core/shape/list.hpp"
+
+namespace mpm::core {
+
+std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model) {
+  using Made = std::unique_ptr<ImplicitPasses>;
+  return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> Made {
+    return std::make_unique<ImplicitPassesWith<S>>(model);
+  });
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,70 @@
+// Interface between an implicit step and the solver of its nonlinear equations R(u) = 0: three unknowns per
+// node, each node on one rank, numbered consecutively from rank to rank. parallel/implicit implements the
+// solver over PETSc; the step itself knows nothing of it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace mpm::core {
+
+/// Where a Jacobian's entries go.
+class BlockMatrix {
+ public:
+  virtual ~BlockMatrix() = default;
+  /// Adds a dense matrix over these nodes, any rank's: rows of 3 nodes.size() values, three rows per node.
+  virtual void add(std::span<const std::int64_t> nodes, const double* values) = 0;
+};
+
+/// The equations of a step. All functions are collective; `u` and `r` hold this rank's unknowns.
+class NonlinearProblem {
+ public:
+  virtual ~NonlinearProblem() = default;
+
+  virtual std::int64_t own_nodes() const = 0;   ///< of this rank
+  virtual std::int64_t first_node() const = 0;  ///< their first number
+  virtual std::int64_t all_nodes() const = 0;   ///< of all ranks
+  /// Of this rank's nodes, three per node; for the rigid motions that a multigrid method needs to know.
+  virtual std::span<const double> coordinates() const = 0;
+
+  /// Residual forces. False, on all ranks, where the state cannot be evaluated (a particle inverts).
+  virtual bool residual(std::span<const double> u, std::span<double> r) = 0;
+  /// The size of the forces that balance in the last residual, in the norm of `r`: what a small residual is
+  /// compared with.
+  virtual double force_scale() const = 0;
+  /// The entries' places alone, for allocation: the values passed to `add` are null.
+  virtual void structure(BlockMatrix& matrix) = 0;
+  /// d r / d u at the last residual.
+  virtual void jacobian(std::span<const double> u, BlockMatrix& matrix) = 0;
+};
+
+struct NewtonOptions {
+  double relative_tolerance = 1e-6;  ///< |r| over the force scale
+  double absolute_tolerance = 0;     ///< |r|, force
+  int max_iterations = 20;
+  bool matrix_free = false;  ///< Jacobian times vector by differences of residuals; the matrix preconditions
+};
+
+/// How a step was solved.
+struct NewtonReport {
+  bool converged = false;
+  std::string reason;  ///< why not
+  int iterations = 0;
+  std::int64_t linear_iterations = 0;
+  std::vector<double> norms;  ///< |r| over the force scale, from the first guess on
+  double assembly_seconds = 0, solve_seconds = 0;
+};
+
+class NewtonSolver {
+ public:
+  virtual ~NewtonSolver() = default;
+  /// Improves the first guess `u`. Collective; the same report on all ranks.
+  virtual NewtonReport solve(NonlinearProblem& problem, std::span<double> u,
+                             const NewtonOptions& options) = 0;
+  /// Describes the linear solver, for the log.
+  virtual std::string description() const = 0;
+};
+
+}  // namespace mpm::core

@@ -1,0 +1,150 @@
+#include "core/implicit/node_unknowns.hpp"
+
+#include <algorithm>
+
+#include "core/threads.hpp"
+
+namespace mpm::core {
+
+NodeUnknowns::NodeUnknowns(Model& model, Communication& communication)
+    : model_(model),
+      ranks_(communication.reductions),
+      halo_(communication.halo),
+      shared_(model.grid->shape()) {
+  buffer_.resize(static_cast<std::size_t>(node_doubles * shared_.nodes()));
+}
+
+void NodeUnknowns::exchange(NodeFields fields) {
+  halo_.begin(grid(), fields);
+  halo_.end(grid());
+}
+
+/// The first brick in summation order that exists owns a shared node.
+bool NodeUnknowns::owns(Slot s, std::span<const SharedNodes::Share> shares) const {
+  const Brick& brick = model_.grid->brick(s);
+  for (const SharedNodes::Share& share : shares)
+    if (brick.neighbour[static_cast<std::size_t>(share.neighbour)] != no_slot)
+      return share.neighbour == self_index;
+  return false;
+}
+
+/// value_of_own(number of the own node, record) sets the fields; all else is zero.
+template <class F>
+void NodeUnknowns::send(F value_of_own, NodeFields fields) {
+  for (Slot s = 0; s < grid().owned(); ++s)
+    std::fill_n(grid().contributions(NodeArray::first, s), node_doubles * per_brick(), 0.0);
+  for (std::size_t i = 0; i < own_.size(); ++i)
+    value_of_own(i, grid().contributions(NodeArray::first, own_[i].slot) + node_doubles * own_[i].node);
+  exchange(fields);
+}
+
+std::vector<double> NodeUnknowns::number() {
+  const NodeBlockShape shape = grid().shape();
+  nodes_.assign(static_cast<std::size_t>(grid().owned()) * per_brick(), {});
+  own_.clear();
+  coordinates_.clear();
+  std::vector<double> start;
+  for (Slot s = 0; s < grid().owned(); ++s) {
+    const double* sum = sums(s);
+    std::vector<std::uint8_t> mine(per_brick());
+    shared_.for_each_node([&](int node, auto shares) {
+      mine[static_cast<std::size_t>(node)] = sum[node_doubles * node + 7] > 0 && owns(s, shares);
+    });
+    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
+    for (int n = 0; n < nodes(); ++n) of[n].from = static_cast<std::int16_t>(n);
+    BoundaryFaces(grid(), s).for_each_tie([&](int outer, int inner, const bool(&reverses)[3]) {
+      of[outer].from = of[inner].from;
+      for (int a = 0; a < 3; ++a)
+        of[outer].sign[a] = static_cast<std::int8_t>(reverses[a] ? -of[inner].sign[a] : of[inner].sign[a]);
+    });
+    for (int k = shape.lowest(); k <= shape.highest(); ++k) {
+      for (int j = shape.lowest(); j <= shape.highest(); ++j) {
+        for (int i = shape.lowest(); i <= shape.highest(); ++i) {
+          const int n = shape.index(i, j, k);
+          if (!mine[static_cast<std::size_t>(n)] || of[n].from != n) continue;
+          own_.push_back({s, n});
+          start.insert(start.end(), sum + node_doubles * n, sum + node_doubles * (n + 1));
+          const Vec3<double> x = grid().geometry().node_place(grid().brick(s).coord, i, j, k);
+          coordinates_.insert(coordinates_.end(), {x.x, x.y, x.z});
+        }
+      }
+    }
+  }
+  std::vector<std::int64_t> count(static_cast<std::size_t>(ranks_.size()));
+  count[static_cast<std::size_t>(ranks_.rank())] = static_cast<std::int64_t>(own_.size());
+  ranks_.sum(std::span(count));
+  first_ = all_ = 0;
+  for (int r = 0; r < ranks_.size(); ++r) {
+    if (r < ranks_.rank()) first_ += count[static_cast<std::size_t>(r)];
+    all_ += count[static_cast<std::size_t>(r)];
+  }
+  // A double holds node numbers up to 2^53 exactly.
+  send([&](std::size_t i, double* record) { record[0] = static_cast<double>(first_ + static_cast<std::int64_t>(i) + 1); },
+       node_field::momentum);
+  for (Slot s = 0; s < grid().owned(); ++s) {
+    const double* sum = sums(s);
+    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
+    for (int n = 0; n < nodes(); ++n)
+      of[n].number = static_cast<std::int64_t>(sum[node_doubles * of[n].from]) - 1;
+  }
+  held_.assign(own_.size(), 0);
+  held_to_.assign(3 * own_.size(), 0.0);
+  return start;
+}
+
+void NodeUnknowns::hold_walls() {
+  const double* const base = buffer_.data();
+  for (Slot s = 0; s < grid().owned(); ++s) {
+    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
+    BoundaryFaces(grid(), s).for_each_node(buffer_.data(), [&](int axis, int, Boundary boundary, double* at) {
+      const auto bits = boundary == Boundary::fixed ? 7 : 1 << axis;
+      of[(at - base) / node_doubles].held |= static_cast<std::uint8_t>(bits);
+    });
+  }
+  for (std::size_t i = 0; i < own_.size(); ++i) held_[i] = of_brick(own_[i].slot)[own_[i].node].held;
+}
+
+void NodeUnknowns::hold_moved(double dt) {
+  std::size_t i = 0;
+  for (Slot s = 0; s < grid().owned(); ++s) {
+    const double* sum = sums(s);
+    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
+    for (int n = 0; n < nodes(); ++n) {
+      const double* record = sum + node_doubles * n;
+      const double moved = record[3], all = record[4];
+      if (!(all > 0) || !(moved >= held_share * all)) continue;
+      // A wall that fixes a component goes before.
+      const auto before = of[n].held;
+      of[n].held = 7;
+      for (; i < own_.size() && own_[i].slot == s && own_[i].node < n; ++i) {
+      }
+      if (i == own_.size() || own_[i].slot != s || own_[i].node != n) continue;
+      held_[i] = 7;
+      for (int a = 0; a < 3; ++a)
+        if ((before >> a & 1) == 0) held_to_[3 * i + static_cast<std::size_t>(a)] = dt * record[a] / moved;
+    }
+    for (; i < own_.size() && own_[i].slot == s; ++i) {
+    }
+  }
+}
+
+void NodeUnknowns::distribute(std::span<const double> u, AlignedDoubles& records) {
+  send(
+      [&](std::size_t i, double* record) {
+        for (std::size_t a = 0; a < 3; ++a) record[a] = u[3 * i + a];
+      },
+      node_field::momentum);
+  records.resize(static_cast<std::size_t>(grid().owned() * node_doubles) * per_brick());
+  for_each_by_threads(0, grid().owned(), 8, [&](int s) {
+    double* const record = records.data() + static_cast<std::size_t>(s * node_doubles) * per_brick();
+    sums(s, record);
+    for (int n = 0; n < nodes(); ++n) {
+      double* const at = record + node_doubles * n;
+      for (int a = 0; a < 3; ++a) at[4 + a] = at[a];
+      at[3] = at[7] = 0;
+    }
+    BoundaryFaces(grid(), s).fill(record);
+  });
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,104 @@
+// The nodes of the bricks as unknowns of an implicit step.
+//
+// A node is active if the shape function of some particle, or its gradient, does not vanish there: its mass
+// may be tiny, its stiffness is not. Of the bricks that share an active node the first in summation order
+// that exists owns it; owned nodes are numbered rank by rank, brick by brick. What a brick knows of its own
+// nodes reaches the others through the exchange of contributions: the owner contributes the value, all others
+// zero, and the sum is the value.
+//
+// Nodes beyond a wall are no unknowns: each follows from its mirror image (core/step/node_update.hpp),
+// u_k = sign_k u_mirror,k. Held components have a given displacement: those that a wall fixes, and nodes
+// where bodies of prescribed motion make up at least held_share of the volume around.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/communication/communication.hpp"
+#include "core/model.hpp"
+#include "core/step/node_update.hpp"
+
+namespace mpm::core {
+
+class NodeUnknowns {
+ public:
+  /// Part of the volume around a node that bodies of prescribed motion have where they hold it.
+  static constexpr double held_share = 0.25;
+
+  NodeUnknowns(Model& model, Communication& communication);
+
+  /// Exchanges these fields of the contributions to the first array. Collective.
+  void exchange(NodeFields fields);
+  /// Numbers the active nodes, once mapped::implicit_start has been exchanged, and returns their sums,
+  /// node_doubles per own node. Collective.
+  std::vector<double> number();
+  /// Holds what the walls fix.
+  void hold_walls();
+  /// Holds nodes for bodies of prescribed motion, from the sums of mapped::implicit_motion, for `dt`.
+  void hold_moved(double dt);
+
+  int nodes() const { return shared_.nodes(); }
+  /// f(own node, its record of the exchanged sums).
+  template <class F>
+  void for_each_own(F f) {
+    const double* sum = nullptr;
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      if (i == 0 || own_[i].slot != own_[i - 1].slot) sum = sums(own_[i].slot);
+      f(i, sum + node_doubles * own_[i].node);
+    }
+  }
+
+  /// Of the nodes of a brick: the unknown that determines each, by its number in the brick (itself but for
+  /// nodes beyond walls), its number of all ranks, its signs, and its held components as bits.
+  struct Node {
+    std::int64_t number = -1;
+    std::int16_t from = 0;
+    std::int8_t sign[3] = {1, 1, 1};
+    std::uint8_t held = 0;
+  };
+  const Node* of_brick(Slot s) const { return nodes_.data() + static_cast<std::size_t>(s) * per_brick(); }
+
+  std::size_t own() const { return own_.size(); }
+  std::int64_t first() const { return first_; }
+  std::int64_t all() const { return all_; }
+  std::span<const double> coordinates() const { return coordinates_; }
+  /// Three bits and three displacements per own node.
+  std::span<const std::uint8_t> held() const { return held_; }
+  std::span<const double> held_displacements() const { return held_to_; }
+
+  /// Values of the own unknowns, three per node, to the records of all bricks' nodes: components 0..2 and
+  /// 4..6 (velocity and strain velocity of a MotionRecord). Collective.
+  void distribute(std::span<const double> u, AlignedDoubles& records);
+
+ private:
+  /// Where an own unknown's node is.
+  struct Own {
+    Slot slot;
+    std::int32_t node;
+  };
+  /// A brick's sums of the last exchange(); records of node_doubles.
+  const double* sums(Slot s) {
+    sums(s, buffer_.data());
+    return buffer_.data();
+  }
+  void sums(Slot s, double* to) const { sum_contributions<NodeArray::first>(*model_.grid, shared_, s, to); }
+  BrickGrid& grid() { return *model_.grid; }
+  std::size_t per_brick() const { return static_cast<std::size_t>(shared_.nodes()); }
+  bool owns(Slot s, std::span<const SharedNodes::Share> shares) const;
+  template <class F>
+  void send(F value_of_own, NodeFields fields);
+
+  Model& model_;
+  Reductions& ranks_;
+  NodeHalo& halo_;
+  SharedNodes shared_;
+  std::vector<Node> nodes_;
+  std::vector<Own> own_;
+  std::int64_t first_ = 0, all_ = 0;
+  std::vector<double> coordinates_, held_to_;
+  std::vector<std::uint8_t> held_;
+  AlignedDoubles buffer_;
+};
+
+}  // namespace mpm::core
