@@ -2,21 +2,24 @@
 // of a batch. The laws themselves are in `physics`; `mpm_point` uses the same interface.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/material/batch.hpp"
 #include "core/material/failed_component.hpp"
+#include "core/material/stress_tangent.hpp"
 
 namespace mpm::core {
 
 /// Settings of the run that affect the update of a material point.
 struct UpdateOptions {
-  int volume_update = 0;                ///< Volume@update_type, 0..4
+  int volume_update = 0;                ///< VolumeUpdate as a number
   double volume_min = 0;                ///< times the volume at reference density; 0: off
   double volume_max = 0;                ///< as volume_min
   bool viscosity_in_wave_speed = true;  ///< false for TimeStep@NotConsiderVisForCp
   bool keep_strain = false;             ///< accumulate the strain columns (volume update 4, outputs exx..)
+  bool artificial_viscosity = true;     ///< false: q = 0, in the stress and in the critical speed
 };
 
 class ConstitutiveModel {
@@ -43,6 +46,18 @@ class ConstitutiveModel {
 
   /// One step: from `gradient` and `dt` to stress, volume, energy, state, sound_speed and critical_speed.
   virtual void update(Batch& batch, const UpdateOptions& options) const = 0;
+
+  /// Why the material has no tangent, as the predicate of a sentence whose subject is the material; empty if
+  /// it has one.
+  virtual std::string tangent_fault() const { return "has no tangent"; }
+  /// The derivative of the stress at the end of the step that update() would compute from the same columns,
+  /// gradient and dt. Columns and batch are unchanged. At a kink (yield, an apex) it is that of the branch
+  /// taken; with volume update 1 the cell's strain is held constant. A lane whose volume would not remain
+  /// positive has the tangent of the step that keeps its volume. Only if tangent_fault() is empty.
+  virtual void tangent(const Batch& /*batch*/, const UpdateOptions& /*options*/,
+                       StressTangent& /*result*/) const {
+    throw std::logic_error(name() + " " + tangent_fault());
+  }
 
   /// Derived quantities for output and for the thermal summary; 0 where the law has none.
   virtual double specific_heat() const { return 0; }

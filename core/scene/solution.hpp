@@ -29,13 +29,14 @@ struct TimeStepInput {
   bool ignore_viscosity = false;  ///< the artificial viscosity does not shorten the critical step
 };
 
-/// Manual, 3.10.5.
+/// Manual, 3.10.5; the input offers 0 to 4.
 enum class VolumeUpdate {
   rate = 0,                  ///< V (1 + d eps)
   cell = 1,                  ///< as the particle's cell
   exponential = 2,           ///< V exp(d eps)
   deformation_gradient = 3,  ///< V det(dF)
   accumulated_strain = 4,    ///< V0 (1 + e11)(1 + e22)(1 + e33)
+  mid_point = 5,             ///< V det(I + dt L/2)/det(I - dt L/2): as the deformation gradient of the laws
 };
 
 struct VolumeInput {

@@ -129,12 +129,14 @@ inline constexpr int real_width = LaneTraits<Real>::width;
 // --- memory: unaligned access costs nothing on aligned data, and scratch arrays need no alignment ---------
 template <class T>
 inline T load(const double* p) {
+  static_assert(sizeof(T) == LaneTraits<T>::width * sizeof(double));
   T x;
   std::memcpy(&x, p, sizeof x);
   return x;
 }
 template <class T>
 inline void store(double* p, T x) {
+  static_assert(sizeof(T) == LaneTraits<T>::width * sizeof(double));
   std::memcpy(p, &x, sizeof x);
 }
 

@@ -1,6 +1,8 @@
 // First stage: the volume from the velocity gradient L (manual 3.10.5).
 //   de = sym(L) dt;   by type: 0 V (1 + tr de), 1 as the background cell, 2 V exp(tr de), 3 V det(I + L dt),
-//   4 V0 (1 + e_xx)(1 + e_yy)(1 + e_zz) of the accumulated strain, taken as a ratio from step to step.
+//   4 V0 (1 + e_xx)(1 + e_yy)(1 + e_zz) of the accumulated strain, taken as a ratio from step to step,
+//   5 V det(I + L dt/2)/det(I - L dt/2), of the deformation gradient in physics/material/deformation.hpp; no
+//     use where one of the two is not positive.
 // A volume that would become zero, negative or NaN keeps its old value and is counted; one outside the bounds
 // of Volume min/max is set to the bound and counted.
 //
@@ -63,6 +65,10 @@ T volume_ratio(int update_type, const core::Mat3<T>& l, double dt, const core::S
       const core::Sym3<T> old = accumulated, now = accumulated + strain;
       return (1.0 + now.xx) * (1.0 + now.yy) * (1.0 + now.zz) /
              ((1.0 + old.xx) * (1.0 + old.yy) * (1.0 + old.zz));
+    }
+    case 5: {
+      const T ahead = determinant(unit_plus(0.5 * dt, l)), behind = determinant(unit_plus(-0.5 * dt, l));
+      return core::select((ahead > 0.0) & (behind > 0.0), ahead / behind, 0.0);
     }
     default: return 1.0 + trace(strain);
   }

@@ -82,8 +82,8 @@ StrengthRules Material::strength_rules() const {
 PressureRules Material::pressure_rules(const core::UpdateOptions& options) const {
   const CommonParameters& common = laws_.common;
   return {.reference_density = laws_.reference_density,
-          .bq1 = common.bq1,
-          .bq2 = common.bq2,
+          .bq1 = options.artificial_viscosity ? common.bq1 : 0,
+          .bq2 = options.artificial_viscosity ? common.bq2 : 0,
           .initial_modulus = initial_modulus_,
           .initial_sound_speed = initial_sound_speed_,
           .constant_sound_speed = common.constant_sound_speed != 0,
