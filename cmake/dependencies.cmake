@@ -17,9 +17,13 @@ if(NOT HDF5_IS_PARALLEL)
   message(FATAL_ERROR "HDF5 in ${HDF5_INCLUDE_DIRS} is a serial build; install libhdf5-openmpi-dev or set HDF5_ROOT")
 endif()
 
-find_package(PkgConfig QUIET)
-if(PkgConfig_FOUND)
-  pkg_check_modules(PETSC QUIET IMPORTED_TARGET PETSc)
+if(MPM_WITH_PETSC)
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(PETSC IMPORTED_TARGET PETSc)
+  if(NOT PETSC_FOUND)
+    message(FATAL_ERROR "PETSc not found: install petsc-dev, set PKG_CONFIG_PATH, or build without implicit steps "
+      "(-DMPM_WITH_PETSC=OFF)")
+  endif()
 endif()
 
 if(MPM_TESTS)

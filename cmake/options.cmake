@@ -10,6 +10,7 @@ option(MPM_RACE "Build with the thread sanitizer, for the target race (clang wit
 option(MPM_WERROR "Treat warnings as errors" OFF)
 option(MPM_PRECOMPILE "Read the standard library's headers once for all sources (g++)" ON)
 option(MPM_FUZZ "Build the libFuzzer harnesses under tests/fuzz (clang)" OFF)
+option(MPM_WITH_PETSC "Build the solver of implicit steps, over PETSc" ON)
 option(MPM_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MPM_BENCHMARKS "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
 

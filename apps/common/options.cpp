@@ -10,18 +10,23 @@ namespace mpm::apps {
 ParsedOptions parse_command_line(int argc, char** argv, bool speak) {
   // The manual's options have one dash and several letters, which CLI11 would read as single-letter flags.
   std::vector<std::string> words;
+  ParsedOptions parsed;
+  RunOptions& o = parsed.options;
   for (int i = 1; i < argc; ++i) {
     std::string word = argv[i];
+    if (word == "--") {
+      o.solver_options.assign(argv + i + 1, argv + argc);
+      break;
+    }
     for (const char* old : {"-h5pt", "-lsdyna", "-rt", "-nsteps"}) {
       if (word == old) word = "-" + word;
     }
     words.push_back(word);
   }
 
-  ParsedOptions parsed;
-  RunOptions& o = parsed.options;
   CommandLine line("Material point method for extreme deformation.", "mpm_run");
   line.footer(
+      "Options after -- go to PETSc, the solver of implicit steps: -- -ksp_type cg -pc_type gamg\n"
       "Exit codes: 0 done, 2 wrong input, 3 numerical failure, 4 stopped early (a restart file was written), "
       "5 file error (also: out of file descriptors), 6 out of memory or threads.\n"
       "Ctrl+C, SIGTERM and SIGUSR1 write a restart file and exit with code 4. Under mpirun use\n"

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace mpm::apps {
 
@@ -15,6 +16,7 @@ struct RunOptions {
   std::optional<std::string> restart_input;  ///< -rt: another Grid, Solution, Output, Deactive
   std::optional<long> status_rows;           ///< -nsteps: stop after this many rows of the .sta file
   std::optional<double> max_wall_time;       ///< seconds; then a restart file is written
+  std::vector<std::string> solver_options;   ///< after --: PETSc's, for implicit steps
 };
 
 /// Exit codes of the process.

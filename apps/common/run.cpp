@@ -32,6 +32,7 @@
 #include "io/output/summary.hpp"
 #include "io/restart/restart.hpp"
 #include "parallel/communication.hpp"
+#include "parallel/implicit/solver_library.hpp"
 #include "physics/material/material.hpp"
 
 namespace mpm::apps {
@@ -173,6 +174,7 @@ class Run {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
     start_threads(threads_, communication_);
+    start_solver(world);
     core::check_decomposition(case_.scene->decomposition, communication_.reductions.size());
     model_ = core::prepare_model(case_.scene, physics::make_materials(*case_.scene, registry),
                                  io::columns_for(case_.scene->output));
@@ -189,6 +191,10 @@ class Run {
     }
     // The input is checked completely before anything is written.
     open_log();
+    if (newton_)
+      log_->say(
+          "implicit   results agree to the solver's tolerance on any ranks and threads; the same bits are "
+          "promised for explicit steps alone");
     for (const std::string& notice : notices) log_->warn("{}", notice);
     if (case_.restart)
       log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step,
@@ -220,6 +226,10 @@ class Run {
       }
       if (code == stopped_early) save();
       outputs_->finish(model_, communication_);
+    } catch (const parallel::UnknownSolverOptions& unknown) {
+      status = "failed";
+      reason = unknown.what();
+      code = input_error;
     } catch (const core::NumericalFailure& failure) {
       status = "failed";
       reason = failure.what();
@@ -235,6 +245,22 @@ class Run {
   }
 
  private:
+  /// The solver of implicit steps, where the scene has them. Collective.
+  void start_solver(const parallel::Communicator& world) {
+    const core::SolutionInput& solution = case_.scene->solution;
+    if (solution.integration != core::Integration::implicit) {
+      if (!options_.solver_options.empty())
+        throw core::InputErrors(
+            core::SourceLocation{options_.job, 0}, options_.solver_options.front(),
+            "options after -- are for PETSc, which only implicit steps use: remove them, or set "
+            "Solution@Integration to impl");
+      return;
+    }
+    if (const std::string why = parallel::why_no_newton_solver(); !why.empty())
+      throw core::InputErrors(solution.source, "Integration", "\"impl\" is not available: " + why);
+    newton_ = parallel::make_newton_solver(world, options_.solver_options);
+    communication_.newton = newton_.get();
+  }
   /// Takes the job lock: from here on the files of the job belong to this run.
   void open_log() {
     io::together(communication_, [&] {
@@ -306,6 +332,8 @@ class Run {
         stepper_->request_stop();
       }
       stepper_->step();
+      if (const std::string words = stepper_->words_of_step(); !words.empty())
+        log_->note("implicit   {}", words);
       particle_steps_ += static_cast<double>(model_.local_particles());
       watch_->after_step(model_, stepper_->incidents(), communication_, *log_);
       outputs_->after_step(model_, communication_);
@@ -418,6 +446,7 @@ class Run {
 
   RunOptions options_;
   WallClock clock_;
+  std::unique_ptr<core::NewtonSolver> newton_;
   parallel::MpiCommunication communication_;
   Case case_;
   int threads_ = 1;

@@ -132,8 +132,8 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
     for (int a = 0; a < 3; ++a) {
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
       const double inertia = at.mass * (rule_.inertia * u[k] - rule_.start * at.velocity[a]);
-      const double drag = damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a]) +
-                                     rule_.push * at.force[a]);
+      const double drag =
+          damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a]) + rule_.push * at.force[a]);
       at.reaction[a] = inertia + drag - rule_.carry * at.force[a] - at.external[a] - sum[4 + a];
       size += std::abs(inertia) + std::abs(at.external[a]);
       r[k] = held(i, a) ? held_diagonal_ * (u[k] - unknowns_.held_displacements()[k]) : at.reaction[a];
@@ -181,11 +181,14 @@ void ImplicitIntegrator::solve() {
     const std::string norms = fmt::format("{:.2e}", fmt::join(report.norms, " "));
     if (why.empty()) {
       solution_ = std::move(u);
-      words_ = fmt::format("step {}: time {:.6g}, length {:.4g}; {} unknowns; residual {}; {} linear iterations{}",
-                           model_.clock.step + 1, model_.clock.time + dt, dt, 3 * unknowns_.all(), norms,
-                           report.linear_iterations, cuts);
-      if (report.iterations <= easy) next_ = std::min(dt * growth, input_.max_step.value_or(length));
-      else next_ = dt;
+      words_ =
+          fmt::format("step {}: time {:.6g}, length {:.4g}; {} unknowns; residual {}; {} linear iterations{}",
+                      model_.clock.step + 1, model_.clock.time + dt, dt, 3 * unknowns_.all(), norms,
+                      report.linear_iterations, cuts);
+      if (report.iterations <= easy)
+        next_ = std::min(dt * growth, input_.max_step.value_or(length));
+      else
+        next_ = dt;
       return;
     }
     cuts += fmt::format("; shortened from {:.4g}: {} (residual {})", dt, why, norms);
@@ -234,8 +237,7 @@ void ImplicitIntegrator::move() {
       const double u = solution_[k], push = at.mass > cutoff ? rule_.push * at.force[a] / at.mass : 0;
       work += at.external[a] * u;
       if (held(i, a)) work += 0.5 * (at.reaction[a] - at.force[a]) * u;
-      const double v = held(i, a) ? u / model_.clock.dt
-                                  : rule_.gain * u + rule_.keep * at.velocity[a] + push;
+      const double v = held(i, a) ? u / model_.clock.dt : rule_.gain * u + rule_.keep * at.velocity[a] + push;
       // As in explicit steps, a wall acts on the particles through their stress alone.
       const bool on_wall = held(i, a) && unknowns_.held_displacements()[k] == 0;
       gained[k] = at.mass > cutoff && !on_wall ? v - at.velocity[a] : 0;

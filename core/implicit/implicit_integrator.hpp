@@ -35,10 +35,10 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   /// State of an own node in the step; vectors of three.
   struct NodeState {
     double mass;
-    double velocity[3];   ///< at the start
-    double external[3];   ///< force
-    double force[3];      ///< all, at the start
-    double reaction[3];   ///< residual of the last evaluation, also of held components
+    double velocity[3];  ///< at the start
+    double external[3];  ///< force
+    double force[3];     ///< all, at the start
+    double reaction[3];  ///< residual of the last evaluation, also of held components
   };
 
   // NonlinearProblem.
@@ -69,9 +69,9 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::unique_ptr<ImplicitPasses> passes_;
   NodeUnknowns unknowns_;
   TimeRule rule_;
-  bool moves_bodies_ = false;   ///< some body has a prescribed motion
-  double held_diagonal_ = 0;    ///< of the Jacobian's held components
-  double next_ = 0;             ///< length of the next step
+  bool moves_bodies_ = false;  ///< some body has a prescribed motion
+  double held_diagonal_ = 0;   ///< of the Jacobian's held components
+  double next_ = 0;            ///< length of the next step
   double force_scale_ = 0;
   std::vector<NodeState> state_;
   std::vector<double> solution_;

@@ -1,6 +1,6 @@
-// The passes of an implicit step (implicit_passes.hpp) with shape functions S. They use the functions' general
-// form, particle by particle: the linear solver takes most of the time.
-// Instantiated in implicit_passes_<...>.cpp.
+// The passes of an implicit step (implicit_passes.hpp) with shape functions S. They use the functions'
+// general form, particle by particle: the linear solver takes most of the time. Instantiated in
+// implicit_passes_<...>.cpp.
 #pragma once
 
 #include <atomic>
@@ -25,7 +25,11 @@ template <ShapePolicy S>
 class ImplicitPassesWith final : public ImplicitPasses {
  public:
   explicit ImplicitPassesWith(Model& model)
-      : model_(model), loads_(model), failed_(model), gravity_(model.scene->solution.gravity) {
+      : model_(model),
+        loads_(model),
+        failed_(model),
+        gravity_(model.scene->solution.gravity),
+        differences_(model.scene->solution.implicit && model.scene->solution.implicit->difference_tangent) {
 #pragma omp parallel
     flush_denormals_to_zero();
     for (int t = 0; t < omp_get_max_threads(); ++t) scratch_.push_back(std::make_unique<Scratch>());
@@ -103,6 +107,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   Loads loads_;
   FailedComponent failed_;
   Vec3<double> gravity_;
+  bool differences_;  ///< derivatives of the stress by differences
   double dt_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratch_;          ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
@@ -121,8 +126,8 @@ void ImplicitPassesWith<S>::for_each_batch(Slot s, const BrickFrame& frame, Bloc
     BlockPool& pool = *body.pool;
     batch.layout = &pool.layout();
     const auto doubles = static_cast<std::size_t>(block_lanes * pool.layout().columns());
-    if (which == Blocks::copies && at.copies.size() < batch_blocks * doubles)
-      at.copies.resize(batch_blocks * doubles);
+    if (which == Blocks::copies && at.copies.size() < 2 * batch_blocks * doubles)
+      at.copies.resize(2 * batch_blocks * doubles);  // and a second copy, for differences
     for (std::size_t first = 0; first < tile.blocks.size(); first += batch_blocks) {
       batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, tile.blocks.size() - first));
       batch.particles =
@@ -263,7 +268,12 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
       if (displacements != nullptr) {
         take_gradients(frame, at);
         set_midstep_gradient(at.gradient, batch);
-        body.model->tangent(batch, model_.options, at.stress_tangent);
+        if (differences_)
+          difference_tangent(*body.model, model_.options, batch,
+                             at.copies.data() + batch_blocks * block_lanes * batch.layout->columns(),
+                             at.stress_tangent);
+        else
+          body.model->tangent(batch, model_.options, at.stress_tangent);
         body.model->update(batch, model_.options);
         nodal_stress(at.gradient, batch, at.stress);
         force_tangent(at.gradient, batch, at.stress, at.stress_tangent, at.tangent);
@@ -288,8 +298,8 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
 }
 
 template <ShapePolicy S>
-void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTile& tile, int b, double* block,
-                                       int used, bool dynamic, Scratch& at) {
+void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTile& tile, int b,
+                                       double* block, int used, bool dynamic, Scratch& at) {
   const ColumnLayout& layout = *at.batch.layout;
   const Place& place = at.places[b];
   const auto velocity = [&](int a) { return block + layout.offset(next(Column::velocity_x, a)); };
@@ -348,7 +358,8 @@ void ImplicitPassesWith<S>::move_particles(const AlignedDoubles& displacements,
               std::copy_n(batch.sound_speed + block_lanes * b, block_lanes,
                           batch.column(Column::sound_speed, b));
           }
-          at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
+          at.statistics.fastest =
+              fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
           const auto c = static_cast<int>(&tile - model_.grid->brick(s).tiles.data());
           for (int b = 0; b < batch.blocks; ++b) {
             const std::size_t at_block = first + static_cast<std::size_t>(b);

@@ -79,7 +79,8 @@ std::vector<double> NodeUnknowns::number() {
     all_ += count[static_cast<std::size_t>(r)];
   }
   // A double holds node numbers up to 2^53 exactly.
-  send([&](std::size_t i, double* record) { record[0] = static_cast<double>(first_ + static_cast<std::int64_t>(i) + 1); },
+  send([&](std::size_t i,
+           double* record) { record[0] = static_cast<double>(first_ + static_cast<std::int64_t>(i) + 1); },
        node_field::momentum);
   for (Slot s = 0; s < grid().owned(); ++s) {
     const double* sum = sums(s);
@@ -116,15 +117,13 @@ void NodeUnknowns::hold_moved(double dt) {
       // A wall that fixes a component goes before.
       const auto before = of[n].held;
       of[n].held = 7;
-      for (; i < own_.size() && own_[i].slot == s && own_[i].node < n; ++i) {
-      }
+      for (; i < own_.size() && own_[i].slot == s && own_[i].node < n; ++i) {}
       if (i == own_.size() || own_[i].slot != s || own_[i].node != n) continue;
       held_[i] = 7;
       for (int a = 0; a < 3; ++a)
         if ((before >> a & 1) == 0) held_to_[3 * i + static_cast<std::size_t>(a)] = dt * record[a] / moved;
     }
-    for (; i < own_.size() && own_[i].slot == s; ++i) {
-    }
+    for (; i < own_.size() && own_[i].slot == s; ++i) {}
   }
 }
 

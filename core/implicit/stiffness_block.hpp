@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "core/implicit/node_unknowns.hpp"
 #include "core/implicit/newton_solver.hpp"
+#include "core/implicit/node_unknowns.hpp"
 
 namespace mpm::core {
 
@@ -34,8 +34,8 @@ class StiffnessBlock {
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j) w.slope[k][j] += n.sign[k] * slope[j];
   }
-  /// Adds grad S_a . d . grad S_b of the nodes since begin_particle(); d(9 (3 i + j) + 3 k + l) the derivative of
-  /// P_ij by G_kl.
+  /// Adds grad S_a . d . grad S_b of the nodes since begin_particle(); d(9 (3 i + j) + 3 k + l) the
+  /// derivative of P_ij by G_kl.
   template <class D>
   void add_particle(D d);
 

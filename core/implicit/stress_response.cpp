@@ -47,11 +47,42 @@ bool set_midstep_gradient(const Rows9& displacement_gradient, Batch& batch) {
   return keep_orientation;
 }
 
+void difference_tangent(const ConstitutiveModel& material, const UpdateOptions& options, Batch& batch,
+                        double* room, StressTangent& result) {
+  // The error is of the order of step^2 in a smooth law, and rounding / step of the stress.
+  constexpr double step = 1e-6;
+  const auto doubles = static_cast<std::size_t>(block_lanes * batch.layout->columns());
+  const auto restore = [&](bool keep) {
+    for (int b = 0; b < batch.blocks; ++b) {
+      double* const copy = room + static_cast<std::size_t>(b) * doubles;
+      std::copy_n(keep ? batch.block[b] : copy, doubles, keep ? copy : batch.block[b]);
+    }
+  };
+  restore(true);
+  const double change = step / batch.dt;
+  for (int kl = 0; kl < 9; ++kl) {
+    for (int i = 0; i < 6; ++i) std::fill_n(result.d[i][kl], batch_particles, 0.0);
+    for (const double sign : {1.0, -1.0}) {
+      for (double& g : batch.gradient[kl]) g += sign * change;
+      material.update(batch, options);
+      for (double& g : batch.gradient[kl]) g -= sign * change;
+      for_each_row(batch, [&](int row) {
+        const Sym3<Real> s = cauchy_stress<Real>(batch, row);
+        const Real each[6] = {s.xx, s.yy, s.zz, s.xy, s.yz, s.xz};
+        for (int i = 0; i < 6; ++i) {
+          double* const to = result.d[i][kl] + row;
+          store(to, load<Real>(to) + Real(0.5 * sign / step) * each[i]);
+        }
+      });
+      restore(false);
+    }
+  }
+}
+
 void nodal_stress(const Rows9& displacement_gradient, Batch& batch, Rows9& p) {
   for_each_row(batch, [&](int row) {
     const Mat3<Real> f = plus_unit(load_rows<Real>(displacement_gradient, row), 1.0);
-    store_rows(volume_of<Real>(batch, row) *
-                   (full(cauchy_stress<Real>(batch, row)) * transposed(inverse(f))),
+    store_rows(volume_of<Real>(batch, row) * (full(cauchy_stress<Real>(batch, row)) * transposed(inverse(f))),
                p, row);
   });
 }

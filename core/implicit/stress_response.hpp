@@ -12,6 +12,7 @@
 #pragma once
 
 #include "core/material/batch.hpp"
+#include "core/material/constitutive_model.hpp"
 #include "core/material/stress_tangent.hpp"
 #include "core/simd/math.hpp"
 
@@ -46,6 +47,11 @@ inline Mat3<T> inverse(const Mat3<T>& m) {
 /// h over dt, into batch.gradient, from the displacement gradients. Returns whether all particles keep their
 /// orientation; those that do not, and the lanes out of use, get no strain.
 bool set_midstep_gradient(const Rows9& displacement_gradient, Batch& batch);
+
+/// The stress' derivative by central differences of update(): for laws without a tangent of their own. The
+/// batch's blocks hold the state at the start of the step, before and after. `room`: for a copy of them.
+void difference_tangent(const ConstitutiveModel& material, const UpdateOptions& options, Batch& batch,
+                        double* room, StressTangent& result);
 
 /// P from the updated columns of the batch.
 void nodal_stress(const Rows9& displacement_gradient, Batch& batch, Rows9& p);

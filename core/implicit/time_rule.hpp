@@ -19,8 +19,8 @@ struct TimeRule {
   double gain = 0, keep = 0, push = 0;
 
   static TimeRule newmark(double beta, double gamma, double dt) {
-    return {1 / (beta * dt * dt),  1 / (beta * dt), 1 / (2 * beta) - 1,
-            gamma / (beta * dt),   1 - gamma / beta, dt * (1 - gamma / (2 * beta))};
+    return {1 / (beta * dt * dt), 1 / (beta * dt),  1 / (2 * beta) - 1,
+            gamma / (beta * dt),  1 - gamma / beta, dt * (1 - gamma / (2 * beta))};
   }
   static TimeRule backward_euler(double dt) { return {1 / (dt * dt), 1 / dt, 0, 1 / dt, 0, 0}; }
   static TimeRule quasistatic() { return {}; }

@@ -75,6 +75,7 @@ struct ImplicitInput {
   std::optional<double> absolute_tolerance;
   int max_newton = 20;
   bool matrix_free = false;
+  bool difference_tangent = false;  ///< derivatives of the stress by differences
 };
 
 struct FemInput {

@@ -76,12 +76,35 @@ ColumnSet columns_of_expressions(const BodyInput& input) {
   return columns;
 }
 
+/// Implicit steps need the derivative of the stress, and move rigid bodies as the input says.
+void refuse_implicit(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
+  if (scene.solution.integration != Integration::implicit) return;
+  if (material.rigid()) {
+    if (input.prescribed_velocity || input.constrain_rigid_position) return;
+    throw InputErrors(
+        input.source, "Body",
+        fmt::format("rigid body '{}' has no prescribed motion: with implicit steps give it a velocity "
+                    "(vx, vy, vz with PrescribedVelocity; 0 0 0 holds it)",
+                    input.name));
+  }
+  const auto& implicit = scene.solution.implicit;
+  if (implicit && implicit->difference_tangent) return;
+  const std::string fault = material.tangent_fault();
+  if (!fault.empty())
+    throw InputErrors(
+        input.source, "Body",
+        fmt::format("material '{}' of body '{}' is not available with implicit steps: {}. Implicit@jacobian "
+                    "\"differences\" takes its derivatives by differences",
+                    material.name(), input.name, fault));
+}
+
 }  // namespace
 
 void check_material_of(const Scene& scene, const BodyInput& input, const ConstitutiveModel& material) {
   ErrorList wrong;
   wrong.collect([&] { refuse_bar_material(scene, input, material); });
   wrong.collect([&] { refuse_temperature(input, material); });
+  wrong.collect([&] { refuse_implicit(scene, input, material); });
   wrong.raise_if_any();
 }
 
@@ -95,6 +118,11 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
   model.options.volume_update = static_cast<int>(solution.volume.update);
   model.options.volume_min = solution.volume.min.value_or(0);
   model.options.volume_max = solution.volume.max.value_or(0);
+  if (solution.integration == Integration::implicit) {
+    // Exact for steps of any size; the artificial viscosity is a remedy of explicit shocks.
+    model.options.volume_update = static_cast<int>(VolumeUpdate::mid_point);
+    model.options.artificial_viscosity = false;
+  }
   model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
   model.options.keep_strain =
       solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);

@@ -98,8 +98,8 @@ class BoundaryFaces {
   void fill(double* record) const;
   /// Sets component `i` of the outer nodes' records to that of their mirror image.
   void mirror(int i, double* record) const;
-  /// f(outer node, mirror image, whether each component is reversed), in the order of fill(): the mirror image
-  /// may be an outer node of another face, passed before. Of fixed and symmetry faces.
+  /// f(outer node, mirror image, whether each component is reversed), in the order of fill(): the mirror
+  /// image may be an outer node of another face, passed before. Of fixed and symmetry faces.
   void for_each_tie(const std::function<void(int, int, const bool (&)[3])>& f) const;
 
  private:

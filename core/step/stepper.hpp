@@ -29,6 +29,8 @@ class Stepper {
   void step();
 
   const std::vector<Phase>& phases() const { return phases_; }
+  /// What the integrator has to say of the last step, for the log; empty for explicit steps.
+  std::string words_of_step() const { return integrator_->words_of_step(); }
 
   /// Requests that the run stops; any rank may, at any time.
   void request_stop() { stop_requested_ = true; }

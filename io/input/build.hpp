@@ -43,6 +43,8 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
 void check_method(const Node& root, const core::Scene& scene, const BuildContext& context);
 /// Reports what contact cannot do.
 void check_contact(const Node& root, const core::Scene& scene, const BuildContext& context);
+/// What implicit steps cannot do.
+void check_implicit(const Node& root, const core::Scene& scene, const BuildContext& context);
 core::OutputInput build_output(const Node& root, double end_time, const BuildContext& context);
 core::DecompositionInput build_decomposition(const Node& root, const BuildContext& context);
 core::FixedLayer build_fixed_layer(const Node& node, const BuildContext& context);

@@ -219,7 +219,9 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
     for (const Node& load : nodes[i].children("Traction"))
       load.report(context.diagnostics, "has no effect on a rigid body; use PrescribedAcceleration");
     check_rigid_expressions(*bodies[i], nodes[i], context);
-    if (deformable == nullptr || scene.contact.enable) continue;
+    // The nodes of implicit steps follow a rigid body's motion (core/implicit/node_unknowns.hpp).
+    const bool implicit = scene.solution.integration == core::Integration::implicit;
+    if (deformable == nullptr || scene.contact.enable || implicit) continue;
     nodes[i].report(
         context.diagnostics, "material",
         fmt::format("a rigid body acts on others only through contact, which is off: it "

@@ -87,6 +87,7 @@ core::WarnInput build_warn(const Node& node) {
 core::ImplicitInput build_implicit(const Node& node, const BuildContext& context) {
   core::ImplicitInput implicit;
   implicit.quasistatic = node.type() == "quasistatic";
+  implicit.backward_euler = node.word("rule") == "backward_euler";
   implicit.newmark_beta = node.real("newmark_beta");
   implicit.newmark_gamma = node.real("newmark_gamma");
   implicit.time_step = node.given_real("time_step");
@@ -96,6 +97,17 @@ core::ImplicitInput build_implicit(const Node& node, const BuildContext& context
   implicit.absolute_tolerance = node.given_real("atol");
   implicit.max_newton = node.small_integer("max_newton");
   implicit.matrix_free = node.word("jacobian") == "matrixfree";
+  implicit.difference_tangent = node.word("jacobian") == "differences";
+  if (4 * implicit.newmark_beta < 2 * implicit.newmark_gamma - 1e-12)
+    node.report(context.diagnostics, "newmark_beta",
+                fmt::format("steps are stable without limit only from half of newmark_gamma, {}",
+                            0.5 * implicit.newmark_gamma));
+  if (implicit.min_step && implicit.time_step && *implicit.time_step < *implicit.min_step)
+    node.report(context.diagnostics, "time_step",
+                fmt::format("expected at least min_step, {}", *implicit.min_step));
+  if (implicit.time_step && implicit.max_step && *implicit.max_step < *implicit.time_step)
+    node.report(context.diagnostics, "max_step",
+                fmt::format("expected at least time_step, {}", *implicit.time_step));
   if (implicit.min_step && implicit.max_step && *implicit.max_step < *implicit.min_step)
     node.report(context.diagnostics, "max_step",
                 fmt::format("expected at least min_step, {}", *implicit.min_step));

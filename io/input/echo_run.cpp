@@ -113,6 +113,7 @@ void echo_watches(XmlWriter& w, const core::SolutionInput& solution) {
 void echo_implicit(XmlWriter& w, const core::ImplicitInput& implicit) {
   const auto scope = w.element("Implicit");
   w.text("type", implicit.quasistatic ? "quasistatic" : "dynamic");
+  w.text("rule", implicit.backward_euler ? "backward_euler" : "newmark");
   w.number("newmark_beta", implicit.newmark_beta);
   w.number("newmark_gamma", implicit.newmark_gamma);
   w.maybe("time_step", implicit.time_step);
@@ -121,7 +122,9 @@ void echo_implicit(XmlWriter& w, const core::ImplicitInput& implicit) {
   w.number("rtol", implicit.relative_tolerance);
   w.maybe("atol", implicit.absolute_tolerance);
   w.integer("max_newton", implicit.max_newton);
-  w.text("jacobian", implicit.matrix_free ? "matrixfree" : "assembled");
+  w.text("jacobian", implicit.matrix_free          ? "matrixfree"
+                     : implicit.difference_tangent ? "differences"
+                                                   : "assembled");
 }
 
 void echo_fem(XmlWriter& w, const core::FemInput& fem) {

@@ -49,12 +49,13 @@ core::Scene build(const Node& root, const BuildContext& context) {
   scene.work_planes = build_work_planes(root, context);
   scene.grid = build_grid(root, context);
   scene.contact = build_contact(root);
+  scene.solution = build_solution(root, context);
   scene.components = build_components(root, scene, context);
   check_shapes(root, scene, context);
   scene.detonations = build_detonations(root, context);
-  scene.solution = build_solution(root, context);
   check_method(root, scene, context);
   check_contact(root, scene, context);
+  check_implicit(root, scene, context);
   scene.output = build_output(root, scene.solution.end_time, context);
   scene.decomposition = build_decomposition(root, context);
   return scene;

@@ -1,0 +1,359 @@
+// Newton's method by PETSc's SNES (core/implicit/newton_solver.hpp), in a library of its own that is loaded
+// when a scene is implicit: explicit runs neither load nor start PETSc.
+//
+// Small problems are solved directly (MUMPS); larger ones by GMRES with smoothed aggregation multigrid
+// (GAMG), which is told the rigid motions. All can be replaced by PETSc's own options, after -- on the
+// command line.
+#include <cmath>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <petscsnes.h>
+
+#include "core/implicit/newton_solver.hpp"
+#include "parallel/implicit/solver_library.hpp"
+
+namespace mpm::parallel {
+
+namespace {
+
+using core::BlockMatrix;
+using core::NewtonOptions;
+using core::NewtonReport;
+using core::NonlinearProblem;
+
+/// Unknowns up to which systems are solved directly.
+constexpr std::int64_t direct_up_to = 40000;
+
+/// PETSc's description of the first error, instead of a stack from every rank.
+std::string first_error;  // NOLINT: PETSc's handlers have no state of their own that survives
+
+PetscErrorCode keep_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
+                          PetscErrorType type, const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL || first_error.empty())
+    first_error = fmt::format("{} (in PETSc's {})", message != nullptr ? message : "", function);
+  return code;
+}
+
+void check(PetscErrorCode code) {
+  if (code == 0) return;
+  const std::string what =
+      first_error.empty() ? fmt::format("PETSc error {}", static_cast<int>(code)) : first_error;
+  first_error.clear();
+  throw std::runtime_error("PETSc: " + what);
+}
+
+/// Adds to a matrix of PETSc; without values, to its structure.
+class MatrixWriter final : public BlockMatrix {
+ public:
+  explicit MatrixWriter(Mat matrix) : matrix_(matrix) {}
+  void add(std::span<const std::int64_t> nodes, const double* values) override {
+    rows_.assign(nodes.begin(), nodes.end());
+    if (values == nullptr) {
+      zeros_.resize(std::max(zeros_.size(), 9 * nodes.size() * nodes.size()), 0.0);
+      values = zeros_.data();
+    }
+    const auto n = static_cast<PetscInt>(rows_.size());
+    check(MatSetValuesBlocked(matrix_, n, rows_.data(), n, rows_.data(), values, ADD_VALUES));
+  }
+
+ private:
+  Mat matrix_;
+  std::vector<PetscInt> rows_;
+  std::vector<double> zeros_;
+};
+
+/// Releases a PETSc object at the end of a scope.
+template <class Object, PetscErrorCode (*destroy)(Object*)>
+struct Owned {
+  Object object = nullptr;
+  Owned() = default;
+  Owned(const Owned&) = delete;
+  Owned& operator=(const Owned&) = delete;
+  ~Owned() { destroy(&object); }
+  Object* operator&() { return &object; }
+  operator Object() const { return object; }
+};
+using OwnedVec = Owned<Vec, VecDestroy>;
+using OwnedMat = Owned<Mat, MatDestroy>;
+using OwnedSnes = Owned<SNES, SNESDestroy>;
+using OwnedNullSpace = Owned<MatNullSpace, MatNullSpaceDestroy>;
+
+class PetscSolver final : public core::NewtonSolver {
+ public:
+  PetscSolver(MPI_Comm comm, const std::vector<std::string>& options) {
+    check(static_cast<PetscErrorCode>(MPI_Comm_dup(comm, &comm_)));
+    PETSC_COMM_WORLD = comm_;
+    words_.push_back("mpm");
+    words_.insert(words_.end(), options.begin(), options.end());
+    for (std::string& w : words_) pointers_.push_back(w.data());
+    pointers_.push_back(nullptr);
+    int argc = static_cast<int>(words_.size());
+    char** argv = pointers_.data();
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
+    PetscOptionsSetValue(nullptr, "-options_left", "no");
+    check(PetscInitialize(&argc, &argv, nullptr, nullptr));
+    check(PetscPushErrorHandler(keep_error, nullptr));
+    given_ = !options.empty();
+  }
+  ~PetscSolver() override {
+    PetscPopErrorHandler();
+    PetscFinalize();
+    MPI_Comm_free(&comm_);
+  }
+  PetscSolver(const PetscSolver&) = delete;
+  PetscSolver& operator=(const PetscSolver&) = delete;
+
+  NewtonReport solve(NonlinearProblem& problem, std::span<double> u, const NewtonOptions& options) override;
+  std::string description() const override { return description_; }
+
+ private:
+  /// What PETSc's callbacks see of a solve.
+  struct Solve {
+    NonlinearProblem& problem;
+    const NewtonOptions& options;
+    NewtonReport report;
+    std::exception_ptr failure;  ///< must not pass through PETSc
+    Vec solution_update = nullptr;
+  };
+  /// f(), whose exceptions are kept.
+  template <class F>
+  static PetscErrorCode guarded(Solve& solve, F f) {
+    try {
+      f();
+      return 0;
+    } catch (...) {
+      if (!solve.failure) solve.failure = std::current_exception();
+      return PETSC_ERR_LIB;
+    }
+  }
+  static PetscErrorCode residual(SNES, Vec u, Vec r, void* context);
+  static PetscErrorCode jacobian(SNES, Vec u, Mat, Mat matrix, void* context);
+  static PetscErrorCode converged(SNES, PetscInt iteration, PetscReal, PetscReal step, PetscReal norm,
+                                  SNESConvergedReason* reason, void* context);
+
+  void allocate(NonlinearProblem& problem, Mat* matrix) const;
+  static void give_rigid_motions(const NonlinearProblem& problem, Mat matrix);
+  void choose_linear_solver(SNES snes, std::int64_t unknowns);
+  void refuse_unused_options();
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  std::vector<std::string> words_;
+  std::vector<char*> pointers_;
+  std::string description_;
+  bool given_ = false, looked_ = false;
+};
+
+PetscErrorCode PetscSolver::residual(SNES, Vec u, Vec r, void* context) {
+  Solve& solve = *static_cast<Solve*>(context);
+  return guarded(solve, [&] {
+    const PetscScalar* in = nullptr;
+    PetscScalar* out = nullptr;
+    PetscInt n = 0;
+    check(VecGetLocalSize(u, &n));
+    check(VecGetArrayRead(u, &in));
+    check(VecGetArray(r, &out));
+    const auto size = static_cast<std::size_t>(n);
+    if (!solve.problem.residual({in, size}, {out, size})) {
+      // So large that a line search goes back from here, and still finite when squared.
+      for (std::size_t i = 0; i < size; ++i) out[i] = 1e100;
+    }
+    check(VecRestoreArray(r, &out));
+    check(VecRestoreArrayRead(u, &in));
+  });
+}
+
+PetscErrorCode PetscSolver::jacobian(SNES, Vec u, Mat shell, Mat matrix, void* context) {
+  Solve& solve = *static_cast<Solve*>(context);
+  return guarded(solve, [&] {
+    const double start = MPI_Wtime();
+    const PetscScalar* in = nullptr;
+    PetscInt n = 0;
+    check(VecGetLocalSize(u, &n));
+    check(VecGetArrayRead(u, &in));
+    check(MatZeroEntries(matrix));
+    MatrixWriter writer(matrix);
+    solve.problem.jacobian({in, static_cast<std::size_t>(n)}, writer);
+    check(VecRestoreArrayRead(u, &in));
+    check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+    if (shell != matrix) {
+      check(MatAssemblyBegin(shell, MAT_FINAL_ASSEMBLY));
+      check(MatAssemblyEnd(shell, MAT_FINAL_ASSEMBLY));
+    }
+    solve.report.assembly_seconds += MPI_Wtime() - start;
+  });
+}
+
+/// |r| against the forces that balance in it; or steps that are rounding errors.
+PetscErrorCode PetscSolver::converged(SNES snes, PetscInt iteration, PetscReal size, PetscReal step,
+                                      PetscReal norm, SNESConvergedReason* reason, void* context) {
+  Solve& solve = *static_cast<Solve*>(context);
+  const double scale = solve.problem.force_scale();
+  const double relative = norm == 0 ? 0 : scale > 0 ? norm / scale : norm;
+  solve.report.norms.push_back(relative);
+  *reason = SNES_CONVERGED_ITERATING;
+  if (!std::isfinite(norm) || norm >= 1e99)
+    *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (norm <= solve.options.relative_tolerance * scale)
+    *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  else if (norm <= solve.options.absolute_tolerance)
+    *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (iteration > 0 && step <= 1e-14 * size)
+    *reason = SNES_CONVERGED_SNORM_RELATIVE;
+  else if (iteration >= solve.options.max_iterations)
+    *reason = SNES_DIVERGED_MAX_IT;
+  (void)snes;
+  return 0;
+}
+
+/// A matrix with room for the problem's entries.
+void PetscSolver::allocate(NonlinearProblem& problem, Mat* matrix) const {
+  const auto rows = static_cast<PetscInt>(3 * problem.own_nodes());
+  const auto all = static_cast<PetscInt>(3 * problem.all_nodes());
+  OwnedMat places;
+  for (Mat* m : {&places, matrix}) {
+    check(MatCreate(comm_, m));
+    check(MatSetSizes(*m, rows, rows, all, all));
+    check(MatSetBlockSize(*m, 3));
+  }
+  check(MatSetType(places, MATPREALLOCATOR));
+  check(MatSetUp(places));
+  MatrixWriter writer(places);
+  problem.structure(writer);
+  for (std::int64_t i = 0; i < problem.own_nodes(); ++i) {
+    const std::int64_t number = problem.first_node() + i;
+    writer.add(std::span(&number, 1), nullptr);
+  }
+  check(MatAssemblyBegin(places, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(places, MAT_FINAL_ASSEMBLY));
+  check(MatSetType(*matrix, MATAIJ));
+  check(MatSetFromOptions(*matrix));
+  check(MatPreallocatorPreallocate(places, PETSC_TRUE, *matrix));
+}
+
+void PetscSolver::give_rigid_motions(const NonlinearProblem& problem, Mat matrix) {
+  OwnedVec coordinates;
+  check(MatCreateVecs(matrix, &coordinates, nullptr));
+  check(VecSetBlockSize(coordinates, 3));
+  PetscScalar* to = nullptr;
+  check(VecGetArray(coordinates, &to));
+  const std::span<const double> from = problem.coordinates();
+  std::copy(from.begin(), from.end(), to);
+  check(VecRestoreArray(coordinates, &to));
+  OwnedNullSpace rigid;
+  check(MatNullSpaceCreateRigidBody(coordinates, &rigid));
+  check(MatSetNearNullSpace(matrix, rigid));
+}
+
+void PetscSolver::choose_linear_solver(SNES snes, std::int64_t unknowns) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPGetPC(ksp, &pc));
+  if (unknowns <= direct_up_to) {
+    check(KSPSetType(ksp, KSPPREONLY));
+    check(PCSetType(pc, PCLU));
+    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  } else {
+    check(KSPSetType(ksp, KSPGMRES));
+    check(KSPGMRESSetRestart(ksp, 60));
+    check(KSPSetTolerances(ksp, 1e-5, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+    check(PCSetType(pc, PCGAMG));
+  }
+  check(SNESSetFromOptions(snes));
+  KSPType solver = nullptr;
+  PCType preconditioner = nullptr;
+  check(KSPGetType(ksp, &solver));
+  check(PCGetType(pc, &preconditioner));
+  description_ = fmt::format("PETSc {}.{}.{}: {} with {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
+                             PETSC_VERSION_SUBMINOR, solver, preconditioner);
+}
+
+/// After the first solve all options that PETSc knows have been read.
+void PetscSolver::refuse_unused_options() {
+  if (!given_ || looked_) return;
+  looked_ = true;
+  PetscInt n = 0;
+  char **names = nullptr, **values = nullptr;
+  check(PetscOptionsLeftGet(nullptr, &n, &names, &values));
+  std::string unused;
+  for (PetscInt i = 0; i < n; ++i)
+    if (std::string(names[i]) != "options_left" && std::string(names[i]) != "no_signal_handler")
+      unused += fmt::format("{}-{}", unused.empty() ? "" : ", ", names[i]);
+  check(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
+  if (!unused.empty()) throw UnknownSolverOptions(unused);
+}
+
+NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
+                                const NewtonOptions& options) {
+  Solve solve{problem, options, {}, nullptr};
+  const double start = MPI_Wtime();
+  OwnedMat matrix, action;
+  allocate(problem, &matrix);
+  give_rigid_motions(problem, matrix);
+  OwnedVec solution, r;
+  check(MatCreateVecs(matrix, &solution, &r));
+  PetscScalar* to = nullptr;
+  check(VecGetArray(solution, &to));
+  std::copy(u.begin(), u.end(), to);
+  check(VecRestoreArray(solution, &to));
+
+  OwnedSnes snes;
+  check(SNESCreate(comm_, &snes));
+  check(SNESSetFunction(snes, r, residual, &solve));
+  if (options.matrix_free) check(MatCreateSNESMF(snes, &action));
+  check(SNESSetJacobian(snes, options.matrix_free ? action : matrix, matrix, jacobian, &solve));
+  check(SNESSetConvergenceTest(snes, converged, &solve, nullptr));
+  check(SNESSetTolerances(snes, 0, 0, 0, options.max_iterations, 100 * options.max_iterations));
+  choose_linear_solver(snes, 3 * problem.all_nodes());
+  solve.report.assembly_seconds = MPI_Wtime() - start;
+
+  const PetscErrorCode code = SNESSolve(snes, nullptr, solution);
+  if (solve.failure) {
+    first_error.clear();
+    std::rethrow_exception(solve.failure);
+  }
+  NewtonReport& report = solve.report;
+  PetscInt linear = 0, iterations = 0;
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  check(SNESGetLinearSolveIterations(snes, &linear));
+  check(SNESGetIterationNumber(snes, &iterations));
+  check(SNESGetConvergedReason(snes, &reason));
+  report.iterations = static_cast<int>(iterations);
+  report.linear_iterations = linear;
+  report.converged = code == 0 && reason > 0;
+  if (code != 0) {
+    report.reason = first_error;
+    first_error.clear();
+  } else if (reason <= 0) {
+    report.reason = fmt::format("Newton's method: {}", SNESConvergedReasons[reason]);
+    if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
+      KSP ksp = nullptr;
+      KSPConvergedReason why = KSP_CONVERGED_ITERATING;
+      check(SNESGetKSP(snes, &ksp));
+      check(KSPGetConvergedReason(ksp, &why));
+      report.reason += fmt::format(" ({})", KSPConvergedReasons[why]);
+    }
+  }
+  const PetscScalar* from = nullptr;
+  check(VecGetArrayRead(solution, &from));
+  std::copy_n(from, u.size(), u.begin());
+  check(VecRestoreArrayRead(solution, &from));
+  report.solve_seconds = MPI_Wtime() - start - report.assembly_seconds;
+  refuse_unused_options();
+  return report;
+}
+
+}  // namespace
+
+}  // namespace mpm::parallel
+
+extern "C" [[gnu::visibility("default")]] mpm::core::NewtonSolver* mpm_make_newton_solver(
+    MPI_Comm comm, const std::vector<std::string>* options) {
+  return new mpm::parallel::PetscSolver(comm, *options);
+}
