@@ -24,7 +24,7 @@ namespace mpm::core {
 class NodeUnknowns {
  public:
   /// Part of the volume around a node that bodies of prescribed motion have where they hold it.
-  static constexpr double held_share = 0.25;
+  static constexpr double held_share = 0.125;
 
   NodeUnknowns(Model& model, Communication& communication);
 
