@@ -8,7 +8,7 @@
 #include <cstddef>
 
 #include "core/particles/columns.hpp"
-#include "core/simd/lanes.hpp"
+#include "core/simd/dual.hpp"
 
 namespace mpm::physics {
 

@@ -88,5 +88,8 @@ Failures converges(const LawSample& sample, const Registry& registry);
 Failures objective(const LawSample& sample, const Registry& registry);
 Failures energy_balances(const LawSample& sample, const Registry& registry);
 Failures wave_speed_bounds_tangent(const LawSample& sample, const Registry& registry);
+// checks/tangent.cpp
+Failures tangent_is_derivative(const LawSample& sample, const Registry& registry);
+Failures tangent_is_pure(const LawSample& sample, const Registry& registry);
 
 }  // namespace mpm::physics::checks

@@ -12,7 +12,7 @@ namespace mpm::physics {
 
 namespace {
 
-constexpr std::array<LawCheck, 13> all{{
+constexpr std::array<LawCheck, 15> all{{
     {"instances", "the instances for one number and for vectors agree to round-off", checks::instances_agree},
     {"rest", "without strain there is no stress", checks::rest_stays},
     {"restart", "a restart from the columns alone continues bitwise identically", checks::restarts},
@@ -29,6 +29,9 @@ constexpr std::array<LawCheck, 13> all{{
     {"objectivity", "ten superposed rotations rotate the stress and change nothing else", checks::objective},
     {"energy", "internal energy is the work of all stresses", checks::energy_balances},
     {"wave", "the wave speed is that of the stiffest tangent, or above", checks::wave_speed_bounds_tangent},
+    {"tangent", "the tangent, where the law has one, is the derivative of the stress",
+     checks::tangent_is_derivative},
+    {"pure", "the tangent changes nothing, and depends on no neighbour", checks::tangent_is_pure},
 }};
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace mpm::physics {
 
 struct ElasticBulk {
   static constexpr std::array<core::Column, 0> state{};
+  using has_tangent = ElasticBulk;
 
   double bulk = 0;  ///< K, stress
 

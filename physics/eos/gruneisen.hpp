@@ -18,6 +18,7 @@ struct Gruneisen {
   static constexpr std::string_view name = "Gruneisen";
   static constexpr std::string_view summary = "Mie-Grueneisen about a linear shock Hugoniot";
   static constexpr std::array<core::Column, 0> state{};
+  using has_tangent = Gruneisen;
 
   double c0 = 0;
   double s1 = 0;

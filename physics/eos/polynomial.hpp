@@ -15,6 +15,7 @@ struct Polynomial {
   static constexpr std::string_view name = "Polynomial";
   static constexpr std::string_view summary = "polynomial in the compression, linear in the energy";
   static constexpr std::array<core::Column, 0> state{};
+  using has_tangent = Polynomial;
 
   double c0 = 0, c1 = 0, c2 = 0, c3 = 0;  ///< stress
   double c4 = 0, c5 = 0, c6 = 0;

@@ -16,6 +16,7 @@ struct Polynomial2 {
   static constexpr std::string_view name = "Polynomial2";
   static constexpr std::string_view summary = "polynomial, with other coefficients in tension";
   static constexpr std::array<core::Column, 0> state{};
+  using has_tangent = Polynomial2;
 
   double a1 = 0, a2 = 0, a3 = 0;  ///< stress
   double b0 = 0, b1 = 0;

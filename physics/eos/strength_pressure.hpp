@@ -18,6 +18,7 @@ concept SetsPressure = requires {
 
 struct StrengthPressure {
   static constexpr std::array<core::Column, 0> state{};
+  using has_tangent = StrengthPressure;
 
   double bulk = 0;  ///< K at rest, stress
 

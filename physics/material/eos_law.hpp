@@ -46,6 +46,8 @@ class EosOf final : public EosLaw {
   EosTraits traits() const override {
     EosTraits t;
     t.columns = columns_of(eos_);
+    if constexpr (requires { Eos::name; }) t.name = Eos::name;
+    t.has_tangent = HasTangent<Eos>;
     if constexpr (requires(const Eos& eos) { eos.p_crush; }) t.crush_pressure = eos_.p_crush;
     if constexpr (requires(const Eos& eos) { eos.solid_has_sound_speed(); })
       t.solid_has_sound_speed = eos_.solid_has_sound_speed();
@@ -79,8 +81,11 @@ class EosOf final : public EosLaw {
   }
   void update(core::Batch& batch, const PressureRules& rules, double* verdict,
               Instance instance) const override {
-    as_chosen(instance, [&]<class T>(std::type_identity<T>) {
-      with_burn([&](const auto& eos) { update_pressure<T>(batch, eos, rules, verdict); });
+    as_chosen<Eos>(instance, [&]<class T>(std::type_identity<T>) {
+      if constexpr (core::derivatives_of < T >> 0)  // no tangent of an explosive
+        update_pressure<T>(batch, eos_, rules, verdict);
+      else
+        with_burn([&](const auto& eos) { update_pressure<T>(batch, eos, rules, verdict); });
     });
   }
 

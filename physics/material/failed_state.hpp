@@ -2,7 +2,7 @@
 // TensileCutoff, and zero beyond.
 #pragma once
 
-#include "core/simd/lanes.hpp"
+#include "core/simd/dual.hpp"
 #include "physics/eos/point.hpp"
 
 namespace mpm::physics {

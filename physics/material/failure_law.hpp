@@ -30,7 +30,7 @@ class FailureOf final : public FailureLaw {
   core::ColumnSet columns() const override { return columns_of(model_); }
   void judge(const core::Batch& batch, bool erodes, bool scatters, double* verdict,
              Instance instance) const override {
-    as_chosen(instance, [&]<class T>(std::type_identity<T>) {
+    as_chosen<Model>(instance, [&]<class T>(std::type_identity<T>) {
       physics::judge<T>(batch, model_, erodes, scatters, verdict);
     });
   }

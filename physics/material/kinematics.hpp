@@ -15,7 +15,7 @@
 
 #include "core/material/batch.hpp"
 #include "core/material/constitutive_model.hpp"
-#include "core/simd/math.hpp"
+#include "core/simd/dual.hpp"
 #include "physics/material/vectors.hpp"
 
 namespace mpm::physics {
@@ -139,7 +139,8 @@ template <class T>
       batch.vanishing |= lanes_of<T>(unusable, row, batch.particles);
     }
     T volume = core::select(unusable, old_volume, old_volume * ratio);
-    if (parts) volume = part_fragments<T>(batch, block, row, old_volume, ratio, volume);
+    if (core::derivatives_of<T> == 0 && parts)
+      volume = part_fragments<T>(batch, block, row, old_volume, ratio, volume);
     if (limits) {
       volume = limit_volume(batch, options, reference_density, core::load<T>(block + mass_at), volume, row);
     }

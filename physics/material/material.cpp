@@ -108,10 +108,12 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options,
   if (follows_deformation_) update_deformation_gradient<T>(batch);
   laws_.strength->update(batch, strength_rules(), instance);
   laws_.eos->update(batch, rules, fails_ ? verdict : nullptr, instance);
-  if (!fails_) return;
-  for (const Failure& failure : laws_.failures)
-    failure.model->judge(batch, failure.erodes, scatters_, verdict, instance);
-  apply_failure<T>(batch, rules.failed, verdict);
+  if constexpr (core::derivatives_of<T> == 0) {  // what can fail has no tangent
+    if (!fails_) return;
+    for (const Failure& failure : laws_.failures)
+      failure.model->judge(batch, failure.erodes, scatters_, verdict, instance);
+    apply_failure<T>(batch, rules.failed, verdict);
+  }
 }
 
 /// Scalar loop: this happens once per particle.
@@ -155,6 +157,10 @@ void Material::update(core::Batch& batch, const core::UpdateOptions& options) co
 
 void Material::update_scalars(core::Batch& batch, const core::UpdateOptions& options) const {
   update_as<double>(batch, options, Instance::scalars);
+}
+
+void Material::differentiate_update(core::Batch& batch, const core::UpdateOptions& options) const {
+  update_as<DualReal>(batch, options, Instance::derivatives);
 }
 
 }  // namespace mpm::physics

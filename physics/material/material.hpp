@@ -53,6 +53,10 @@ class Material final : public core::ConstitutiveModel {
   }
   void initialise(core::Batch& batch, const core::UpdateOptions& options) const override;
   void update(core::Batch& batch, const core::UpdateOptions& options) const override;
+  // physics/material/tangent.cpp
+  std::string tangent_fault() const override;
+  void tangent(const core::Batch& batch, const core::UpdateOptions& options,
+               core::StressTangent& result) const override;
 
   /// The same update particle by particle, for the comparison of instances.
   void update_scalars(core::Batch& batch, const core::UpdateOptions& options) const;
@@ -62,6 +66,8 @@ class Material final : public core::ConstitutiveModel {
  private:
   template <class T>
   void update_as(core::Batch& batch, const core::UpdateOptions& options, Instance instance) const;
+  /// An update with derivatives.
+  void differentiate_update(core::Batch& batch, const core::UpdateOptions& options) const;
   StrengthRules strength_rules() const;
   PressureRules pressure_rules(const core::UpdateOptions& options) const;
   void add_failures_of_damage();

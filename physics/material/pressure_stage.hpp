@@ -149,6 +149,7 @@ template <class T, class Eos>
                                                      const PressureRules& rules, double* verdict) {
   using core::Column;
   using core::max;
+  constexpr bool can_fail = core::derivatives_of<T> == 0;  // what can fail has no tangent
   const core::ColumnLayout& layout = *batch.layout;
   const History<Eos, EosPoint<T>> history(eos, layout);
   const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);
@@ -185,7 +186,7 @@ template <class T, class Eos>
 
     // Artificial viscosity: none in expansion, and none for failed particles.
     core::MaskOf<T> failed{};
-    if (failed_at >= 0) failed = core::load<T>(block + failed_at) > 0.5;
+    if (can_fail && failed_at >= 0) failed = core::load<T>(block + failed_at) > 0.5;
     const T rate = core::select(failed, 0.0, max(-inverse_dt * tr, 0.0));
     const T modulus_before =
         shear + isentropic_modulus(line, now.compression, now.relative_volume, old_p, old_energy);
@@ -196,17 +197,20 @@ template <class T, class Eos>
     const T energy_star = old_energy - h * (old_p + core::load<T>(block + q_at) + q) + work;
     const T stated = (acting.a + acting.b * energy_star) * response;
     T p = stated, sentence = 0.0;
-    if (rules.tension.limited) {
+    if (can_fail && rules.tension.limited) {
       p = limit_tension(rules.tension, stated, core::load<T>(batch.lowest_pressure + row), sentence);
     }
-    if (failed_at >= 0) p = core::select(failed, broken_pressure(eos, rules.failed, point, stated), p);
-    if (void_at >= 0) p = fill_void(block + void_at, block + volume_at, volume, line, now, p, energy_star);
+    if (can_fail && failed_at >= 0)
+      p = core::select(failed, broken_pressure(eos, rules.failed, point, stated), p);
+    if (can_fail && void_at >= 0)
+      p = fill_void(block + void_at, block + volume_at, volume, line, now, p, energy_star);
     const T energy = energy_star - h * p;
 
     history.store(block, point);
     core::store(block + pressure_at, p);
     core::store(block + q_at, q);
     core::store(block + energy_at, energy);
+    if constexpr (core::derivatives_of < T >> 0) return;  // of the stress alone
 
     const T modulus = shear + isentropic_modulus(line, now.compression, now.relative_volume, p, energy);
     const core::MaskOf<T> undefined = outside | (modulus < negligible);

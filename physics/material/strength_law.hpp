@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scene/body.hpp"
@@ -20,6 +21,8 @@ namespace mpm::physics {
 
 /// Properties of a strength model; all of these members are optional in a law.
 struct StrengthTraits {
+  std::string_view name;       ///< in the input
+  bool has_tangent = false;    ///< `has_tangent` (physics/material/instance.hpp)
   bool sets_pressure = false;  ///< `sets_pressure`: it computes the pressure with the deviator
   bool own_pressure = false;   ///< `own_pressure` or sets_pressure: no equation of state beside it
   bool rigid = false;          ///< `rigid`
@@ -66,6 +69,8 @@ class StrengthOf final : public StrengthLaw {
 
   StrengthTraits traits() const override {
     StrengthTraits t;
+    t.name = Law::name;
+    t.has_tangent = HasTangent<Law>;
     static_assert(
         !SetsPressure<Law> || requires(const Law& law) { law.bulk; },
         "a law that sets the pressure states `bulk`, the bulk modulus at rest");
@@ -115,7 +120,7 @@ class StrengthOf final : public StrengthLaw {
     initialise_strength<core::Real>(batch, law_, rules);
   }
   void update(core::Batch& batch, const StrengthRules& rules, Instance instance) const override {
-    as_chosen(instance, [&]<class T>(std::type_identity<T>) { update_strength<T>(batch, law_, rules); });
+    as_chosen<Law>(instance, [&]<class T>(std::type_identity<T>) { update_strength<T>(batch, law_, rules); });
   }
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/material/batch.hpp"
+#include "core/simd/dual.hpp"
 
 namespace mpm::physics {
 

@@ -1,6 +1,7 @@
 #include "physics/point/point_driver.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace mpm::physics {
@@ -14,7 +15,7 @@ PointDriver::PointDriver(const core::ConstitutiveModel& model, const Options& op
       }) {}
 
 PointDriver::PointDriver(const core::ConstitutiveModel& model, const Options& options, Update update)
-    : options_(options.update), update_(std::move(update)) {
+    : model_(model), options_(options.update), update_(std::move(update)) {
   core::ColumnSet set = core::ColumnSet::mechanics();
   set.add(model.columns(options.update));
   set.add(Column::sound_speed);
@@ -38,13 +39,30 @@ void PointDriver::set(Column column, double value) {
   std::fill_n(block_.begin() + layout_.offset(column), core::block_lanes, value);
 }
 
-void PointDriver::step(const Mat3<double>& l, double dt) {
+void PointDriver::prepare(const Mat3<double>& l, double dt) {
   const double components[9] = {l.xx, l.xy, l.xz, l.yx, l.yy, l.yz, l.zx, l.zy, l.zz};
   for (int i = 0; i < 9; ++i) std::fill_n(batch_.gradient[i], core::block_lanes, components[i]);
   std::fill_n(batch_.cell_volumetric_strain, core::block_lanes, dt * (l.xx + l.yy + l.zz));
   batch_.dt = dt;
+}
+
+void PointDriver::step(const Mat3<double>& l, double dt) {
+  prepare(l, dt);
   batch_.time += dt;
   update_(batch_, options_);
+}
+
+PointDriver::Tangent PointDriver::tangent(const Mat3<double>& l, double dt) {
+  prepare(l, dt);
+  core::Batch batch = batch_;
+  batch.time += dt;
+  const auto rows = std::make_unique<core::StressTangent>();
+  model_.tangent(batch, options_, *rows);
+  Tangent tangent;
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < 9; ++k) tangent[i][k] = rows->d[i][k][0];
+  }
+  return tangent;
 }
 
 core::Sym3<double> PointDriver::deviator() const {

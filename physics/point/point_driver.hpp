@@ -2,6 +2,7 @@
 // calibration (mpm_point) and for the tests of the laws. No input or output here.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -29,6 +30,9 @@ class PointDriver {
 
   /// One step with the velocity gradient at midstep. Units 1/time and time.
   void step(const core::Mat3<double>& gradient, double dt);
+  /// The tangent of that step, before it: core::StressTangent of one particle.
+  using Tangent = std::array<std::array<double, 9>, 6>;
+  Tangent tangent(const core::Mat3<double>& gradient, double dt);
 
   bool has(core::Column column) const { return layout_.has(column); }
   double value(core::Column column) const { return block_[static_cast<std::size_t>(layout_.offset(column))]; }
@@ -57,6 +61,9 @@ class PointDriver {
   void restore(const State& state);
 
  private:
+  void prepare(const core::Mat3<double>& gradient, double dt);
+
+  const core::ConstitutiveModel& model_;
   core::UpdateOptions options_;
   Update update_;
   core::ColumnLayout layout_;

@@ -12,6 +12,7 @@ namespace mpm::physics {
 struct CauchyElastic : IsotropicElasticity {
   static constexpr std::string_view name = "CauchyElastic";
   static constexpr std::string_view summary = "linear elastic, pressure included";
+  using has_tangent = CauchyElastic;
   static constexpr std::array<core::Column, 0> state{};
   static constexpr bool own_pressure = true;
 

@@ -2,10 +2,11 @@
 // hardening:
 //   f(x) = trial - 3 G x - sigma_y(x) = 0,   0 <= x <= trial/(3 G)
 // Newton's method safeguarded by a shrinking bracket, all lanes at once; converged lanes no longer change, so
-// their result does not depend on their neighbours. Converged means |f| below 1e-12 of the yield stress.
+// their result does not depend on their neighbours. Converged means |f| below 1e-12 of the yield stress. Its
+// derivatives follow from f(x) = 0 at the result.
 #pragma once
 
-#include "core/simd/math.hpp"
+#include "core/simd/dual.hpp"
 #include "core/tensor/tensor.hpp"
 
 namespace mpm::physics {
@@ -18,35 +19,43 @@ struct FlowStress {
 
 /// `threshold` is the yield stress for a vanishing increment: where the trial stress does not exceed it the
 /// result is zero. `start` is the stress at which flow starts: the greater of the threshold and the stress
-/// before the step; with it a steady flow is found at once.
+/// before the step; with it a steady flow is found at once. `flow(x)` returns the yield stress; for a law
+/// with a tangent it must take x with and without derivatives (core::as).
 template <class T, class Flow>
 T plastic_increment(const T& trial, const T& threshold, const T& start, double shear, const Flow& flow) {
   using core::abs;
   using core::exp;
   using core::max;
   const double stiffness = 3 * shear;
-  const core::MaskOf<T> plastic = trial > threshold;
-  T x = core::select(plastic, max(trial - start, 1e-3 * (trial - threshold)) * (1 / stiffness), 0.0);
-  if (!core::any(plastic)) return x;
-  T low = 0.0, high = trial * (1 / stiffness);
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const FlowStress<T> yield = flow(x);
-    const T f = trial - stiffness * x - yield.value;
-    const core::MaskOf<T> open = plastic & (abs(f) > 1e-12 * yield.value + 1e-15 * trial);
-    if (!core::any(open)) break;
-    low = core::select(f > 0.0, x, low);
-    high = core::select(f > 0.0, high, x);
-    const T step = f / (stiffness + yield.slope);
-    T next = x + step;
-    const core::MaskOf<T> inside = (next > low) & (next < high);
-    if (core::any(open & !inside)) {
-      const T scaled = x * exp(step / x);
-      next = core::select(inside, next,
-                          core::select((scaled > low) & (scaled < high), scaled, 0.5 * (low + high)));
+  if constexpr (core::derivatives_of < T >> 0) {
+    const auto x = plastic_increment(trial.v, threshold.v, start.v, shear, flow);
+    const FlowStress<T> yield = flow(T(x));
+    const T f = trial - stiffness * T(x) - yield.value;
+    return core::select(x > 0.0, core::implicit_root(T(x), f, stiffness + yield.slope), T(x));
+  } else {
+    const core::MaskOf<T> plastic = trial > threshold;
+    T x = core::select(plastic, max(trial - start, 1e-3 * (trial - threshold)) * (1 / stiffness), 0.0);
+    if (!core::any(plastic)) return x;
+    T low = 0.0, high = trial * (1 / stiffness);
+    for (int iteration = 0; iteration < 100; ++iteration) {
+      const FlowStress<T> yield = flow(x);
+      const T f = trial - stiffness * x - yield.value;
+      const core::MaskOf<T> open = plastic & (abs(f) > 1e-12 * yield.value + 1e-15 * trial);
+      if (!core::any(open)) break;
+      low = core::select(f > 0.0, x, low);
+      high = core::select(f > 0.0, high, x);
+      const T step = f / (stiffness + yield.slope);
+      T next = x + step;
+      const core::MaskOf<T> inside = (next > low) & (next < high);
+      if (core::any(open & !inside)) {
+        const T scaled = x * exp(step / x);
+        next = core::select(inside, next,
+                            core::select((scaled > low) & (scaled < high), scaled, 0.5 * (low + high)));
+      }
+      x = core::select(open, next, x);
     }
-    x = core::select(open, next, x);
+    return x;
   }
-  return x;
 }
 
 }  // namespace mpm::physics

@@ -22,6 +22,7 @@ namespace mpm::physics {
 struct Corotated : FiniteElasticity {
   static constexpr std::string_view name = "Corotated";
   static constexpr std::string_view summary = "fixed corotated, hyperelastic";
+  using has_tangent = Corotated;
 
   static constexpr auto parameters() { return elastic_parameters<Corotated>(); }
 

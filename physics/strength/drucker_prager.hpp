@@ -22,6 +22,7 @@ namespace mpm::physics {
 struct DruckerPrager : IsotropicElasticity {
   static constexpr std::string_view name = "DruckerPrager";
   static constexpr std::string_view summary = "soil: friction, cohesion, dilation, tension cut-off";
+  using has_tangent = DruckerPrager;
   static constexpr std::array state{core::Column::effective_plastic_strain};
   static constexpr bool sets_pressure = true;
 

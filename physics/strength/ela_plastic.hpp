@@ -11,6 +11,7 @@ namespace mpm::physics {
 struct ElaPlastic : MisesPlasticity {
   static constexpr std::string_view name = "ElaPlastic";
   static constexpr std::string_view summary = "elastic, perfectly plastic, von Mises";
+  using has_tangent = ElaPlastic;
   static constexpr std::array state{core::Column::effective_plastic_strain};
 
   static constexpr auto parameters() { return plastic_parameters<ElaPlastic>(); }

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "core/simd/math.hpp"
+#include "core/simd/dual.hpp"
 #include "physics/parameter_rows.hpp"
 #include "physics/strength/point.hpp"
 

@@ -12,6 +12,7 @@ namespace mpm::physics {
 struct IsoElastic : IsotropicElasticity {
   static constexpr std::string_view name = "IsoElastic";
   static constexpr std::string_view summary = "linear elastic";
+  using has_tangent = IsoElastic;
   static constexpr std::array<core::Column, 0> state{};
 
   static constexpr auto parameters() { return elastic_parameters<IsoElastic>(); }

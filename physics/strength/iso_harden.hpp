@@ -13,6 +13,7 @@ namespace mpm::physics {
 struct IsoHarden : MisesPlasticity {
   static constexpr std::string_view name = "IsoHarden";
   static constexpr std::string_view summary = "elastic-plastic, von Mises, linear isotropic hardening";
+  using has_tangent = IsoHarden;
   static constexpr std::array state{core::Column::effective_plastic_strain};
 
   double tangent_modulus = 0;  ///< d stress / d strain of a bar beyond yield

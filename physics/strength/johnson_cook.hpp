@@ -18,6 +18,7 @@ namespace mpm::physics {
 struct JohnsonCook : JohnsonCookPlasticity {
   static constexpr std::string_view name = "JohnsonCook";
   static constexpr std::string_view summary = "Johnson-Cook plasticity with adiabatic heating and damage";
+  using has_tangent = JohnsonCook;
   static constexpr std::array state{core::Column::effective_plastic_strain, core::Column::temperature,
                                     core::Column::damage};
 
@@ -78,11 +79,12 @@ struct JohnsonCook : JohnsonCookPlasticity {
     const T threshold = power_hardening(yield0, b, n, strain).value * softening(point.temperature);
     const T start = core::max(before, threshold);
     const T heat = plastic_work_coefficient / (point.density * specific_heat);  // 3-5
-    const T increment = plastic_increment(trial, threshold, start, shear, [&](const T& x) {
-      const T work = (0.5 * (start + trial) - (1.5 * shear) * x) * x;
-      const T temperature = point.temperature + heat * work;
-      const T heating = heat * (0.5 * (start + trial) - (3 * shear) * x);
-      return power_hardening(yield0, b, n, T(strain + x)) * rate_factor(c, x, epso * point.dt) *
+    const T increment = plastic_increment(trial, threshold, start, shear, [&]<class X>(const X& x) {
+      const X mean = core::as<X>(0.5 * (start + trial)), per_work = core::as<X>(heat);
+      const X work = (mean - (1.5 * shear) * x) * x;
+      const X temperature = core::as<X>(point.temperature) + per_work * work;
+      const X heating = per_work * (mean - (3 * shear) * x);
+      return power_hardening(yield0, b, n, X(core::as<X>(strain) + x)) * rate_factor(c, x, epso * point.dt) *
              softening(temperature, heating);
     });
     return_to(point, trial, start, threshold, increment);

@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "core/simd/math.hpp"
+#include "core/simd/dual.hpp"
 #include "physics/strength/consistency.hpp"
 #include "physics/strength/plasticity.hpp"
 

@@ -17,6 +17,7 @@ namespace mpm::physics {
 struct MooneyRivlin {
   static constexpr std::string_view name = "MooneyRivlin";
   static constexpr std::string_view summary = "rubber, nearly incompressible, hyperelastic";
+  using has_tangent = MooneyRivlin;
   static constexpr auto state = deformation_gradient_columns;
   static constexpr bool sets_pressure = true;
   static constexpr bool hyperelastic = true;

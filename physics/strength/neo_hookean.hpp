@@ -18,6 +18,7 @@ namespace mpm::physics {
 struct NeoHookean : FiniteElasticity {
   static constexpr std::string_view name = "NeoHookean";
   static constexpr std::string_view summary = "compressible neo-Hookean, hyperelastic";
+  using has_tangent = NeoHookean;
 
   static constexpr auto parameters() { return elastic_parameters<NeoHookean>(); }
 

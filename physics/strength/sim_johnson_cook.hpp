@@ -13,6 +13,7 @@ namespace mpm::physics {
 struct SimJohnsonCook : JohnsonCookPlasticity {
   static constexpr std::string_view name = "SimJohnsonCook";
   static constexpr std::string_view summary = "Johnson-Cook plasticity without temperature";
+  using has_tangent = SimJohnsonCook;
   static constexpr std::array state{core::Column::effective_plastic_strain};
 
   static constexpr auto parameters() { return johnson_cook_parameters<SimJohnsonCook>(); }
@@ -25,8 +26,8 @@ struct SimJohnsonCook : JohnsonCookPlasticity {
     const T trial = mises(point.s);
     const T threshold = power_hardening(yield0, b, n, strain).value;
     const T start = core::max(before, threshold);
-    const T increment = plastic_increment(trial, threshold, start, shear, [&](const T& x) {
-      return power_hardening(yield0, b, n, T(strain + x)) * rate_factor(c, x, epso * point.dt);
+    const T increment = plastic_increment(trial, threshold, start, shear, [&]<class X>(const X& x) {
+      return power_hardening(yield0, b, n, X(core::as<X>(strain) + x)) * rate_factor(c, x, epso * point.dt);
     });
     return_to(point, trial, start, threshold, increment);
   }

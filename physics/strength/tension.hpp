@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core/simd/lanes.hpp"
+#include "core/simd/dual.hpp"
 
 namespace mpm::physics {
 

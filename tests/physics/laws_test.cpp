@@ -57,5 +57,11 @@ TEST_CASE("internal energy is the work of all stresses, viscous ones included on
 TEST_CASE("the wave speed of every law is not below its tangent's", "[physics][wave]") {
   holds_for_every_law("wave");
 }
+TEST_CASE("the tangent of every law that has one is the derivative of its stress", "[physics][tangent]") {
+  holds_for_every_law("tangent");
+}
+TEST_CASE("the tangent changes nothing and depends on no neighbour", "[physics][tangent]") {
+  holds_for_every_law("pure");
+}
 
 }  // namespace mpm::tests

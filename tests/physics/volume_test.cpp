@@ -1,4 +1,5 @@
-// The five ways to update the volume (manual 3.10.5), its bounds, and volumes that would become zero or less.
+// The ways to update the volume (manual 3.10.5, and the mid-point rule's), its bounds, and volumes that would
+// become zero or less.
 
 #include <cmath>
 
@@ -37,6 +38,20 @@ TEST_CASE("volume updates follow their formulas", "[physics][volume]") {
   const Mat3<double> f{1.1, 0.03, -0.02, 0.01, 0.94, 0.04, 0.025, -0.015, 1.08};
   CHECK(ratio_after(3, n) == Approx(std::pow(determinant(f), n)).epsilon(1e-14));
   CHECK(ratio_after(4, n) == Approx((1 + n * 0.1) * (1 - n * 0.06) * (1 + n * 0.08)).epsilon(1e-14));
+  const Mat3<double> ahead{1.05, 0.015, -0.01, 0.005, 0.97, 0.02, 0.0125, -0.0075, 1.04};
+  const Mat3<double> behind{0.95, -0.015, 0.01, -0.005, 1.03, -0.02, -0.0125, 0.0075, 0.96};
+  CHECK(ratio_after(5, n) == Approx(std::pow(determinant(ahead) / determinant(behind), n)).epsilon(1e-14));
+}
+
+TEST_CASE("the mid-point rule's volume is that of the laws' deformation gradient", "[physics][volume]") {
+  const auto material = make(sample("NeoHookean").input);
+  PointDriver point(*material, {.update = {.volume_update = 5}});
+  for (int i = 0; i < 5; ++i) point.step(gradient, dt);
+  const auto f = [&](Column c) { return point.value(c); };
+  const Mat3<double> all{f(Column::f_xx), f(Column::f_xy), f(Column::f_xz), f(Column::f_yx), f(Column::f_yy),
+                         f(Column::f_yz), f(Column::f_zx), f(Column::f_zy), f(Column::f_zz)};
+  CHECK(point.volume_ratio() == Approx(determinant(all)).epsilon(1e-14));
+  CHECK(point.volume_ratio() > 1.3);
 }
 
 TEST_CASE("accumulated strain is kept where it is asked for", "[physics][volume]") {
@@ -70,6 +85,18 @@ TEST_CASE("a volume that would vanish stays, and is counted", "[physics][volume]
     CHECK(point.volume_ratio() == 1);
     CHECK(point.events().negative_volume == 1);
     CHECK(point.events().not_finite == 0);
+  }
+}
+
+TEST_CASE("the mid-point rule stretches and compresses threefold at most, per axis", "[physics][volume]") {
+  const auto material = make(copper("IsoElastic"));
+  for (const double increment : {-2.5, 2.5}) {
+    PointDriver point(*material, {.update = {.volume_update = 5}});
+    point.step({increment / dt, 0, 0, 0, 0, 0, 0, 0, 0}, dt);
+    CHECK(point.volume_ratio() == 1);
+    CHECK(point.events().negative_volume == 1);
+    point.step({0.4 * increment / dt, 0, 0, 0, 0, 0, 0, 0, 0}, dt);
+    CHECK(point.volume_ratio() == Approx(increment > 0 ? 3.0 : 1.0 / 3).epsilon(1e-14));
   }
 }
 
