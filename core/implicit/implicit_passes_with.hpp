@@ -28,7 +28,6 @@ class ImplicitPassesWith final : public ImplicitPasses {
       : model_(model),
         loads_(model),
         failed_(model),
-        gravity_(model.scene->solution.gravity),
         differences_(model.scene->solution.implicit && model.scene->solution.implicit->difference_tangent) {
 #pragma omp parallel
     flush_denormals_to_zero();
@@ -39,6 +38,9 @@ class ImplicitPassesWith final : public ImplicitPasses {
   void begin_step(double dt, double part) override {
     dt_ = dt;
     loads_.begin_step(model_.clock.time, dt, part);
+    const auto& input = model_.scene->solution.implicit;
+    const double ramp = input ? input->gravity_ramp : 0, now = model_.clock.time + part * dt;
+    gravity_ = (ramp > now ? now / ramp : 1.0) * model_.scene->solution.gravity;
   }
   void map_start() override;
   void map_motion() override;
@@ -106,7 +108,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   Model& model_;
   Loads loads_;
   FailedComponent failed_;
-  Vec3<double> gravity_;
+  Vec3<double> gravity_{};  ///< of this step
   bool differences_;  ///< derivatives of the stress by differences
   double dt_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratch_;          ///< by thread

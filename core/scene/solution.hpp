@@ -74,6 +74,7 @@ struct ImplicitInput {
   double relative_tolerance = 1e-6;
   std::optional<double> absolute_tolerance;
   int max_newton = 20;
+  double gravity_ramp = 0;  ///< time over which gravity grows from zero
   bool matrix_free = false;
   bool difference_tangent = false;  ///< derivatives of the stress by differences
 };

@@ -96,6 +96,7 @@ core::ImplicitInput build_implicit(const Node& node, const BuildContext& context
   implicit.relative_tolerance = node.real("rtol");
   implicit.absolute_tolerance = node.given_real("atol");
   implicit.max_newton = node.small_integer("max_newton");
+  implicit.gravity_ramp = node.given_real("gravity_ramp").value_or(0);
   implicit.matrix_free = node.word("jacobian") == "matrixfree";
   implicit.difference_tangent = node.word("jacobian") == "differences";
   if (4 * implicit.newmark_beta < 2 * implicit.newmark_gamma - 1e-12)

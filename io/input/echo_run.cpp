@@ -116,6 +116,7 @@ void echo_implicit(XmlWriter& w, const core::ImplicitInput& implicit) {
   w.text("rule", implicit.backward_euler ? "backward_euler" : "newmark");
   w.number("newmark_beta", implicit.newmark_beta);
   w.number("newmark_gamma", implicit.newmark_gamma);
+  w.number("gravity_ramp", implicit.gravity_ramp);
   w.maybe("time_step", implicit.time_step);
   w.maybe("min_step", implicit.min_step);
   w.maybe("max_step", implicit.max_step);

@@ -27,7 +27,7 @@ using core::NewtonReport;
 using core::NonlinearProblem;
 
 /// Unknowns up to which systems are solved directly.
-constexpr std::int64_t direct_up_to = 40000;
+constexpr std::int64_t direct_up_to = 5000;
 
 /// PETSc's description of the first error, instead of a stack from every rank.
 std::string first_error;  // NOLINT: PETSc's handlers have no state of their own that survives
