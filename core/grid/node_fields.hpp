@@ -52,11 +52,12 @@ inline constexpr NodeFields second_momentum{NodeArray::second, 0, 3};
 inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
 // Cells in use (core/step/cells_in_use.hpp), where no other field is.
 inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
-// Implicit steps: sum of S + h |grad S|, positive where a node is active; and volumes, those of bodies of
-// prescribed motion alone and of all.
+// Implicit steps: sum of S + h |grad S|, positive where a node is active; volumes, those of bodies of
+// prescribed motion alone and of all; and volumes times moduli.
 inline constexpr NodeFields support{NodeArray::first, 7, 1};
 inline constexpr NodeFields moved_volume{NodeArray::first, 3, 1};
 inline constexpr NodeFields volume{NodeArray::first, 4, 1};
+inline constexpr NodeFields modulus{NodeArray::first, 5, 1};
 // Momentum of an order of XPIC or FMPM.
 inline constexpr NodeFields correction{NodeArray::third, 0, 3};
 // Contact: sum of m grad S.
@@ -84,6 +85,7 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"support", node_field::support},
     NamedNodeFields{"moved volume", node_field::moved_volume},
     NamedNodeFields{"volume", node_field::volume},
+    NamedNodeFields{"modulus", node_field::modulus},
     NamedNodeFields{"correction", node_field::correction},
     NamedNodeFields{"surface", node_field::surface},
     NamedNodeFields{"reach", node_field::reach},
@@ -103,7 +105,7 @@ inline constexpr NodeFields force = node_field::force;  ///< momentum and mass o
 inline constexpr NodeFields implicit_start = momentum_mass_force | node_field::support;
 inline constexpr NodeFields implicit_force = node_field::force | node_field::support;
 inline constexpr NodeFields implicit_motion =
-    node_field::momentum | node_field::moved_volume | node_field::volume;
+    node_field::momentum | node_field::moved_volume | node_field::volume | node_field::modulus;
 inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_field::second_mass;
 inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
 inline constexpr NodeFields correction = node_field::correction;

@@ -18,6 +18,9 @@ constexpr int easy = 8;
 constexpr double growth = 1.5;
 /// A quasi-static run's steps, and a dynamic step over the largest explicit one, where the input names none.
 constexpr double default_load_steps = 20, default_ratio = 20;
+/// Nodes with less than this part of the volume of a cell around them may be in cells with inactive nodes,
+/// which are not stabilised. They get a stiffness of their own, of this part of the material's.
+constexpr double hardly_any = 0.05, ground = 1e-6;
 /// The smallest step over the given one, where the input names none.
 constexpr double default_smallest = 1.0 / 1024;
 
@@ -39,7 +42,8 @@ ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communicatio
       input_(model.scene->solution.implicit.value_or(ImplicitInput{})),
       cells_(make_cells_in_use(model, communication.halo)),
       passes_(make_implicit_passes(model)),
-      unknowns_(model, communication) {
+      unknowns_(model, communication),
+      stabilisation_(model) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     moves_bodies_ |= passes_->loads().motion(static_cast<int>(b)).kind == BodyMotion::Kind::prescribed;
   const double h = model.grid->geometry().smallest_cell();
@@ -77,13 +81,20 @@ void ImplicitIntegrator::prepare() {
   unknowns_.exchange(mapped::implicit_start);
   const std::vector<double> sums = unknowns_.number();
   unknowns_.hold_walls();
-  if (moves_bodies_) {
-    passes_->map_motion();
-    unknowns_.exchange(mapped::implicit_motion);
-    unknowns_.hold_moved(dt);
-  }
-  const double cutoff = model_.grid->geometry().mass_cutoff;
   state_.assign(unknowns_.own(), {});
+  passes_->map_motion();
+  unknowns_.exchange(mapped::implicit_motion);
+  stabilisation_.find_cells(unknowns_);
+  const GridGeometry& g = model_.grid->geometry();
+  const double cell_volume = g.cell_volume();
+  unknowns_.for_each_own([&](std::size_t i, const double* sum) {
+    const double volume = sum[node_field::volume.first] / cell_volume;
+    if (!(volume > 0 && volume < hardly_any)) return;
+    const double modulus = sum[node_field::modulus.first] / sum[node_field::volume.first];
+    state_[i].ground = ground * (1 - volume / hardly_any) * modulus * g.smallest_cell();
+  });
+  if (moves_bodies_) unknowns_.hold_moved(dt);
+  const double cutoff = model_.grid->geometry().mass_cutoff;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     NodeState& at = state_[i];
     const double* sum = sums.data() + node_doubles * i;
@@ -123,6 +134,7 @@ std::vector<double> ImplicitIntegrator::first_guess() const {
 bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r) {
   unknowns_.distribute(u, displacements_);
   const bool usable = passes_->map_forces(displacements_);
+  stabilisation_.add_forces(displacements_);
   unknowns_.exchange(mapped::implicit_force);
   const double damping = model_.scene->solution.damping;
   ExactSum squares;
@@ -134,7 +146,8 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
       const double inertia = at.mass * (rule_.inertia * u[k] - rule_.start * at.velocity[a]);
       const double drag =
           damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a]) + rule_.push * at.force[a]);
-      at.reaction[a] = inertia + drag - rule_.carry * at.force[a] - at.external[a] - sum[4 + a];
+      at.reaction[a] =
+          inertia + drag + at.ground * u[k] - rule_.carry * at.force[a] - at.external[a] - sum[4 + a];
       size += std::abs(inertia) + std::abs(at.external[a]);
       r[k] = held(i, a) ? held_diagonal_ * (u[k] - unknowns_.held_displacements()[k]) : at.reaction[a];
     }
@@ -148,10 +161,12 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
 void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix) {
   unknowns_.distribute(u, displacements_);
   passes_->add_tangent(&displacements_, unknowns_, matrix);
+  stabilisation_.add_tangent(unknowns_, true, matrix);
   const double per_mass = rule_.inertia + model_.scene->solution.damping * rule_.gain;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     double diagonal[9] = {};
-    for (int a = 0; a < 3; ++a) diagonal[4 * a] = held(i, a) ? held_diagonal_ : per_mass * state_[i].mass;
+    for (int a = 0; a < 3; ++a)
+      diagonal[4 * a] = held(i, a) ? held_diagonal_ : per_mass * state_[i].mass + state_[i].ground;
     const std::int64_t number = unknowns_.first() + static_cast<std::int64_t>(i);
     matrix.add(std::span(&number, 1), diagonal);
   }

@@ -11,6 +11,7 @@
 
 #include <memory>
 
+#include "core/implicit/cell_stabilisation.hpp"
 #include "core/implicit/implicit_passes.hpp"
 #include "core/implicit/time_rule.hpp"
 #include "core/step/cells_in_use.hpp"
@@ -35,6 +36,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   /// State of an own node in the step; vectors of three.
   struct NodeState {
     double mass;
+    double ground;       ///< stiffness against any displacement
     double velocity[3];  ///< at the start
     double external[3];  ///< force
     double force[3];     ///< all, at the start
@@ -48,7 +50,10 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::span<const double> coordinates() const override { return unknowns_.coordinates(); }
   bool residual(std::span<const double> u, std::span<double> r) override;
   double force_scale() const override { return force_scale_; }
-  void structure(BlockMatrix& matrix) override { passes_->add_tangent(nullptr, unknowns_, matrix); }
+  void structure(BlockMatrix& matrix) override {
+    passes_->add_tangent(nullptr, unknowns_, matrix);
+    stabilisation_.add_tangent(unknowns_, false, matrix);
+  }
   void jacobian(std::span<const double> u, BlockMatrix& matrix) override;
 
   void prepare();
@@ -68,6 +73,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::unique_ptr<CellsInUse> cells_;
   std::unique_ptr<ImplicitPasses> passes_;
   NodeUnknowns unknowns_;
+  CellStabilisation stabilisation_;
   TimeRule rule_;
   bool moves_bodies_ = false;  ///< some body has a prescribed motion
   double held_diagonal_ = 0;   ///< of the Jacobian's held components

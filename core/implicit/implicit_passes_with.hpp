@@ -109,7 +109,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   Loads loads_;
   FailedComponent failed_;
   Vec3<double> gravity_{};  ///< of this step
-  bool differences_;  ///< derivatives of the stress by differences
+  bool differences_;        ///< derivatives of the stress by differences
   double dt_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratch_;          ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
@@ -197,16 +197,18 @@ void ImplicitPassesWith<S>::map_motion() {
     for_each_block(s, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
       const Place place(frame, layout, block);
       const bool moved = prescribed(tile.body);
+      const ConstitutiveModel& material = *model_.bodies[static_cast<std::size_t>(tile.body)].model;
+      const double c = material.initial_sound_speed(), modulus = material.reference_density() * c * c;
       for (int l = 0; l < used; ++l) {
         const double volume = block[layout.offset(Column::volume) + l];
-        double per_shape[5] = {0, 0, 0, 0, volume};
+        double per_shape[6] = {0, 0, 0, 0, volume, volume * modulus};
         if (moved) {
           const Vec3<double> v = loads_.motion(tile.body).velocity.velocity(block + l);
           for (int a = 0; a < 3; ++a) per_shape[a] = volume * v[a];
           per_shape[3] = volume;
         }
         for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
-          for (int i = 0; i < 5; ++i) contributions[node_doubles * node + i] += shape * per_shape[i];
+          for (int i = 0; i < 6; ++i) contributions[node_doubles * node + i] += shape * per_shape[i];
         });
       }
     });

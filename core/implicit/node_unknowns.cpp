@@ -48,7 +48,8 @@ std::vector<double> NodeUnknowns::number() {
     const double* sum = sums(s);
     std::vector<std::uint8_t> mine(per_brick());
     shared_.for_each_node([&](int node, auto shares) {
-      mine[static_cast<std::size_t>(node)] = sum[node_doubles * node + 7] > 0 && owns(s, shares);
+      mine[static_cast<std::size_t>(node)] =
+          sum[node_doubles * node + node_field::support.first] >= least_support && owns(s, shares);
     });
     Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
     for (int n = 0; n < nodes(); ++n) of[n].from = static_cast<std::int16_t>(n);

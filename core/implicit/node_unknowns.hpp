@@ -1,10 +1,11 @@
 // The nodes of the bricks as unknowns of an implicit step.
 //
-// A node is active if the shape function of some particle, or its gradient, does not vanish there: its mass
-// may be tiny, its stiffness is not. Of the bricks that share an active node the first in summation order
-// that exists owns it; owned nodes are numbered rank by rank, brick by brick. What a brick knows of its own
-// nodes reaches the others through the exchange of contributions: the owner contributes the value, all others
-// zero, and the sum is the value.
+// A node is active if its support, the sum of S + h |grad S| over the particles, is at least least_support:
+// its mass may be tiny where its stiffness is not. Nodes with less are reached by rounding errors; they stay
+// where they are. Of the bricks that share an active node the first in summation order that exists owns it;
+// owned nodes are numbered rank by rank, brick by brick. What a brick knows of its own nodes reaches the
+// others through the exchange of contributions: the owner contributes the value, all others zero, and the sum
+// is the value.
 //
 // Nodes beyond a wall are no unknowns: each follows from its mirror image (core/step/node_update.hpp),
 // u_k = sign_k u_mirror,k. Held components have a given displacement: those that a wall fixes, and nodes
@@ -23,7 +24,9 @@ namespace mpm::core {
 
 class NodeUnknowns {
  public:
-  /// Part of the volume around a node that bodies of prescribed motion have where they hold it.
+  /// Least support of an active node; and the part of the volume around a node that bodies of prescribed
+  /// motion have where they hold it.
+  static constexpr double least_support = 1e-6;
   static constexpr double held_share = 0.125;
 
   NodeUnknowns(Model& model, Communication& communication);
@@ -39,6 +42,8 @@ class NodeUnknowns {
   void hold_moved(double dt);
 
   int nodes() const { return shared_.nodes(); }
+  /// A brick's sums of the last exchange, records of node_doubles.
+  void sums(Slot s, double* to) const { sum_contributions<NodeArray::first>(*model_.grid, shared_, s, to); }
   /// f(own node, its record of the exchanged sums).
   template <class F>
   void for_each_own(F f) {
@@ -82,7 +87,6 @@ class NodeUnknowns {
     sums(s, buffer_.data());
     return buffer_.data();
   }
-  void sums(Slot s, double* to) const { sum_contributions<NodeArray::first>(*model_.grid, shared_, s, to); }
   BrickGrid& grid() { return *model_.grid; }
   std::size_t per_brick() const { return static_cast<std::size_t>(shared_.nodes()); }
   bool owns(Slot s, std::span<const SharedNodes::Share> shares) const;

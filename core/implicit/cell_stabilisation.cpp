@@ -1,0 +1,170 @@
+#include "core/implicit/cell_stabilisation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/threads.hpp"
+
+namespace mpm::core {
+
+namespace {
+
+/// Cells with less of it empty have enough stiffness of their own.
+constexpr double hardly_empty = 0.01;
+
+}  // namespace
+
+CellStabilisation::CellStabilisation(Model& model)
+    : model_(model),
+      centred_(model.scene->grid.shape == ShapeFunction::sgmp ||
+               model.scene->grid.shape == ShapeFunction::ddmp),
+      matrix_(matrix_of(model.grid->geometry().cell)) {
+  const NodeBlockShape shape = model.grid->shape();
+  for (int n = 0; n < 8; ++n) corner_[n] = shape.index(n & 1, n >> 1 & 1, n >> 2) - shape.index(0, 0, 0);
+}
+
+/// Integral of sym grad N_a : sym grad N_b over a cell, by 2 x 2 x 2 Gauss points.
+CellStabilisation::Matrix CellStabilisation::matrix_of(const Vec3<double>& cell) {
+  Matrix m{};
+  const double gauss = 0.5 / std::sqrt(3.0), weight = cell.x * cell.y * cell.z / 8;
+  for (int point = 0; point < 8; ++point) {
+    double slope[8][3];
+    for (int n = 0; n < 8; ++n) {
+      for (int a = 0; a < 3; ++a) {
+        slope[n][a] = 1 / cell[a];
+        for (int b = 0; b < 3; ++b) {
+          const bool upper = (n >> b & 1) != 0;
+          const double x = 0.5 + ((point >> b & 1) != 0 ? gauss : -gauss);
+          slope[n][a] *= a == b ? (upper ? 1 : -1) : (upper ? x : 1 - x);
+        }
+      }
+    }
+    for (int p = 0; p < 8; ++p) {
+      for (int q = 0; q < 8; ++q) {
+        const double along =
+            slope[p][0] * slope[q][0] + slope[p][1] * slope[q][1] + slope[p][2] * slope[q][2];
+        for (int i = 0; i < 3; ++i)
+          for (int k = 0; k < 3; ++k)
+            m[static_cast<std::size_t>(3 * p + i)][static_cast<std::size_t>(3 * q + k)] +=
+                weight * 0.5 * ((i == k ? along : 0) + slope[p][k] * slope[q][i]);
+      }
+    }
+  }
+  return m;
+}
+
+/// Whether this brick is the first in summation order of those that exist and hold all nodes of the cell
+/// whose lowest node is (i, j, k).
+bool CellStabilisation::handles(Slot s, const int (&at)[3]) const {
+  const Brick& brick = model_.grid->brick(s);
+  const NodeBlockShape shape = model_.grid->shape();
+  for (int n = 0; n < neighbourhood; ++n) {
+    if (brick.neighbour[static_cast<std::size_t>(n)] == no_slot) continue;
+    const BrickCoord offset = neighbour_offset(n);
+    const int shift[3] = {offset.x, offset.y, offset.z};
+    bool holds = true;
+    for (int a = 0; a < 3; ++a) {
+      const int there = at[a] - brick_cells * shift[a];
+      holds = holds && there >= shape.lowest() && there < shape.highest();
+    }
+    if (holds) return n == self_index;
+  }
+  return false;
+}
+
+void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
+  const BrickGrid& grid = *model_.grid;
+  const GridGeometry& g = grid.geometry();
+  const NodeBlockShape shape = grid.shape();
+  cells_.resize(static_cast<std::size_t>(grid.owned()));
+  const double cell_volume = g.cell_volume();
+  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
+    std::vector<Cell>& cells = cells_[static_cast<std::size_t>(s)];
+    cells.clear();
+    std::vector<double> sums(static_cast<std::size_t>(node_doubles * shape.nodes()));
+    unknowns.sums(s, sums.data());
+    const NodeUnknowns::Node* const nodes = unknowns.of_brick(s);
+    const BrickCoord coord = grid.brick(s).coord;
+    const std::int64_t first[3] = {brick_cells * std::int64_t{coord.x}, brick_cells * std::int64_t{coord.y},
+                                   brick_cells * std::int64_t{coord.z}};
+    int at[3];
+    for (at[2] = shape.lowest(); at[2] < shape.highest(); ++at[2]) {
+      for (at[1] = shape.lowest(); at[1] < shape.highest(); ++at[1]) {
+        for (at[0] = shape.lowest(); at[0] < shape.highest(); ++at[0]) {
+          bool inside = true;
+          for (int a = 0; a < 3; ++a)
+            inside =
+                inside && first[a] + at[a] >= 0 && first[a] + at[a] < g.cells[static_cast<std::size_t>(a)];
+          if (!inside) continue;
+          const int lowest = shape.index(at[0], at[1], at[2]);
+          double fill = 0, volume = 0, modulus = 0;
+          bool active = true;
+          for (int n = 0; n < 8 && active; ++n) {
+            const int node = lowest + corner_[n];
+            active = nodes[node].number >= 0;
+            const double* sum = sums.data() + node_doubles * node;
+            // A node on a wall has the cells on one side alone.
+            double sides = 1;
+            for (int a = 0; a < 3; ++a) {
+              const std::int64_t i = first[a] + at[a] + (n >> a & 1);
+              if (i == 0 || i == g.cells[static_cast<std::size_t>(a)]) sides *= 2;
+            }
+            fill += std::min(1.0, sides * sum[node_field::volume.first] / cell_volume) / 8;
+            volume += sum[node_field::volume.first];
+            modulus += sum[node_field::modulus.first];
+          }
+          if (!active || !(volume > 0)) continue;
+          const double empty = centred_ ? 1 : 1 - fill;
+          if (empty > hardly_empty && handles(s, at))
+            cells.push_back({lowest, alpha * empty * modulus / volume});
+        }
+      }
+    }
+  });
+}
+
+void CellStabilisation::add_forces(const AlignedDoubles& displacements) {
+  BrickGrid& grid = *model_.grid;
+  const auto doubles = static_cast<std::size_t>(node_doubles * grid.shape().nodes());
+  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
+    const double* const record = displacements.data() + doubles * static_cast<std::size_t>(s);
+    double* const contributions = grid.contributions(NodeArray::first, s);
+    for (const Cell& cell : cells_[static_cast<std::size_t>(s)]) {
+      double u[24];
+      for (int n = 0; n < 8; ++n)
+        for (int a = 0; a < 3; ++a) u[3 * n + a] = record[node_doubles * (cell.lowest + corner_[n]) + a];
+      for (int n = 0; n < 8; ++n) {
+        double* const force =
+            contributions + node_doubles * (cell.lowest + corner_[n]) + node_field::force.first;
+        for (int a = 0; a < 3; ++a) {
+          double sum = 0;
+          for (int q = 0; q < 24; ++q)
+            sum += matrix_[static_cast<std::size_t>(3 * n + a)][static_cast<std::size_t>(q)] * u[q];
+          force[a] -= cell.stiffness * sum;
+        }
+      }
+    }
+  });
+}
+
+void CellStabilisation::add_tangent(const NodeUnknowns& unknowns, bool values, BlockMatrix& matrix) const {
+  std::array<double, 24 * 24> sum;
+  std::array<std::int64_t, 8> numbers;
+  for (Slot s = 0; s < model_.grid->owned(); ++s) {
+    const NodeUnknowns::Node* const nodes = unknowns.of_brick(s);
+    for (const Cell& cell : cells_[static_cast<std::size_t>(s)]) {
+      std::uint32_t held = 0;
+      for (int n = 0; n < 8; ++n) {
+        const NodeUnknowns::Node& node = nodes[cell.lowest + corner_[n]];
+        numbers[static_cast<std::size_t>(n)] = node.number;
+        held |= std::uint32_t{node.held} << 3 * n;
+      }
+      for (std::size_t p = 0; p < 24; ++p)
+        for (std::size_t q = 0; q < 24; ++q)
+          sum[24 * p + q] = ((held >> p | held >> q) & 1) != 0 ? 0 : cell.stiffness * matrix_[p][q];
+      matrix.add(numbers, values ? sum.data() : nullptr);
+    }
+  }
+}
+
+}  // namespace mpm::core

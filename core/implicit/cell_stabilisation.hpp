@@ -1,0 +1,55 @@
+// Stiffness of the empty part of partly filled cells, so that nodes that hardly any particle feels do not
+// spoil the system: at a node whose weights are of size e the particles' force is of order e, their stiffness
+// of order e^2, and nothing bounds its displacement, of order 1/e.
+//
+// Every cell whose eight nodes are active gets a soft elastic material in its empty part (the alpha method of
+// finite cells: Parvizian, Duester and Rank, Comput. Mech. 41 (2007) 121):
+//   f = - alpha (1 - fill) M  integral of B^T (sym grad u),    M: the longitudinal modulus of the material
+//   around
+// The displacement is that of the step and the grid is new in each, so this material never stores stress: it
+// changes a stiffness by the share alpha and no equilibrium. Other remedies: ghost penalties on the faces of
+// such cells (Coombs, IJNME 124 (2023) 4841), which couple nodes two cells apart.
+//
+// Shape functions through cell centres (SGMP, DDMP) do not see a checkerboard of displacements even where
+// cells are full: there all cells count as empty.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/implicit/newton_solver.hpp"
+#include "core/implicit/node_unknowns.hpp"
+
+namespace mpm::core {
+
+class CellStabilisation {
+ public:
+  static constexpr double alpha = 1e-3;
+
+  explicit CellStabilisation(Model& model);
+
+  /// Finds the cells, once the nodes are numbered and mapped::implicit_motion has been summed.
+  void find_cells(const NodeUnknowns& unknowns);
+  /// Adds forces to the contributions, in the components of node_field::force.
+  void add_forces(const AlignedDoubles& displacements);
+  /// Adds the derivative of minus these forces; its structure alone without `values`.
+  void add_tangent(const NodeUnknowns& unknowns, bool values, BlockMatrix& matrix) const;
+
+ private:
+  struct Cell {
+    std::int32_t lowest;  ///< node of the brick
+    double stiffness;     ///< alpha (1 - fill) M
+  };
+  using Matrix = std::array<std::array<double, 24>, 24>;
+
+  static Matrix matrix_of(const Vec3<double>& cell);
+  bool handles(Slot s, const int (&at)[3]) const;
+
+  Model& model_;
+  bool centred_;                          ///< shape functions through cell centres
+  Matrix matrix_;                         ///< of a cell of modulus 1; corner i + 2 j + 4 k
+  int corner_[8];                         ///< nodes of a cell relative to its lowest
+  std::vector<std::vector<Cell>> cells_;  ///< by slot
+};
+
+}  // namespace mpm::core
