@@ -52,6 +52,10 @@ struct MeetingNodes {
   struct Node {
     int number = 0;      ///< in the node block
     bool counts = true;  ///< no later brick has it
+    /// The first brick of this rank that has the node, and its number there: normals by regression are found
+    /// once.
+    Slot finder = no_slot;
+    int number_there = 0;
     std::size_t first_pair = 0, last_pair = 0;
   };
   std::vector<Node> nodes;  ///< in the order of SharedNodes
@@ -112,9 +116,14 @@ class Contact {
   double half_edge(double volume) const;
   /// Gets the particles that normals by regression need. Collective, with the neighbouring ranks.
   void collect_points(NodeHalo& halo);
-  /// With the surfaces mapped, finds where the fields that a brick sees meet, and their normals.
+  /// With the surfaces mapped, finds where the fields that a brick sees meet, and their normals. By
+  /// regression those of the nodes of which it is the finder; take_normals() gets the others.
   void find_meetings(const BrickGrid& grid, const SharedNodes& shared, Slot s,
                      std::vector<FieldNodes>& fields, RegressionScratch& scratch);
+  bool shares_normals() const { return regression_; }
+  /// Normals from the bricks that have found them; then, with all of those taken, complete_meetings().
+  void take_normals(Slot s);
+  void complete_meetings(Slot s) { complete(s, {}); }
   /// With their reach mapped, drops the pairs that are farther apart than the largest gap.
   void drop_distant_pairs(const BrickGrid& grid, const SharedNodes& shared, Slot s);
   const MeetingNodes& meetings(Slot s) const { return meetings_[static_cast<std::size_t>(s)]; }
@@ -140,6 +149,8 @@ class Contact {
                   std::span<const FieldNodes> fields);
   void find_normals(const BrickGrid& grid, Slot s, std::span<const FieldNodes> fields,
                     RegressionScratch& scratch);
+  void complete(Slot s, std::span<const FieldNodes> fields);
+  static Vec3<double> outward(int field, std::span<const MeetingNodes::Pair> pairs);
   Vec3<double> outward(std::span<const FieldNodes> fields, int field, int node,
                        std::span<const MeetingNodes::Pair> pairs) const;
   bool find_pairs(std::span<const FieldNodes> fields, std::span<const MeetingNodes::Pair> pairs,

@@ -1,6 +1,7 @@
 // Where the fields of a brick meet, and the normals and gaps of their pairs there.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/contact/contact.hpp"
 
@@ -39,11 +40,19 @@ void Contact::find_meetings(const BrickGrid& grid, const SharedNodes& shared, Sl
   take_surfaces(grid, shared, s, fields);
   find_nodes(grid, shared, s, fields);
   find_normals(grid, s, fields, scratch);
-  if (!measures_gaps()) return;
+  if (!regression_) complete(s, fields);
+}
+
+/// Drops the pairs without a normal, and finds the outward ones.
+void Contact::complete(Slot s, std::span<const FieldNodes> fields) {
   MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
+  at.filter([](std::size_t, const MeetingNodes::Pair& pair) { return pair.normal != Vec3<double>{}; });
+  if (!measures_gaps()) return;
+  const int count = static_cast<int>(seen(s).size());
   for (const MeetingNodes::Node& node : at.nodes) {
-    for (int f = 0; f < static_cast<int>(fields.size()); ++f)
-      at.outward.push_back(outward(fields, f, node.number, at.pairs_of(node)));
+    for (int f = 0; f < count; ++f)
+      at.outward.push_back(regression_ ? outward(f, at.pairs_of(node))
+                                       : outward(fields, f, node.number, at.pairs_of(node)));
   }
 }
 
@@ -69,7 +78,12 @@ void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot 
     const std::size_t first = at.pairs.size();
     for (std::size_t a = 0; a < present.size(); ++a)
       for (std::size_t b = a + 1; b < present.size(); ++b) at.pairs.push_back({present[a], present[b], {}});
-    at.nodes.push_back({node, counts, first, at.pairs.size()});
+    const auto finder = std::ranges::find_if(shares, [&](const SharedNodes::Share& share) {
+      const Slot there = brick.neighbour[static_cast<std::size_t>(share.neighbour)];
+      return there != no_slot && there < grid.owned();
+    });
+    at.nodes.push_back({node, counts, brick.neighbour[static_cast<std::size_t>(finder->neighbour)],
+                        finder->node, first, at.pairs.size()});
   });
 }
 
@@ -95,7 +109,6 @@ void MeetingNodes::filter(F keep) {
 void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldNodes> fields,
                            RegressionScratch& scratch) {
   MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
-  if (at.nodes.empty()) return;
   const NodeBlockShape shape = grid.shape();
   const auto place = [&](int node, int axis) {
     const int side = shape.side(), stride[3] = {1, side, side * side};
@@ -106,30 +119,59 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
     for (int a = 0; a < 3; ++a) {
       range.lowest[a] = shape.highest(), range.highest[a] = shape.lowest();
       for (const MeetingNodes::Node& node : at.nodes) {
+        if (node.finder != s) continue;
         range.lowest[a] = std::min(range.lowest[a], place(node.number, a));
         range.highest[a] = std::max(range.highest[a], place(node.number, a));
       }
     }
+    if (range.lowest[0] > range.highest[0]) return;
     scratch.by_cell.take(grid, points_, s, range);
   }
-  at.filter([&](std::size_t n, MeetingNodes::Pair& pair) {
-    const int node = at.nodes[n].number;
-    const FieldNodes &first = fields[static_cast<std::size_t>(pair.first)],
-                     &second = fields[static_cast<std::size_t>(pair.second)];
-    std::optional<Vec3<double>> normal;
-    if (regression_) {
-      scratch.by_cell.around(grid, s, {place(node, 0), place(node, 1), place(node, 2)}, first.component,
-                             second.component, scratch.points);
-      normal = separating_normal(scratch.points);
+  for (const MeetingNodes::Node& node : at.nodes) {
+    if (regression_ && node.finder != s) continue;
+    for (std::size_t p = node.first_pair; p < node.last_pair; ++p) {
+      MeetingNodes::Pair& pair = at.pairs[p];
+      const FieldNodes &first = fields[static_cast<std::size_t>(pair.first)],
+                       &second = fields[static_cast<std::size_t>(pair.second)];
+      std::optional<Vec3<double>> normal;
+      if (regression_) {
+        scratch.by_cell.around(grid, s, {place(node.number, 0), place(node.number, 1), place(node.number, 2)},
+                               first.component, second.component, scratch.points);
+        normal = separating_normal(scratch.points);
+      }
+      if (!normal) normal = contact_normal(surface(first, node.number), surface(second, node.number));
+      pair.normal = normal.value_or(Vec3<double>{});
     }
-    if (!normal) normal = contact_normal(surface(first, node), surface(second, node));
-    if (normal) pair.normal = *normal;
-    return normal.has_value();
-  });
+  }
 }
 
-/// Outward normal of a field at a node: of two fields that of the pair, of more its own. Zero where it has no
-/// surface.
+void Contact::take_normals(Slot s) {
+  MeetingNodes& mine = meetings_[static_cast<std::size_t>(s)];
+  for (const MeetingNodes::Node& node : mine.nodes) {
+    if (node.finder == s) continue;
+    const MeetingNodes& theirs = meetings(node.finder);
+    const auto there = std::ranges::find(theirs.nodes, node.number_there, &MeetingNodes::Node::number);
+    if (there == theirs.nodes.end()) throw std::logic_error("a copy of a node does not see who meets there");
+    // Both lists have the pairs of the same components in the same order.
+    for (std::size_t p = 0; p < node.last_pair - node.first_pair; ++p)
+      mine.pairs[node.first_pair + p].normal = theirs.pairs[there->first_pair + p].normal;
+  }
+}
+
+/// By regression: of the pair that the field is in, or the mean of its pairs; zero without.
+Vec3<double> Contact::outward(int field, std::span<const MeetingNodes::Pair> pairs) {
+  Vec3<double> sum{};
+  int count = 0;
+  for (const MeetingNodes::Pair& pair : pairs) {
+    if (pair.first != field && pair.second != field) continue;
+    sum = pair.first == field ? sum + pair.normal : sum - pair.normal;
+    ++count;
+  }
+  const double length = std::sqrt(dot(sum, sum));
+  return count > 1 && length > 0 ? (1 / length) * sum : sum;
+}
+
+/// By gradients: of two fields that of the pair, of more its own. Zero where it has no surface.
 Vec3<double> Contact::outward(std::span<const FieldNodes> fields, int field, int node,
                               std::span<const MeetingNodes::Pair> pairs) const {
   const auto of = [&](int f) { return surface(fields[static_cast<std::size_t>(f)], node); };

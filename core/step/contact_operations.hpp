@@ -80,20 +80,22 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
   const BrickFrame frame = this->frame(s);
   double* contributions = grid.contributions(what.array, s, field_of(s, component));
   std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
-  for_each_block(s, component, columns_to_mass,
-                 [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
-                   const Place place(frame, layout, block);
-                   const double* mass = block + layout.offset(Column::mass);
-                   for (int l = 0; l < used; ++l) {
-                     S::for_each_node(
-                         place, l, frame.inverse_cell,
-                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& gradient) {
-                           double* at = contributions + width * node;
-                           for (int a = 0; a < 3; ++a) at[a] += mass[l] * gradient[a];
-                           at[node_field::surface_mass.first] += mass[l] * shape;
-                         });
-                   }
-                 });
+  for_each_block(
+      s, component, columns_to_mass,
+      [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+        const Place place(frame, layout, block);
+        const double* mass = block + layout.offset(Column::mass);
+        for (int l = 0; l < used; ++l) {
+          S::for_each_node(
+              place, l, frame.inverse_cell,
+              [&](int node, const NodeOffset&, double shape, const Vec3<double>& gradient) {
+                using Record = Lanes<width>;
+                double* at = contributions + width * node;
+                const Record more = typename Record::vector{gradient[0], gradient[1], gradient[2], shape};
+                store(at, load<Record>(at) + Record(mass[l]) * more);
+              });
+        }
+      });
   const BoundaryFaces walls = faces(s);
   if (S::node_block != NodeBlockShape{} && !walls.none()) walls.fold(what, contributions);
 }
@@ -118,21 +120,36 @@ void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
     bool meets = false;
   };
   std::vector<At> at(static_cast<std::size_t>(shape.nodes()));
+  Vec3<double> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
   for (std::size_t n = 0; n < meetings.nodes.size(); ++n) {
     const Vec3<double>& normal = meetings.outward[n * seen.size() + field];
     if (normal == Vec3<double>{}) continue;
     const int node = meetings.nodes[n].number, side = shape.side(), low = shape.lowest();
-    at[static_cast<std::size_t>(node)] = {
-        grid.geometry().node_place(grid.brick(s).coord, node % side + low, node / side % side + low,
-                                   node / (side * side) + low),
-        normal, true};
+    const Vec3<double> x = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
+                                                      node / side % side + low, node / (side * side) + low);
+    at[static_cast<std::size_t>(node)] = {x, normal, true};
+    // A particle is among its nodes: those in question are no farther away than these are wide.
+    constexpr double cells = S::nodes_per_axis - 1 + 1e-6;
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], x[a] - cells * grid.geometry().cell[a]);
+      upper[a] = std::max(upper[a], x[a] + cells * grid.geometry().cell[a]);
+    }
   }
+  const auto near = [&](const double* x) {
+    bool is = true;
+    for (int a = 0; a < 3; ++a) is = is && x[a * block_lanes] >= lower[a] && x[a * block_lanes] <= upper[a];
+    return is;
+  };
   for_each_block(s, component, columns_to_mass + 1,
                  [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
-                   const Place place(frame, layout, block);
                    const double* x = block + layout.offset(Column::position_x);
+                   unsigned wanted = 0;
+                   for (int l = 0; l < used; ++l) wanted |= static_cast<unsigned>(near(x + l)) << l;
+                   if (wanted == 0) return;
+                   const Place place(frame, layout, block);
                    const double* volume = block + layout.offset(Column::volume);
                    for (int l = 0; l < used; ++l) {
+                     if ((wanted >> l & 1u) == 0) continue;
                      const Vec3<double> centre{x[l], x[block_lanes + l], x[2 * block_lanes + l]};
                      const double half = contact_->half_edge(volume[l]);
                      for_each_weight<S>(place, l, frame.inverse_cell, [&](int node, double) {
@@ -157,9 +174,17 @@ void PassesWith<S, T>::map_surfaces() {
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::find_meetings() {
   contact_->collect_points(halo_);
-  for_bricks(0, model_.grid->owned(), [this](Slot s, Scratch& at) {
-    if (contact_->meets(s)) contact_->find_meetings(*model_.grid, shared_, s, at.fields, at.regression);
+  const auto over_bricks = [&](auto work) {
+    for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch& at) {
+      if (contact_->meets(s)) work(s, at);
+    });
+  };
+  over_bricks([this](Slot s, Scratch& at) {
+    contact_->find_meetings(*model_.grid, shared_, s, at.fields, at.regression);
   });
+  if (!contact_->shares_normals()) return;
+  over_bricks([this](Slot s, Scratch&) { contact_->take_normals(s); });
+  over_bricks([this](Slot s, Scratch&) { contact_->complete_meetings(s); });
 }
 
 template <ShapePolicy S, TransferPolicy T>
