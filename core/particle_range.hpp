@@ -19,8 +19,6 @@ class BlockRange {
   using Value = std::conditional_t<std::is_const_v<M>, const double, double>;
 
  public:
-  static constexpr std::int32_t all_components = -1;
-
   BlockRange(M& model, std::span<const Brick> bricks, int first_body, int last_body,
              std::int32_t component = all_components)
       : model_(model),

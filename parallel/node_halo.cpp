@@ -16,7 +16,7 @@ using core::Slot;
 
 namespace {
 
-constexpr int tag_halo = 2, tag_components = 6;
+constexpr int tag_halo = 2, tag_components = 6, tag_points = 7;
 
 using NodeSet = std::bitset<NodeBlockShape{core::most_layers, core::most_layers}.nodes()>;
 
@@ -158,22 +158,31 @@ std::vector<HaloPartner> halo_partners(const BrickGrid& grid, const core::BrickD
 }
 
 void MpiHalo::exchange_components(const BrickGrid& grid, std::vector<std::vector<std::int32_t>>& of_slot) {
+  exchange_lists(grid, of_slot, tag_components);
+}
+
+void MpiHalo::exchange_points(const BrickGrid& grid, std::vector<std::vector<double>>& of_slot) {
+  exchange_lists(grid, of_slot, tag_points);
+}
+
+template <class T>
+void MpiHalo::exchange_lists(const BrickGrid& grid, std::vector<std::vector<T>>& of_slot, int tag) {
   update(grid);
-  // For each brick in the order of the partner's list: how many components, and these.
+  // For each brick in the order of the partner's list: how many numbers, and these.
   std::vector<std::vector<double>> lists(partners_.size());
   Requests requests;
   for (std::size_t p = 0; p < partners_.size(); ++p) {
     for_each_slot(partners_[p].send, [&](Slot s) {
-      const std::vector<std::int32_t>& mine = of_slot[static_cast<std::size_t>(s)];
+      const std::vector<T>& mine = of_slot[static_cast<std::size_t>(s)];
       lists[p].push_back(static_cast<double>(mine.size()));
       lists[p].insert(lists[p].end(), mine.begin(), mine.end());
     });
     requests.send_unannounced(comm_, lists[p].data(), lists[p].size() * sizeof(double), partners_[p].rank,
-                              tag_components);
+                              tag);
   }
   for (const HaloPartner& partner : partners_) {
     std::vector<double> list;
-    comm_.receive_onto(list, partner.rank, tag_components);
+    comm_.receive_onto(list, partner.rank, tag);
     auto next = list.begin();
     for_each_slot(partner.receive, [&](Slot s) {
       const auto count = static_cast<std::ptrdiff_t>(*next++);

@@ -55,9 +55,12 @@ class MpiHalo final : public core::NodeHalo {
   void end(core::BrickGrid& grid) override;
   void exchange_components(const core::BrickGrid& grid,
                            std::vector<std::vector<std::int32_t>>& of_slot) override;
+  void exchange_points(const core::BrickGrid& grid, std::vector<std::vector<double>>& of_slot) override;
 
  private:
   void update(const core::BrickGrid& grid);
+  template <class T>
+  void exchange_lists(const core::BrickGrid& grid, std::vector<std::vector<T>>& of_slot, int tag);
   PersistentRequests& receives(int count) { return receives_[static_cast<std::size_t>(count)]; }
   PersistentRequests& sends(int count) { return sends_[static_cast<std::size_t>(count)]; }
   void set_up_requests(int count);

@@ -16,6 +16,7 @@
 #include "apps/common/resources.hpp"
 #include "apps/common/stop.hpp"
 #include "apps/common/watch.hpp"
+#include "core/contact/overlaps.hpp"
 #include "core/particle_range.hpp"
 #include "core/scene/limits.hpp"
 #include "core/setup/build_model.hpp"
@@ -204,6 +205,10 @@ class Run {
     for (const std::string& law : registry.added()) log_->note("law        {}, added by this program", law);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
     if (!case_.restart) say_thermal_pressures(model_, communication_, *log_);
+    if (!case_.restart && case_.scene->contact.enable) {
+      for (const std::string& overlap : core::overlaps_in_words(model_, communication_))
+        log_->warn("{}", overlap);
+    }
     setup_seconds_ = clock_.seconds();
   }
 

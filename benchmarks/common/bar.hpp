@@ -45,8 +45,9 @@ struct BarInput {
   std::string grid_attributes{}, solution_attributes{};  ///< as they stand in the element
   std::string velocity = R"(<InitialVelocity vx="0" vy="0" vz="-190"/>)";
   std::string time_step = R"(<TimeStep factor="0.4"/>)";
-  int foot = 2;    ///< boundary type of the face that the bar stands on
-  int bodies = 1;  ///< slices along the axis, each a body
+  int foot = 2;             ///< boundary type of the face that the bar stands on
+  int bodies = 1;           ///< slices along the axis, each a body
+  bool components = false;  ///< each slice in a component of its own
 
   std::string text() const {
     const double dp = bar_spacing(particles), cell = 2 * dp;
@@ -57,18 +58,20 @@ struct BarInput {
         R"(<?xml version="1.0" encoding="utf-8"?><PeneBlast version="1.0"><Header><Name value="bar"/></Header>)";
     t += fmt::format(R"(<Material name="copper"><ReferenceDensity value="8.93e-3"/>{}{}{}</Material>)",
                      strength, eos, failure);
-    t += R"(<Component name="bar">)";
+    if (!components) t += R"(<Component name="bar">)";
     // Slices end between layers of particles.
     const double layers = std::round(bar_length / dp);
     for (int i = 0; i < bodies; ++i) {
       const double low = i == 0 ? 0 : dp * std::round(layers * i / bodies);
       const double high = i + 1 == bodies ? bar_length : dp * std::round(layers * (i + 1) / bodies);
+      if (components) t += fmt::format(R"(<Component name="bar{}">)", i);
       t += fmt::format(R"(<Body name="bar{}" material="copper" type="Cylinder">)", i);
       t += fmt::format(R"(<Geometry x0="0" y0="0" z0="{0}" dp_bottom="{1}" dp_top="{1}" )", low, dp);
       t += fmt::format(R"(Bottom_Outer_Radius="{0}" Top_Outer_Radius="{0}" height="{1}"/>{2}{3}</Body>)",
                        bar_diameter / 2, high - low, velocity, body);
+      if (components) t += "</Component>";
     }
-    t += "</Component>";
+    if (!components) t += "</Component>";
     t += fmt::format(R"(<Grid {}><Cell type="regular">)", grid_attributes);
     for (const char* axis : {"X", "Y"}) {
       t += fmt::format(R"(<{0}Min value="{1}" boundary="0"/><{0}Max value="{2}" boundary="0"/>)", axis,

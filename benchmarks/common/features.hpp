@@ -114,6 +114,13 @@ inline std::vector<Feature> features() {
   }
   for (const int n : {2, 8}) add("bodies", fmt::format("{} bodies", n), "one body", bar, {.bodies = n});
 
+  const BarInput slices{.bodies = 2, .components = true};
+  add("contact", "two components without contact", "one component", {.bodies = 2}, slices);
+  for (const char* attributes : {"", R"(distance_type="2" min_distance="0.05")",
+                                 R"(distance_type="2" min_distance="0.05" contact_normal="regression")"})
+    add("contact", fmt::format("contact {}", attributes), "without", slices,
+        {.more = fmt::format(R"(<Contact enable="1" {}/>)", attributes), .bodies = 2, .components = true});
+
   add("output", "sound speed shown (cp)", "not", {.output = showing("pres")}, {.output = showing("pres|cp")});
   add("output", "yield stress shown (sigy)", "not", {.output = showing("pres")},
       {.output = showing("pres|sigy")});

@@ -123,6 +123,9 @@ class TimedHalo final : public core::NodeHalo {
                            std::vector<std::vector<std::int32_t>>& of_slot) override {
     times_.timed(CommunicationTimes::Part::begin_halo, [&] { inner_.exchange_components(grid, of_slot); });
   }
+  void exchange_points(const core::BrickGrid& grid, std::vector<std::vector<double>>& of_slot) override {
+    times_.timed(CommunicationTimes::Part::begin_halo, [&] { inner_.exchange_points(grid, of_slot); });
+  }
 
  private:
   core::NodeHalo& inner_;

@@ -22,6 +22,9 @@ class NodeHalo {
   /// neighbouring ranks.
   virtual void exchange_components(const BrickGrid& grid,
                                    std::vector<std::vector<std::int32_t>>& of_slot) = 0;
+  /// of_slot: any numbers of the owned slots; sets those of the ghosts. Collective, with the neighbouring
+  /// ranks.
+  virtual void exchange_points(const BrickGrid& grid, std::vector<std::vector<double>>& of_slot) = 0;
 };
 
 }  // namespace mpm::core

@@ -41,6 +41,7 @@ class SoloHalo final : public NodeHalo {
   void begin(BrickGrid&, NodeFields) override {}
   void end(BrickGrid&) override {}
   void exchange_components(const BrickGrid&, std::vector<std::vector<std::int32_t>>&) override {}
+  void exchange_points(const BrickGrid&, std::vector<std::vector<double>>&) override {}
 };
 
 class SoloCommunication : public Communication {

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/communication/node_halo.hpp"
+#include "core/contact/contact_points.hpp"
 #include "core/contact/contact_record.hpp"
 #include "core/contact/node_contact.hpp"
 #include "core/contact/rigid_bodies.hpp"
@@ -32,18 +33,48 @@
 
 namespace mpm::core {
 
-/// Stands for all components where a brick has one velocity field.
-inline constexpr std::int32_t every_component = -1;
-
 /// Where a field has no particle near a node.
 inline constexpr double no_reach = -std::numeric_limits<double>::infinity();
 
 /// One velocity field at the nodes of a brick.
 struct FieldNodes {
-  std::int32_t component = every_component;
+  std::int32_t component = all_components;
   std::vector<double> motion;   ///< MotionRecords
-  std::vector<double> surface;  ///< records of node_doubles: sum of m grad S in 0..2 (4-31)
-  std::vector<double> reach;  ///< by node: distance from it to the field's surface, along its outward normal
+  std::vector<double> surface;  ///< records of node_doubles: sum of m grad S in 0..2 (4-31), of m S in 3
+};
+
+/// Where fields meet in the node block of a brick: once per step, before anything is updated.
+struct MeetingNodes {
+  struct Pair {
+    int first = 0, second = 0;  ///< numbers of the fields, among those that the brick sees
+    Vec3<double> normal{};      ///< from the first to the second
+  };
+  struct Node {
+    int number = 0;      ///< in the node block
+    bool counts = true;  ///< no later brick has it
+    /// The first brick of this rank that has the node, and its number there: normals by regression are found
+    /// once.
+    Slot finder = no_slot;
+    int number_there = 0;
+    std::size_t first_pair = 0, last_pair = 0;
+  };
+  std::vector<Node> nodes;  ///< in the order of SharedNodes
+  std::vector<Pair> pairs;
+  /// Where gaps are measured: outward normals by node of the list, then field; zero: none.
+  std::vector<Vec3<double>> outward;
+
+  std::span<const Pair> pairs_of(const Node& node) const {
+    return std::span(pairs).subspan(node.first_pair, node.last_pair - node.first_pair);
+  }
+  void clear() { nodes.clear(), pairs.clear(), outward.clear(); }
+  template <class F>
+  void filter(F keep);
+};
+
+/// Of a thread, for normals by regression.
+struct RegressionScratch {
+  PointsByCell by_cell;
+  LabelledPoints points;
 };
 
 /// What contact adds to in a step, by thread.
@@ -83,24 +114,27 @@ class Contact {
   bool measures_gaps() const { return largest_gap_.has_value(); }
   /// Half the edge of a particle of this volume, where the faces of particles count and not their centres.
   double half_edge(double volume) const;
-  /// Sums the surfaces of the fields that a brick sees, their motion aside; they are taken as perpendicular
-  /// to constrained faces.
-  void take_surfaces(const BrickGrid& grid, const SharedNodes& shared, Slot s,
-                     std::vector<FieldNodes>& fields) const;
-  /// With those summed, how far the fields reach.
-  void take_reach(const BrickGrid& grid, const SharedNodes& shared, Slot s,
-                  std::vector<FieldNodes>& fields) const;
-  /// Outward normal of a field at a node: of two fields that of the pair, of more its own. None where it has
-  /// no surface.
-  std::optional<Vec3<double>> outward(std::span<const FieldNodes> fields, std::size_t field, int node) const;
+  /// Gets the particles that normals by regression need. Collective, with the neighbouring ranks.
+  void collect_points(NodeHalo& halo);
+  /// With the surfaces mapped, finds where the fields that a brick sees meet, and their normals. By
+  /// regression those of the nodes of which it is the finder; take_normals() gets the others.
+  void find_meetings(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                     std::vector<FieldNodes>& fields, RegressionScratch& scratch);
+  bool shares_normals() const { return regression_; }
+  /// Normals from the bricks that have found them; then, with all of those taken, complete_meetings().
+  void take_normals(Slot s);
+  void complete_meetings(Slot s) { complete(s, {}); }
+  /// With their reach mapped, drops the pairs that are farther apart than the largest gap.
+  void drop_distant_pairs(const BrickGrid& grid, const SharedNodes& shared, Slot s);
+  const MeetingNodes& meetings(Slot s) const { return meetings_[static_cast<std::size_t>(s)]; }
 
   /// MUSL's strain velocity comes after that of the end of the step, which the fields' motion still has.
   enum class Velocity { of_end, of_strain, of_strain_after_end };
-  /// Changes the velocities of a brick's fields, with take_surfaces() done, and of those at the end of the
+  /// Changes the velocities of the fields that a brick sees where they meet, and of those at the end of the
   /// step the increments that the particles get. Adds to `sums` what happens at nodes that no later brick
   /// has.
-  void resolve(const BrickGrid& grid, const SharedNodes& shared, Slot s, Velocity which,
-               std::span<FieldNodes> fields, ContactSums& sums) const;
+  void resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
+               ContactSums& sums) const;
 
  private:
   struct Node;
@@ -109,8 +143,20 @@ class Contact {
   double friction(std::int32_t a, std::int32_t b) const;
   /// Number of the rigid body that is a component; -1: none.
   int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
-  bool find_pairs(std::span<const FieldNodes> fields, int node, Node& at) const;
+  void take_surfaces(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                     std::vector<FieldNodes>& fields) const;
+  void find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                  std::span<const FieldNodes> fields);
+  void find_normals(const BrickGrid& grid, Slot s, std::span<const FieldNodes> fields,
+                    RegressionScratch& scratch);
+  void complete(Slot s, std::span<const FieldNodes> fields);
+  static Vec3<double> outward(int field, std::span<const MeetingNodes::Pair> pairs);
+  Vec3<double> outward(std::span<const FieldNodes> fields, int field, int node,
+                       std::span<const MeetingNodes::Pair> pairs) const;
+  bool find_pairs(std::span<const FieldNodes> fields, std::span<const MeetingNodes::Pair> pairs,
+                  Node& at) const;
   void hold_pairs(Node& at) const;
+  void resolve_strain(Node& at, Velocity which) const;
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
 
   const Model& model_;
@@ -126,6 +172,9 @@ class Contact {
   ContactPairs pairs_;
   std::vector<std::size_t> seen_begin_{0};
   std::vector<std::int32_t> seen_;
+  bool regression_ = false;
+  ContactPoints points_;                ///< empty without regression
+  std::vector<MeetingNodes> meetings_;  ///< by owned slot; those of slots that do not meet are not set
 };
 
 }  // namespace mpm::core

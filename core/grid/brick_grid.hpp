@@ -21,6 +21,9 @@ namespace mpm::core {
 using Slot = std::int32_t;
 inline constexpr Slot no_slot = -1;
 
+/// In place of a component's number: all of them.
+inline constexpr std::int32_t all_components = -1;
+
 /// Resizable, page-aligned array of doubles; contents are undefined after a resize.
 class AlignedDoubles {
  public:

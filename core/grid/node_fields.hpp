@@ -60,8 +60,9 @@ inline constexpr NodeFields volume{NodeArray::first, 4, 1};
 inline constexpr NodeFields modulus{NodeArray::first, 5, 1};
 // Momentum of an order of XPIC or FMPM.
 inline constexpr NodeFields correction{NodeArray::third, 0, 3};
-// Contact: sum of m grad S.
+// Contact: sums of m grad S and of m S.
 inline constexpr NodeFields surface{NodeArray::fourth, 0, 3};
+inline constexpr NodeFields surface_mass{NodeArray::fourth, 3, 1};
 // Contact: how far a body reaches along its normal; the largest contribution counts, not the sum.
 inline constexpr NodeFields reach{NodeArray::fifth, 0, 1};
 // Heat conduction (conduction.hpp).
@@ -88,6 +89,7 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"modulus", node_field::modulus},
     NamedNodeFields{"correction", node_field::correction},
     NamedNodeFields{"surface", node_field::surface},
+    NamedNodeFields{"surface mass", node_field::surface_mass},
     NamedNodeFields{"reach", node_field::reach},
     NamedNodeFields{"heat capacity", node_field::heat_capacity},
     NamedNodeFields{"heat", node_field::heat},
@@ -110,7 +112,7 @@ inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_f
 inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
 inline constexpr NodeFields correction = node_field::correction;
 inline constexpr NodeFields cells_in_use = node_field::cells_in_use;
-inline constexpr NodeFields surface = node_field::surface;
+inline constexpr NodeFields surface = node_field::surface | node_field::surface_mass;
 inline constexpr NodeFields reach = node_field::reach;
 inline constexpr NodeFields heat = node_field::heat_capacity | node_field::heat;
 inline constexpr NodeFields heat_flow = node_field::heat_flow | node_field::unresolved_heat;

@@ -133,6 +133,9 @@ struct ContactInput {
   double min_distance = 0;  ///< in cells
   bool limits_time_step = false;
   Method method = Method::pan;
+  /// Whether normals follow from a regression on the particles of both bodies (separating_plane.hpp), not
+  /// from gradients of mass with weights.
+  bool regression = false;
   bool record_force = false;
 
   /// Whether the gap between two bodies decides about their contact.

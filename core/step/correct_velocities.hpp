@@ -42,7 +42,7 @@ void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] 
     typename S::template Scatter<what> cell;
     cell.clear();
     at.corrected.take_motion(corrected_nodes(s));
-    for_each_block(s, every_component, columns_to_mass,
+    for_each_block(s, all_components, columns_to_mass,
                    [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                      const Place place(frame, layout, block);
                      MappedRows rows;
@@ -61,7 +61,7 @@ void PassesWith<S, T>::correct_velocities([[maybe_unused]] int order) {
     if (!correcting_) return;
     // All nodes first: their sums read the contributions of the order before, which are then replaced.
     for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch& at) {
-      if (order == 2) sum_and_update_nodes(s, every_component, at);
+      if (order == 2) sum_and_update_nodes(s, all_components, at);
       add_order(s, order - 1, at);
     });
     map_bricks<mapped::correction>([&](Slot s, Scratch& at) { map_increments(s, at); });

@@ -45,9 +45,11 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     then("velocity fields of components", [&] { pass.find_fields(ranks_); });
     then("surfaces to grid", [&] { pass.map_surfaces(); });
     then("exchange surfaces", [&] { pass.finish_exchange(); });
+    then("normals", [&] { pass.find_meetings(); });
     if (model_.scene->contact.measures_gaps()) {
       then("gaps to grid", [&] { pass.map_reach(); });
       then("exchange gaps", [&] { pass.finish_exchange(); });
+      then("pairs that touch", [&] { pass.drop_distant_pairs(); });
     }
   }
 

@@ -134,7 +134,7 @@ int axis_of(NodeFields what, int c) {
   if (maps_momentum(what) && c >= momentum && c < momentum + 3) return c - momentum;
   if (maps_force(what) && c >= node_field::force.first && c < node_field::force.end())
     return c - node_field::force.first;
-  if (what == node_field::surface) return c < 3 ? c : -1;
+  if (what == mapped::surface) return c < node_field::surface.end() ? c : -1;
   return -1;
 }
 

@@ -26,7 +26,11 @@ class Passes {
   /// where there is contact.
   virtual void find_fields(Reductions& ranks) = 0;
   virtual void map_surfaces() = 0;
+  /// The nodes where they meet, with normals; then how far the bodies reach from these, and the pairs that
+  /// are near enough.
+  virtual void find_meetings() = 0;
   virtual void map_reach() = 0;
+  virtual void drop_distant_pairs() = 0;
   /// Rigid bodies at the end of the step, with the impulses of contact on them. Only where there are any.
   virtual void move_rigid_bodies() = 0;
 

@@ -1,8 +1,8 @@
 // The passes (passes.hpp) with shape functions S and transfer T: what each does in which order, brick by
 // brick. Operations on a brick, a block or a batch are functions of their own (brick_operations.hpp,
-// correct_velocities.hpp); for_bricks and for_each_block define the order and the prefetching.
-// Instantiated once per pair (passes_<shape>.cpp), through make_passes_with alone: the compiler inlines
-// members of a class template that is instantiated explicitly less freely (5 % of MUSL's time).
+// contact_operations.hpp, correct_velocities.hpp); for_bricks and for_each_block define the order and the
+// prefetching. Instantiated once per pair (passes_<shape>.cpp), through make_passes_with alone: the compiler
+// inlines members of a class template that is instantiated explicitly less freely (5 % of MUSL's time).
 #pragma once
 
 #include <cmath>
@@ -41,7 +41,9 @@ class PassesWith final : public Passes {
 
   void find_fields(Reductions& ranks) override { contact_->find_fields(*model_.grid, halo_, ranks); }
   void map_surfaces() override;
+  void find_meetings() override;
   void map_reach() override;
+  void drop_distant_pairs() override;
   void move_rigid_bodies() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
@@ -71,6 +73,7 @@ class PassesWith final : public Passes {
     Place places[batch_blocks];
     typename S::Field field;
     std::vector<FieldNodes> fields;  ///< where components meet
+    RegressionScratch regression;
     ContactSums contact;
     SiteAverages averages;  ///< of the current tile; empty where volume changes are not averaged
     [[no_unique_address]] std::conditional_t<corrects, typename S::Field, Nothing> corrected;
@@ -89,11 +92,11 @@ class PassesWith final : public Passes {
   void for_each_batch(Slot s, std::int32_t component, const BrickFrame& frame, Scratch& at, E tile_work,
                       F block_work, G batch_work);
   bool holds(const ParticleTile& tile, std::int32_t component) const {
-    return component == every_component || tile.component == component;
+    return component == all_components || tile.component == component;
   }
   /// Velocity field of a component in a brick that holds particles of it.
   int field_of(Slot s, std::int32_t component) const {
-    return component == every_component ? 0 : model_.grid->field_of(s, component);
+    return component == all_components ? 0 : model_.grid->field_of(s, component);
   }
   template <class F>
   void for_each_own_field(Slot s, F f);
@@ -101,9 +104,10 @@ class PassesWith final : public Passes {
   void for_each_field(Slot s, Scratch& at, Contact::Velocity which, Update update, F f);
   template <class Update>
   void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
+  void keep_motion_of_others(Slot s, const Scratch& at);
   template <NodeArray of>
   void sum(const SharedNodes& shared, Slot s, std::int32_t component, double* sums) const {
-    if (component == every_component)
+    if (component == all_components)
       sum_contributions<of>(*model_.grid, shared, s, sums);
     else
       sum_contributions<of>(*model_.grid, shared, s, component, sums);
@@ -120,7 +124,7 @@ class PassesWith final : public Passes {
   void map_tile(Slot s, std::size_t c, const BrickFrame& frame, Scratch& at, double* contributions,
                 SpreadPrefetch& room, Scatter& running, double* records, F before);
   void map_surface(Slot s, std::int32_t component);
-  void map_reach(Slot s, std::int32_t component, std::span<const FieldNodes> fields);
+  void map_reach(Slot s, std::int32_t component);
   template <NodeFields what>
   void fold_at_walls(Slot s, int field, double* contributions);
   void sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at);
@@ -363,54 +367,10 @@ void PassesWith<S, T>::map_bricks(F work) {
   for_bricks(grid.boundary(), grid.owned(), work);
 }
 
-/// f(component) for the velocity fields of a brick's particles: every component where there is one field.
-template <ShapePolicy S, TransferPolicy T>
-template <class F>
-[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_own_field(Slot s, F f) {
-  std::span<const std::int32_t> fields(&every_component, 1);
-  if (contact_ && model_.grid->velocity_fields(s) > 1) fields = model_.grid->components(s);
-  for (const std::int32_t component : fields) f(component);
-}
-
-/// For the velocity fields that a brick sees: update(component, k) brings the motion of the field number k
-/// into at.nodes; where components meet, their velocities are then resolved; f(component) uses at.nodes, for
-/// the fields in which the brick has particles.
-template <ShapePolicy S, TransferPolicy T>
-template <class Update, class F>
-[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_field(Slot s, Scratch& at,
-                                                                    Contact::Velocity which, Update update,
-                                                                    F f) {
-  if (!contact_ || !contact_->meets(s)) {
-    update(every_component, 0);
-    f(every_component);
-    return;
-  }
-  meet(s, at, which, update);
-  for (const FieldNodes& field : at.fields) {
-    if (model_.grid->field_of(s, field.component) < 0) continue;
-    std::copy(field.motion.begin(), field.motion.end(), at.nodes.data());
-    f(field.component);
-  }
-  // A brick without particles still clears its contributions, which its neighbours may sum.
-  if (model_.grid->components(s).empty()) f(every_component);
-}
-
-/// Resolves the velocities of the fields that a brick sees, in at.fields.
-template <ShapePolicy S, TransferPolicy T>
-template <class Update>
-[[gnu::noinline]] void PassesWith<S, T>::meet(Slot s, Scratch& at, Contact::Velocity which, Update update) {
-  contact_->take_surfaces(*model_.grid, shared_, s, at.fields);
-  if (contact_->measures_gaps()) contact_->take_reach(*model_.grid, shared_, s, at.fields);
-  for (std::size_t k = 0; k < at.fields.size(); ++k) {
-    update(at.fields[k].component, k);
-    at.fields[k].motion.assign(at.nodes.data(), at.nodes.data() + at.nodes.size());
-  }
-  contact_->resolve(*model_.grid, shared_, s, which, at.fields, at.contact);
-}
-
 }  // namespace mpm::core
 
 #include "core/step/brick_operations.hpp"
+#include "core/step/contact_operations.hpp"
 #include "core/step/correct_velocities.hpp"
 
 namespace mpm::core {
@@ -418,48 +378,14 @@ namespace mpm::core {
 // --- the passes -------------------------------------------------------------------------------------------
 
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::map_surfaces() {
-  map_bricks<mapped::surface>([this](Slot s, Scratch&) {
-    if (contact_->meets(s)) for_each_own_field(s, [&](std::int32_t component) { map_surface(s, component); });
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::map_reach() {
-  map_bricks<mapped::reach>([this](Slot s, Scratch& at) {
-    if (!contact_->meets(s)) return;
-    contact_->take_surfaces(*model_.grid, shared_, s, at.fields);
-    for_each_own_field(s, [&](std::int32_t component) { map_reach(s, component, at.fields); });
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::move_rigid_bodies() {
-  std::vector<RigidImpulse> impulses(rigid_->count());
-  for (Scratch& w : scratch_) {
-    for (std::size_t r = 0; r < w.contact.rigid.size(); ++r) impulses[r] += w.contact.rigid[r];
-    w.contact.rigid.clear();
-  }
-  rigid_->end_step(impulses, scratch_[0].statistics.work, scratch_[0].contact.record);
-  for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch&) {
-    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
-      const int number = rigid(tile.body);
-      if (number < 0) continue;
-      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
-      for (const auto block : tile.blocks) rigid_->set_velocities(number, pool.layout(), pool.block(block));
-    }
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities_and_map_back() {
   motion_.resize(static_cast<std::size_t>(motion_doubles()) *
                  (contact_ ? contact_->all_seen() : static_cast<std::size_t>(model_.grid->owned())));
   map_bricks<mapped::momentum>([&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component) {
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
       take_updated_nodes(s, at);
-      if (component == every_component) keep_motion(shared_.nodes(), moving_nodes(s, at), motion(s));
+      keep_motion(shared_.nodes(), moving_nodes(s, at), motion(s, k));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       SpreadPrefetch room = prefetch_motion(s);
       const BrickFrame frame = this->frame(s);
@@ -470,10 +396,7 @@ void PassesWith<S, T>::update_velocities_and_map_back() {
                                     update_velocities(s, frame, body, place, block, used, at);
                                   });
     });
-    if (contact_ && contact_->meets(s)) {
-      for (std::size_t k = 0; k < at.fields.size(); ++k)
-        keep_motion(shared_.nodes(), at.fields[k].motion.data(), motion(s, k));
-    }
+    if (contact_ && contact_->meets(s)) keep_motion_of_others(s, at);
     at.add_work_of_brick();
   });
 }
@@ -488,16 +411,17 @@ void PassesWith<S, T>::update_stress_and_move() {
       sum<NodeArray::second>(momentum_shared_, s, component, at.sums.data());
       second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
     };
-    for_each_field(s, at, Contact::Velocity::of_strain_after_end, update, [&](std::int32_t component) {
-      at.field.take_motion(at.nodes.data());
-      at.field.take_strain(frame(s), at.nodes.data());
-      auto nodes = prefetch_nodes<NodeArray::second>(s);
-      SpreadPrefetch room = prefetch_motion(s);
-      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
-        nodes.next();
-        room.next();
-      });
-    });
+    for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
+                   [&](std::int32_t component, std::size_t) {
+                     at.field.take_motion(at.nodes.data());
+                     at.field.take_strain(frame(s), at.nodes.data());
+                     auto nodes = prefetch_nodes<NodeArray::second>(s);
+                     SpreadPrefetch room = prefetch_motion(s);
+                     stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
+                       nodes.next();
+                       room.next();
+                     });
+                   });
   });
 }
 
@@ -511,7 +435,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
       second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
                         at.nodes.data());
     };
-    for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component) {
+    for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
       at.field.take_strain(frame(s), at.nodes.data());
       auto nodes = prefetch_nodes<NodeArray::second>(s);
       stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
@@ -526,7 +450,7 @@ void PassesWith<S, T>::update_velocities_and_move() {
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component) {
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t) {
       take_updated_nodes(s, at);
       // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
       // particles.
@@ -543,7 +467,7 @@ void PassesWith<S, T>::update_all() {
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component) {
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t) {
       take_updated_nodes(s, at);
       velocities_of_brick(s, component, at);
       regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());

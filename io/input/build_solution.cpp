@@ -30,6 +30,7 @@ core::ContactInput build_contact(const Node& root) {
   contact.limits_time_step = node->boolean("contact_time_step");
   contact.method = static_cast<core::ContactInput::Method>(node->small_integer("contact_type"));
   contact.record_force = node->boolean("record_contact_force");
+  contact.regression = node->word("contact_normal") == "regression";
   return contact;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/contact/component_contact.hpp"
 #include "io/input/build.hpp"
 
 namespace mpm::io {
@@ -19,14 +20,6 @@ std::vector<Bodies> bodies_by_component(const core::Scene& scene) {
     bodies[static_cast<std::size_t>(component)].push_back(&body);
   });
   return bodies;
-}
-
-double friction(const core::Scene& scene, std::size_t a, std::size_t b) {
-  for (const core::FrictionPair& pair : scene.frictions)
-    if ((pair.first_material == a && pair.second_material == b) ||
-        (pair.first_material == b && pair.second_material == a))
-      return pair.coefficient;
-  return 0;
 }
 
 std::vector<std::size_t> materials_of(const Bodies& bodies) {
@@ -46,7 +39,8 @@ void check_friction(const Node& node, std::size_t c, const std::vector<Bodies>& 
     for (const std::size_t theirs : materials_of(bodies[other])) {
       for (const std::size_t material : mine) {
         if (material >= scene.materials.size() || theirs >= scene.materials.size()) return;
-        if (friction(scene, material, theirs) == friction(scene, mine.front(), theirs)) continue;
+        if (core::friction_of(scene, material, theirs) == core::friction_of(scene, mine.front(), theirs))
+          continue;
         return node.report(
             context.diagnostics,
             fmt::format("its materials '{}' and '{}' have different friction against '{}': contact has one "

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/discretise/solid_box.hpp"
+#include "io/input/contact_notes.hpp"
 #include "io/input/text.hpp"
 
 namespace mpm::io {
@@ -31,6 +32,7 @@ struct Place {
 };
 
 bool contact_is_off(const Place& at) { return !at.scene.contact.enable; }
+bool regression(const Place& at) { return at.scene.contact.enable && at.scene.contact.regression; }
 
 const MaterialInput& material_of(const Scene& scene, const core::BodyInput& body) {
   return scene.materials[body.material];
@@ -126,6 +128,8 @@ struct Rule {
 
 const std::vector<Rule>& rules() {
   static constexpr std::string_view no_contact = "used only by Contact, which is off";
+  static constexpr std::string_view no_weights =
+      "with contact_normal=\"regression\" the particles of both bodies give the normal";
   static constexpr std::string_view no_part = "an operand of Bool bodies takes no part in the run";
   static const std::vector<Rule> table{
       {"Material", {}, unused_material, "no body is made of this material"},
@@ -219,6 +223,11 @@ const std::vector<Rule>& rules() {
       {"Friction", {}, contact_is_off, no_contact},
       {"WorkPlane", {}, unused_plane, "no body uses this work plane"},
       {"Component", {"normal_vector_weight"}, contact_is_off, no_contact},
+      {"Component", {"normal_vector_weight"}, regression, no_weights},
+      {"Contact",
+       {"auto_normal_vector_weight", "normal_vector_excluding_failure_particle"},
+       regression,
+       no_weights},
       {"Component/Body",
        {"ForBoolBody"},
        [](const Place& at) { return operand(at) && !at.operands->contains(at.body); },
@@ -412,38 +421,9 @@ std::string touching(const Scene& scene) {
   return {};
 }
 
-/// Contact cannot change the motion of driven rigid bodies.
-void note_driven(const Scene& scene, std::vector<core::Diagnostic>& notes) {
-  const auto driven = [](const core::BodyInput& body) {
-    return body.constrain_rigid_position || body.prescribed_velocity.has_value();
-  };
-  const auto fixed = [](const core::BodyInput& body) {
-    return !body.constrain_rigid_position && body.prescribed_velocity == core::Vec3<double>{} &&
-           body.prescribed_velocity_expressions.empty();
-  };
-  const core::BodyInput *moves = nullptr, *other = nullptr;
-  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
-    if (!rigid(material_of(scene, body)) || !driven(body)) return;
-    if (moves == nullptr && !fixed(body))
-      moves = &body;
-    else
-      other = &body;
-  });
-  if (moves == nullptr || other == nullptr) return;
-  notes.push_back(
-      {moves->source.file,
-       moves->source.line,
-       "Body",
-       {},
-       {},
-       fmt::format("rigid bodies '{}' and '{}' both have a prescribed motion: where they meet they pass "
-                   "through each other",
-                   moves->name, other->name)});
-}
-
 /// Consequences of several components without contact.
 void note_components(const Scene& scene, std::vector<core::Diagnostic>& notes) {
-  if (scene.contact.enable) return note_driven(scene, notes);
+  if (scene.contact.enable) return;
   const core::ComponentInput* second = nullptr;
   int first = -1, count = 0, rigid_bodies = 0;
   core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
@@ -471,6 +451,7 @@ std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene
   walk.element(root, "", nullptr, nullptr);
   std::vector<core::Diagnostic> notes = walk.notes();
   note_components(scene, notes);
+  if (scene.contact.enable) note_contact(root, scene, notes);
   std::ranges::stable_sort(notes, {}, &core::Diagnostic::line);
   return notes;
 }

@@ -225,6 +225,16 @@ class Case(unittest.TestCase):
         self.assertEqual(outcome.code, code, outcome)
         return outcome
 
+    def state(self, text, folder, **more):
+        """The state at the end of a run of this input."""
+        return self.run_in(folder, [self.write(text)], **more).state
+
+    def check_restart_onto_other_ranks(self, text):
+        """Expects the state at the end from the first restart file, on three ranks instead of two, too."""
+        expected = self.state(text, "on2", ranks=2)
+        halfway = restarts(self.folder / "on2")[0]
+        self.assertEqual(self.run_in("on3", [halfway], ranks=3).state, expected)
+
 
 def script(path, *arguments):
     """Runs a Python script of the source tree with the programs under test."""

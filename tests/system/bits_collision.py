@@ -52,10 +52,6 @@ def datasets(path):
 
 
 class Collision(Case):
-    def state(self, text, folder, **more):
-        self.write(text)
-        return self.run_in(folder, [self.folder / "case.xmp"], **more).state
-
     def test_the_case_is_what_it_is_meant_to_be(self):
         """Else the comparisons below would show little."""
         self.state(collision(), "alone")

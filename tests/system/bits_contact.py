@@ -38,7 +38,12 @@ class Contact(Case):
         return state, rows(self.folder / folder / "case_curv.dat"), rows(self.folder / folder / "case.sta")
 
     def test_all_ranks_threads_and_partitions(self):
-        arguments = ("linear", "MUSL", 1, 'distance_type="2" min_distance="0.1"')
+        for normal in ("mass_gradient", "regression"):
+            with self.subTest(normal=normal):
+                self.compare_all(normal)
+
+    def compare_all(self, normal):
+        arguments = ("linear", "MUSL", 1, f'distance_type="2" min_distance="0.1" contact_normal="{normal}"')
         alone = self.run_of(scene(*arguments), "alone")
         energy = _mpm.summary(self.folder / "alone")["energy"]
         self.assertGreater(energy["dissipated_by_contact"], 0)
@@ -56,7 +61,9 @@ class Contact(Case):
         for n, (shape, algorithm, kind, distance, more) in enumerate((
                 ("QuadraticBSpline", "MUSL", 0, "", 'auto_normal_vector_weight="1"'),
                 ("uGIMP", "USF", 2, 'distance_type="1" min_distance="0.9"', 'contact_time_step="1"'),
-                ("SGMP", "USL", 1, 'distance_type="2" min_distance="0.1"', ""))):
+                ("SGMP", "USL", 1, 'distance_type="2" min_distance="0.1"', ""),
+                ("uGIMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
+                ("QuadraticBSpline", "USF", 1, "", 'contact_normal="regression"'))):
             with self.subTest(shape=shape, algorithm=algorithm, kind=kind):
                 text = scene(shape, algorithm, kind, distance, more=more)
                 alone = self.run_of(text, f"alone{n}")

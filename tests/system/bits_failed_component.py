@@ -25,10 +25,6 @@ def collision(apart=1, threshold=0.6, algorithm="MUSL", output=""):
 
 
 class FailedComponent(Case):
-    def state(self, text, folder, **more):
-        self.write(text)
-        return self.run_in(folder, [self.folder / "case.xmp"], **more).state
-
     def test_any_ranks_and_threads(self):
         for algorithm in ("MUSL", "USF", "USL"):
             text = collision(algorithm=algorithm)
@@ -49,9 +45,7 @@ class FailedComponent(Case):
 
     def test_restart_onto_other_ranks(self):
         output = f'<Restart time_interval="{END / 2}"/>'
-        expected = self.state(collision(output=output), "on2", ranks=2)
-        halfway = _mpm.restarts(self.folder / "on2")[0]
-        self.assertEqual(self.run_in("on3", [halfway], ranks=3).state, expected)
+        self.check_restart_onto_other_ranks(collision(output=output))
 
 
 if __name__ == "__main__":

@@ -209,7 +209,7 @@ std::string make_all_keywords() {
          "<Contact enable='0' failure_to_component='0' auto_normal_vector_weight='0' "
          "normal_vector_excluding_failure_particle='0' "
          "distance_type='2' min_distance='0.01' contact_time_step='1' contact_type='2' "
-         "record_contact_force='1'/>\n"
+         "record_contact_force='1' contact_normal='regression'/>\n"
          "<Solution algorithm='USF' near_boundary_stop='1' Integration='impl' transfer='XPIC' "
          "flip_fraction='1' xpic_order='3' xpic_interval='2'>"
          "<EndTime value='1'/><TimeStep factor='0.6' const='0' specified='0.0' "

@@ -165,10 +165,11 @@ TEST_CASE("settings of features that are off") {
       {"<Solution>",
        "<Contact enable='0' failure_to_component='1' auto_normal_vector_weight='1' "
        "normal_vector_excluding_failure_particle='1' distance_type='1' min_distance='0.5' "
-       "contact_time_step='1' contact_type='2' record_contact_force='1'/><Solution>",
+       "contact_time_step='1' contact_type='2' record_contact_force='1' "
+       "contact_normal='regression'/><Solution>",
        "line 25: <Contact>: failure_to_component, auto_normal_vector_weight, "
        "normal_vector_excluding_failure_particle, distance_type, min_distance, contact_time_step, "
-       "contact_type, record_contact_force have no effect: Contact is off"},
+       "contact_type, record_contact_force, contact_normal have no effect: Contact is off"},
       {"<Solution>", "<Contact enable='0' contact_type='0' min_distance='0.0'/><Solution>", ""},
   });
 }
@@ -253,10 +254,48 @@ TEST_CASE("several components without contact") {
   CHECK(
       notes_of(two_bodies(rigid_bar(), 6, true)) ==
       std::vector<std::string>{"line 11: <Component>: rigid bodies pass through each other without contact"});
-  // With contact nothing is said; nor of a body that takes no part.
+  // With contact this is not said; nor of a body that takes no part.
   const std::string touching = two_bodies(bar, 4.5, true);
-  CHECK(notes_of(replaced(touching, "<Solution>", "<Contact enable='1'/><Solution>"), true).empty());
+  CHECK(notes_of(
+            replaced(touching, "<Solution>", "<Contact enable='1' contact_normal='regression'/><Solution>"),
+            true)
+            .empty());
   CHECK(notes_of(replaced(touching, "name='second'", "name='second' Deactive='1'")).empty());
+}
+
+TEST_CASE("normals of contact: weights that tie, and weights that nothing uses") {
+  const auto notes = [](const std::string& contact, const std::string& weights, int bodies) {
+    std::string text = two_bodies(bar, 4.5, true);
+    if (bodies == 3)
+      text = replaced(text, "<Grid>",
+                      "<Component name='third'><Body name='ball' material='cu' type='Sphere'><Geometry "
+                      "dp='0.38' x0='9' y0='9' z0='9' Outer_Radius='1'/></Body></Component><Grid>");
+    text = replaced(text, "name='other'", "name='other' " + weights);
+    return notes_of(replaced(text, "<Solution>", "<Contact enable='1' " + contact + "/><Solution>"), true);
+  };
+  const std::string tied =
+      "line 25: <Contact>: components 'target' and 'other' have the same normal_vector_weight: their normals "
+      "are "
+      "the means of both bodies' gradients of mass, which tilt at the edges of a body on a wider one and "
+      "hold "
+      "it there. Set contact_normal to regression, or give the wider body the larger weight";
+  CHECK(notes("", "", 2) == std::vector{tied});
+  CHECK(notes("", "normal_vector_weight='1'", 2).empty());
+  CHECK(notes("contact_normal='mass_gradient'", "", 2) == std::vector{tied});
+  CHECK(notes("contact_normal='regression'", "", 2).empty());
+  CHECK(notes("", "", 3) ==
+        std::vector{replaced(replaced(tied, "'target' and 'other'", "'target', 'other' and 'third'"),
+                             "hold it there.",
+                             "hold it there, and where three of them meet the normals of the pairs do not go "
+                             "together.")});
+  CHECK(notes("auto_normal_vector_weight='1'", "", 2) ==
+        std::vector{replaced(tied, "normal_vector_weight:", "normal_vector_weight, by their stiffness:")});
+  CHECK(
+      notes("contact_normal='regression' auto_normal_vector_weight='1'", "normal_vector_weight='2'", 2) ==
+      std::vector<std::string>{"line 16: <Component normal_vector_weight=\"2\">: no effect: with "
+                               "contact_normal=\"regression\" the particles of both bodies give the normal",
+                               "line 25: <Contact auto_normal_vector_weight=\"1\">: no effect: with "
+                               "contact_normal=\"regression\" the particles of both bodies give the normal"});
 }
 
 TEST_CASE("driven rigid bodies pass through each other, in contact too") {

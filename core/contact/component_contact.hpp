@@ -1,0 +1,18 @@
+// What the input says about the contact of components and materials, where the run and the checks of the
+// input both need it.
+#pragma once
+
+#include <cstddef>
+
+#include "core/scene/scene.hpp"
+
+namespace mpm::core {
+
+/// Weight of the normals of a component of this material, which is not rigid: as given or, with
+/// auto_normal_vector_weight, by stiffness.
+double normal_weight(const Scene& scene, std::size_t component, std::size_t material);
+
+/// Coulomb's coefficient of two materials; 0 where the input gives none.
+double friction_of(const Scene& scene, std::size_t material, std::size_t other);
+
+}  // namespace mpm::core

@@ -1,0 +1,184 @@
+// The impulses at the nodes where fields meet.
+#include <algorithm>
+#include <cmath>
+
+#include "core/contact/contact.hpp"
+
+namespace mpm::core {
+
+/// The fields at a node that have mass there, and their pairs that may touch.
+struct Contact::Node {
+  Vec3<double> place{};
+  std::vector<ContactField> fields;
+  std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
+  std::vector<Motion> records;
+  std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
+  std::vector<ContactPair> pairs;
+  std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
+
+  void clear() {
+    fields.clear(), rigid.clear(), records.clear(), number.clear(), pairs.clear(), recorded.clear();
+  }
+};
+
+double Contact::friction(std::int32_t a, std::int32_t b) const {
+  const int first = material_[static_cast<std::size_t>(a)], second = material_[static_cast<std::size_t>(b)];
+  if (first < 0 || second < 0) return 0;
+  return friction_[static_cast<std::size_t>(first) * model_.materials.size() +
+                   static_cast<std::size_t>(second)];
+}
+
+/// The pairs that touch, of the fields that have mass here.
+bool Contact::find_pairs(std::span<const FieldNodes> fields, std::span<const MeetingNodes::Pair> pairs,
+                         Node& at) const {
+  for (const MeetingNodes::Pair& pair : pairs) {
+    const auto of = [&](int field) {
+      return static_cast<std::size_t>(std::ranges::find(at.number, static_cast<std::size_t>(field)) -
+                                      at.number.begin());
+    };
+    const std::size_t a = of(pair.first), b = of(pair.second);
+    if (a == at.number.size() || b == at.number.size()) continue;
+    const bool any_rigid = at.rigid[a] >= 0 || at.rigid[b] >= 0;
+    const double ratio = at.fields[a].mass / at.fields[b].mass;
+    if (!any_rigid && (ratio > contact_mass_ratio || ratio * contact_mass_ratio < 1)) continue;
+    if (std::isinf(at.fields[a].mass) && std::isinf(at.fields[b].mass)) continue;  // both are driven
+    const std::int32_t first = fields[at.number[a]].component, second = fields[at.number[b]].component;
+    at.pairs.push_back({static_cast<int>(a), static_cast<int>(b), pair.normal, friction(first, second)});
+    at.recorded.push_back(pairs_.number(first, second));
+  }
+  return !at.pairs.empty();
+}
+
+/// An impulse of this step has done its work where the end of the step finds two fields at rest against each
+/// other. The strain must then not part them: that would be work without a source.
+void Contact::hold_pairs(Node& at) const {
+  constexpr double round_off = 1e-10;
+  const auto of_end = [&](std::size_t f) {
+    const double* v = at.records[f].velocity();
+    return at.rigid[f] < 0 ? Vec3<double>{v[0], v[1], v[2]} : at.fields[f].velocity;
+  };
+  for (ContactPair& pair : at.pairs) {
+    const Vec3<double> a = of_end(static_cast<std::size_t>(pair.first)),
+                       b = of_end(static_cast<std::size_t>(pair.second)), relative = a - b;
+    const double most = round_off * std::sqrt(std::max(dot(a, a), dot(b, b)));
+    if (!(std::abs(dot(relative, pair.normal)) <= most)) continue;
+    const bool sticks = std::sqrt(dot(relative, relative)) <= most;
+    pair.holds = sticks ? ContactPair::Holds::all : ContactPair::Holds::normal;
+  }
+}
+
+void Contact::resolve_strain(Node& at, Velocity which) const {
+  if (which == Velocity::of_strain_after_end) hold_pairs(at);
+  resolve_contacts(at.fields, at.pairs);
+  for (std::size_t f = 0; f < at.records.size(); ++f)
+    for (int a = 0; at.rigid[f] < 0 && a < 3; ++a)
+      at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
+}
+
+/// Velocities at the end of the step, and what the particles get.
+void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
+  const std::size_t count = at.fields.size();
+  const auto increment = [&](std::size_t f) {
+    const double* d = at.records[f].increment();
+    return at.rigid[f] < 0 ? Vec3<double>{d[0], d[1], d[2]} : Vec3<double>{};
+  };
+  const bool corrects_start = method_ != ContactInput::Method::bardenhagen;
+  std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
+  std::vector<Vec3<double>> start(count);  // velocity at the start of the step, as the particles have it
+  for (std::size_t f = 0; f < count; ++f)
+    taken[f] = at.fields[f].velocity, start[f] = taken[f] - increment(f);
+  std::vector<Vec3<double>> nodal_start = start;  // with Pan's first impulses
+  std::vector<Vec3<double>> first_impulse(at.pairs.size());
+  if (corrects_start) {
+    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = start[f];
+    resolve_contacts(at.fields, at.pairs);
+    for (std::size_t f = 0; f < count; ++f) nodal_start[f] = at.fields[f].velocity;
+    for (std::size_t p = 0; p < at.pairs.size(); ++p) first_impulse[p] = at.pairs[p].impulse;
+    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.fields[f].velocity + increment(f);
+    if (method_ == ContactInput::Method::pan)
+      for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity;
+  }
+  for (const ContactPair& pair : at.pairs) {
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    sums.fastest = std::max(sums.fastest, dot(taken[a] - taken[b], pair.normal));
+  }
+  resolve_contacts(at.fields, at.pairs);
+  for (std::size_t f = 0; f < count; ++f) {
+    if (at.rigid[f] >= 0) continue;
+    for (int a = 0; a < 3; ++a) {
+      at.records[f].increment()[a] += at.fields[f].velocity[a] - taken[f][a];
+      at.records[f].velocity()[a] = at.fields[f].velocity[a];
+    }
+  }
+  if (!counts) return;
+  const auto given = [&](std::size_t f) {
+    return at.rigid[f] < 0 ? increment(f) : at.fields[f].velocity - taken[f];
+  };
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    const ContactPair& pair = at.pairs[p];
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    const Vec3<double> impulse = method_ == ContactInput::Method::improved_bardenhagen
+                                     ? pair.impulse + first_impulse[p]
+                                     : pair.impulse;
+    // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
+    // of the fields is u at its start and u' with all increments that the particles get.
+    const Vec3<double> half = 0.5 * (given(a) - given(b)), mean = start[a] - start[b] + half;
+    // Pan's first impulses stop the approach of the nodes without stopping that of the particles, and the
+    // strain follows the nodes: their approach counts.
+    const Vec3<double> approach =
+        method_ == ContactInput::Method::pan ? nodal_start[a] - nodal_start[b] + half : mean;
+    const double pressing = dot(impulse, pair.normal);
+    const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
+    sums.record.dissipated.add(pressing * dot(approach, pair.normal) + heat);
+    sums.record.friction_heat.add(heat);
+    if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
+    const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
+      if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
+      const double work = 0.5 * dot(on_it, taken[f] + at.fields[f].velocity);
+      sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
+          on_it, at.place - rigid_->state(at.rigid[f]).centre, work);
+    };
+    on(a, -1.0 * impulse);
+    on(b, impulse);
+  }
+}
+
+void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
+                      ContactSums& sums) const {
+  const BoundaryFaces faces(grid, s);
+  sums.record.impulses.resize(3 * pairs_.size());
+  if (rigid_ != nullptr) sums.rigid.resize(rigid_->count());
+  Node at;
+  const NodeBlockShape shape = grid.shape();
+  const auto place = [&](int node) {
+    const int side = shape.side(), low = shape.lowest();
+    return grid.geometry().node_place(grid.brick(s).coord, node % side + low, node / side % side + low,
+                                      node / (side * side) + low);
+  };
+  const MeetingNodes& meetings = this->meetings(s);
+  for (const MeetingNodes::Node& node : meetings.nodes) {
+    at.clear();
+    at.place = place(node.number);
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      const Motion record{fields[f].motion.data() + node_doubles * node.number};
+      if (!(record.mass() > 0)) continue;
+      const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
+      const int number = rigid(fields[f].component);
+      at.rigid.push_back(number);
+      if (number >= 0)
+        at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
+      else
+        at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
+      at.records.push_back(record);
+      at.number.push_back(f);
+    }
+    if (!find_pairs(fields, meetings.pairs_of(node), at)) continue;
+    if (which == Velocity::of_end)
+      resolve_end(at, sums, node.counts);
+    else
+      resolve_strain(at, which);
+  }
+  for (FieldNodes& field : fields) faces.fill(field.motion.data());
+}
+
+}  // namespace mpm::core

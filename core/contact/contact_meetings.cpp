@@ -1,0 +1,232 @@
+// Where the fields of a brick meet, and the normals and gaps of their pairs there.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/contact/contact.hpp"
+
+namespace mpm::core {
+
+double Contact::half_edge(double volume) const { return to_faces_ ? 0.5 * std::cbrt(volume) : 0.0; }
+
+void Contact::collect_points(NodeHalo& halo) {
+  if (regression_) points_.collect(model_, halo, [this](Slot s) { return meets(s); });
+}
+
+/// Sums the surfaces of the fields that a brick sees, their motion aside; they are taken as perpendicular to
+/// constrained faces.
+void Contact::take_surfaces(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                            std::vector<FieldNodes>& fields) const {
+  const BoundaryFaces faces(grid, s);
+  const std::span<const std::int32_t> components = seen(s);
+  fields.resize(components.size());
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    FieldNodes& field = fields[k];
+    field.component = components[k];
+    field.surface.resize(static_cast<std::size_t>(node_doubles * shared.nodes()));
+    sum_contributions<NodeArray::fourth>(grid, shared, s, field.component, field.surface.data());
+    faces.for_each_node(field.surface.data(), [](int axis, int, Boundary, double* at) { at[axis] = 0; });
+  }
+}
+
+ContactSurface Contact::surface(const FieldNodes& field, int node) const {
+  const double* g = field.surface.data() + node_doubles * node;
+  const auto c = static_cast<std::size_t>(field.component);
+  return {{g[0], g[1], g[2]}, weight_[c], has_failed_[c]};
+}
+
+void Contact::find_meetings(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                            std::vector<FieldNodes>& fields, RegressionScratch& scratch) {
+  take_surfaces(grid, shared, s, fields);
+  find_nodes(grid, shared, s, fields);
+  find_normals(grid, s, fields, scratch);
+  if (!regression_) complete(s, fields);
+}
+
+/// Drops the pairs without a normal, and finds the outward ones.
+void Contact::complete(Slot s, std::span<const FieldNodes> fields) {
+  MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
+  at.filter([](std::size_t, const MeetingNodes::Pair& pair) { return pair.normal != Vec3<double>{}; });
+  if (!measures_gaps()) return;
+  const int count = static_cast<int>(seen(s).size());
+  for (const MeetingNodes::Node& node : at.nodes) {
+    for (int f = 0; f < count; ++f)
+      at.outward.push_back(regression_ ? outward(f, at.pairs_of(node))
+                                       : outward(fields, f, node.number, at.pairs_of(node)));
+  }
+}
+
+/// The nodes at which several fields have mass, with these fields' pairs.
+void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot s,
+                         std::span<const FieldNodes> fields) {
+  const Brick& brick = grid.brick(s);
+  MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
+  at.clear();
+  std::vector<int> present;
+  shared.for_each_node([&](int node, auto shares) {
+    present.clear();
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      if (fields[f].surface[static_cast<std::size_t>(node_doubles * node + node_field::surface_mass.first)] >
+          0)
+        present.push_back(static_cast<int>(f));
+    }
+    if (present.size() < 2) return;
+    const bool counts = std::ranges::none_of(shares, [&](const SharedNodes::Share& share) {
+      return share.neighbour > self_index &&
+             brick.neighbour[static_cast<std::size_t>(share.neighbour)] != no_slot;
+    });
+    const std::size_t first = at.pairs.size();
+    for (std::size_t a = 0; a < present.size(); ++a)
+      for (std::size_t b = a + 1; b < present.size(); ++b) at.pairs.push_back({present[a], present[b], {}});
+    const auto finder = std::ranges::find_if(shares, [&](const SharedNodes::Share& share) {
+      const Slot there = brick.neighbour[static_cast<std::size_t>(share.neighbour)];
+      return there != no_slot && there < grid.owned();
+    });
+    at.nodes.push_back({node, counts, brick.neighbour[static_cast<std::size_t>(finder->neighbour)],
+                        finder->node, first, at.pairs.size()});
+  });
+}
+
+/// Keeps the pairs for which `keep(number in the list of their node, pair)`, and the nodes that have some.
+template <class F>
+void MeetingNodes::filter(F keep) {
+  std::size_t kept_pairs = 0, kept_nodes = 0;
+  const std::size_t fields = nodes.empty() ? 0 : outward.size() / nodes.size();
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    Node node = nodes[n];
+    const std::size_t first = kept_pairs;
+    for (std::size_t p = node.first_pair; p < node.last_pair; ++p)
+      if (keep(n, pairs[p])) pairs[kept_pairs++] = pairs[p];
+    if (kept_pairs == first) continue;
+    node.first_pair = first, node.last_pair = kept_pairs;
+    std::copy_n(outward.begin() + static_cast<std::ptrdiff_t>(fields * n), fields,
+                outward.begin() + static_cast<std::ptrdiff_t>(fields * kept_nodes));
+    nodes[kept_nodes++] = node;
+  }
+  nodes.resize(kept_nodes), pairs.resize(kept_pairs), outward.resize(fields * kept_nodes);
+}
+
+void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldNodes> fields,
+                           RegressionScratch& scratch) {
+  MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
+  const NodeBlockShape shape = grid.shape();
+  const auto place = [&](int node, int axis) {
+    const int side = shape.side(), stride[3] = {1, side, side * side};
+    return node / stride[axis] % side + shape.lowest();
+  };
+  if (regression_) {
+    PointsByCell::Range range;
+    for (int a = 0; a < 3; ++a) {
+      range.lowest[a] = shape.highest(), range.highest[a] = shape.lowest();
+      for (const MeetingNodes::Node& node : at.nodes) {
+        if (node.finder != s) continue;
+        range.lowest[a] = std::min(range.lowest[a], place(node.number, a));
+        range.highest[a] = std::max(range.highest[a], place(node.number, a));
+      }
+    }
+    if (range.lowest[0] > range.highest[0]) return;
+    scratch.by_cell.take(grid, points_, s, range);
+  }
+  for (const MeetingNodes::Node& node : at.nodes) {
+    if (regression_ && node.finder != s) continue;
+    for (std::size_t p = node.first_pair; p < node.last_pair; ++p) {
+      MeetingNodes::Pair& pair = at.pairs[p];
+      const FieldNodes &first = fields[static_cast<std::size_t>(pair.first)],
+                       &second = fields[static_cast<std::size_t>(pair.second)];
+      std::optional<Vec3<double>> normal;
+      if (regression_) {
+        scratch.by_cell.around(grid, s, {place(node.number, 0), place(node.number, 1), place(node.number, 2)},
+                               first.component, second.component, scratch.points);
+        normal = separating_normal(scratch.points);
+      }
+      if (!normal) normal = contact_normal(surface(first, node.number), surface(second, node.number));
+      pair.normal = normal.value_or(Vec3<double>{});
+    }
+  }
+}
+
+void Contact::take_normals(Slot s) {
+  MeetingNodes& mine = meetings_[static_cast<std::size_t>(s)];
+  for (const MeetingNodes::Node& node : mine.nodes) {
+    if (node.finder == s) continue;
+    const MeetingNodes& theirs = meetings(node.finder);
+    const auto there = std::ranges::find(theirs.nodes, node.number_there, &MeetingNodes::Node::number);
+    if (there == theirs.nodes.end()) throw std::logic_error("a copy of a node does not see who meets there");
+    // Both lists have the pairs of the same components in the same order.
+    for (std::size_t p = 0; p < node.last_pair - node.first_pair; ++p)
+      mine.pairs[node.first_pair + p].normal = theirs.pairs[there->first_pair + p].normal;
+  }
+}
+
+/// By regression: of the pair that the field is in, or the mean of its pairs; zero without.
+Vec3<double> Contact::outward(int field, std::span<const MeetingNodes::Pair> pairs) {
+  Vec3<double> sum{};
+  int count = 0;
+  for (const MeetingNodes::Pair& pair : pairs) {
+    if (pair.first != field && pair.second != field) continue;
+    sum = pair.first == field ? sum + pair.normal : sum - pair.normal;
+    ++count;
+  }
+  const double length = std::sqrt(dot(sum, sum));
+  return count > 1 && length > 0 ? (1 / length) * sum : sum;
+}
+
+/// By gradients: of two fields that of the pair, of more its own. Zero where it has no surface.
+Vec3<double> Contact::outward(std::span<const FieldNodes> fields, int field, int node,
+                              std::span<const MeetingNodes::Pair> pairs) const {
+  const auto of = [&](int f) { return surface(fields[static_cast<std::size_t>(f)], node); };
+  const ContactSurface mine = of(field);
+  if (mine.mass_gradient == Vec3<double>{}) return {};
+  int other = -1, others = 0;
+  for (int k = 0; k < static_cast<int>(fields.size()); ++k) {
+    if (k == field || of(k).mass_gradient == Vec3<double>{}) continue;
+    other = k;
+    ++others;
+  }
+  if (others == 0) return {};
+  if (others > 1) return contact_normal(mine, {}).value_or(Vec3<double>{});
+  for (const MeetingNodes::Pair& pair : pairs) {
+    if (pair.first == field && pair.second == other) return pair.normal;
+    if (pair.first == other && pair.second == field) return -1.0 * pair.normal;
+  }
+  // The other one has a slope here, but no mass.
+  const auto normal = field < other ? contact_normal(mine, of(other)) : contact_normal(of(other), mine);
+  return normal ? (field < other ? 1.0 : -1.0) * *normal : Vec3<double>{};
+}
+
+void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& shared, Slot s) {
+  MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
+  if (at.nodes.empty()) return;
+  constexpr int width = record_doubles(mapped::reach.array);
+  const std::span<const std::int32_t> components = seen(s);
+  // By field: the contributions of the neighbourhood.
+  std::vector<std::array<const double*, neighbourhood>> of_brick(components.size());
+  for (std::size_t f = 0; f < components.size(); ++f) {
+    for (std::size_t n = 0; n < neighbourhood; ++n) {
+      const Slot neighbour = grid.brick(s).neighbour[n];
+      const int number = neighbour == no_slot ? -1 : grid.field_of(neighbour, components[f]);
+      of_brick[f][n] = number < 0 ? nullptr : grid.contributions(mapped::reach.array, neighbour, number);
+    }
+  }
+  // By meeting node, then field.
+  std::vector<double> reach;
+  reach.reserve(at.nodes.size() * components.size());
+  shared.for_each_node([&](int node, auto shares) {
+    const std::size_t listed = reach.size() / components.size();
+    if (listed == at.nodes.size() || at.nodes[listed].number != node) return;
+    for (const auto& bricks : of_brick) {
+      double farthest = no_reach;
+      for (const SharedNodes::Share& share : shares) {
+        if (const double* there = bricks[static_cast<std::size_t>(share.neighbour)])
+          farthest = std::max(farthest, there[width * share.node]);
+      }
+      reach.push_back(farthest);
+    }
+  });
+  at.filter([&](std::size_t n, const MeetingNodes::Pair& pair) {
+    const double* of_node = reach.data() + n * components.size();
+    return -(of_node[pair.first] + of_node[pair.second]) <= *largest_gap_;
+  });
+}
+
+}  // namespace mpm::core

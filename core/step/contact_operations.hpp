@@ -1,0 +1,222 @@
+// The part of the passes (passes_with.hpp) that contact needs: velocity fields by component where components
+// meet, the surfaces that they map, and rigid bodies.
+#pragma once
+
+#include "core/step/passes_with.hpp"
+
+namespace mpm::core {
+
+// --- velocity fields --------------------------------------------------------------------------------------
+
+/// f(component) for the velocity fields of a brick's particles: every component where there is one field.
+template <ShapePolicy S, TransferPolicy T>
+template <class F>
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_own_field(Slot s, F f) {
+  std::span<const std::int32_t> fields(&all_components, 1);
+  if (contact_ && model_.grid->velocity_fields(s) > 1) fields = model_.grid->components(s);
+  for (const std::int32_t component : fields) f(component);
+}
+
+/// For the velocity fields that a brick sees: update(component, k) brings the motion of the field number k
+/// into at.nodes; where fields meet, their velocities are then resolved; f(component, k) uses at.nodes, for
+/// the fields in which the brick has particles.
+template <ShapePolicy S, TransferPolicy T>
+template <class Update, class F>
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_field(Slot s, Scratch& at,
+                                                                    Contact::Velocity which, Update update,
+                                                                    F f) {
+  if (!contact_ || !contact_->meets(s)) {
+    update(all_components, 0);
+    f(all_components, 0);
+    return;
+  }
+  const std::span<const std::int32_t> seen = contact_->seen(s);
+  const bool resolves = !contact_->meetings(s).nodes.empty();
+  if (resolves) meet(s, at, which, update);
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (model_.grid->field_of(s, seen[k]) < 0) continue;
+    if (resolves)
+      std::copy(at.fields[k].motion.begin(), at.fields[k].motion.end(), at.nodes.data());
+    else
+      update(seen[k], k);
+    f(seen[k], k);
+  }
+  // A brick without particles still clears its contributions, which its neighbours may sum.
+  if (model_.grid->components(s).empty()) f(all_components, 0);
+}
+
+/// Resolves the velocities of the fields that a brick sees, in at.fields.
+template <ShapePolicy S, TransferPolicy T>
+template <class Update>
+[[gnu::noinline]] void PassesWith<S, T>::meet(Slot s, Scratch& at, Contact::Velocity which, Update update) {
+  const std::span<const std::int32_t> seen = contact_->seen(s);
+  at.fields.resize(seen.size());
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    at.fields[k].component = seen[k];
+    update(seen[k], k);
+    at.fields[k].motion.assign(at.nodes.data(), at.nodes.data() + at.nodes.size());
+  }
+  contact_->resolve(*model_.grid, s, which, at.fields, at.contact);
+}
+
+/// MUSL: keeps the motion of the fields that meet a brick's own ones.
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::noinline]] void PassesWith<S, T>::keep_motion_of_others(Slot s, const Scratch& at) {
+  if (contact_->meetings(s).nodes.empty()) return;
+  for (std::size_t k = 0; k < at.fields.size(); ++k) {
+    if (model_.grid->field_of(s, at.fields[k].component) < 0)
+      keep_motion(shared_.nodes(), at.fields[k].motion.data(), motion(s, k));
+  }
+}
+
+// --- surfaces ---------------------------------------------------------------------------------------------
+
+/// Maps m grad S (thesis 4-31) and m S of a component's particles.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
+  constexpr NodeFields what = mapped::surface;
+  constexpr int width = record_doubles(what.array);
+  BrickGrid& grid = *model_.grid;
+  const BrickFrame frame = this->frame(s);
+  double* contributions = grid.contributions(what.array, s, field_of(s, component));
+  std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  for_each_block(
+      s, component, columns_to_mass,
+      [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+        const Place place(frame, layout, block);
+        const double* mass = block + layout.offset(Column::mass);
+        for (int l = 0; l < used; ++l) {
+          S::for_each_node(
+              place, l, frame.inverse_cell,
+              [&](int node, const NodeOffset&, double shape, const Vec3<double>& gradient) {
+                using Record = Lanes<width>;
+                double* at = contributions + width * node;
+                const Record more = typename Record::vector{gradient[0], gradient[1], gradient[2], shape};
+                store(at, load<Record>(at) + Record(mass[l]) * more);
+              });
+        }
+      });
+  const BoundaryFaces walls = faces(s);
+  if (S::node_block != NodeBlockShape{} && !walls.none()) walls.fold(what, contributions);
+}
+
+/// Maps how far a component's particles reach from each node along the outward normal of their field.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
+  constexpr int width = record_doubles(mapped::reach.array);
+  BrickGrid& grid = *model_.grid;
+  const NodeBlockShape shape = grid.shape();
+  const BrickFrame frame = this->frame(s);
+  double* reach = grid.contributions(mapped::reach.array, s, field_of(s, component));
+  std::fill_n(reach, width * shape.nodes(), no_reach);
+  const MeetingNodes& meetings = contact_->meetings(s);
+  if (meetings.nodes.empty() || grid.components(s).empty()) return;
+  const std::span<const std::int32_t> seen = contact_->seen(s);
+  const std::int32_t mine = component == all_components ? grid.components(s).front() : component;
+  const auto field = static_cast<std::size_t>(std::ranges::find(seen, mine) - seen.begin());
+  // At each node its place and the field's normal; none where the field is alone.
+  struct At {
+    Vec3<double> node, normal;
+    bool meets = false;
+  };
+  std::vector<At> at(static_cast<std::size_t>(shape.nodes()));
+  Vec3<double> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
+  for (std::size_t n = 0; n < meetings.nodes.size(); ++n) {
+    const Vec3<double>& normal = meetings.outward[n * seen.size() + field];
+    if (normal == Vec3<double>{}) continue;
+    const int node = meetings.nodes[n].number, side = shape.side(), low = shape.lowest();
+    const Vec3<double> x = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
+                                                      node / side % side + low, node / (side * side) + low);
+    at[static_cast<std::size_t>(node)] = {x, normal, true};
+    // A particle is among its nodes: those in question are no farther away than these are wide.
+    constexpr double cells = S::nodes_per_axis - 1 + 1e-6;
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], x[a] - cells * grid.geometry().cell[a]);
+      upper[a] = std::max(upper[a], x[a] + cells * grid.geometry().cell[a]);
+    }
+  }
+  const auto near = [&](const double* x) {
+    bool is = true;
+    for (int a = 0; a < 3; ++a) is = is && x[a * block_lanes] >= lower[a] && x[a * block_lanes] <= upper[a];
+    return is;
+  };
+  for_each_block(s, component, columns_to_mass + 1,
+                 [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+                   const double* x = block + layout.offset(Column::position_x);
+                   unsigned wanted = 0;
+                   for (int l = 0; l < used; ++l) wanted |= static_cast<unsigned>(near(x + l)) << l;
+                   if (wanted == 0) return;
+                   const Place place(frame, layout, block);
+                   const double* volume = block + layout.offset(Column::volume);
+                   for (int l = 0; l < used; ++l) {
+                     if ((wanted >> l & 1u) == 0) continue;
+                     const Vec3<double> centre{x[l], x[block_lanes + l], x[2 * block_lanes + l]};
+                     const double half = contact_->half_edge(volume[l]);
+                     for_each_weight<S>(place, l, frame.inverse_cell, [&](int node, double) {
+                       const At& there = at[static_cast<std::size_t>(node)];
+                       if (!there.meets) return;
+                       double& farthest = reach[width * node];
+                       farthest = std::max(farthest, dot(centre - there.node, there.normal) + half);
+                     });
+                   }
+                 });
+}
+
+// --- the passes -------------------------------------------------------------------------------------------
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_surfaces() {
+  map_bricks<mapped::surface>([this](Slot s, Scratch&) {
+    if (contact_->meets(s)) for_each_own_field(s, [&](std::int32_t component) { map_surface(s, component); });
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::find_meetings() {
+  contact_->collect_points(halo_);
+  const auto over_bricks = [&](auto work) {
+    for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch& at) {
+      if (contact_->meets(s)) work(s, at);
+    });
+  };
+  over_bricks([this](Slot s, Scratch& at) {
+    contact_->find_meetings(*model_.grid, shared_, s, at.fields, at.regression);
+  });
+  if (!contact_->shares_normals()) return;
+  over_bricks([this](Slot s, Scratch&) { contact_->take_normals(s); });
+  over_bricks([this](Slot s, Scratch&) { contact_->complete_meetings(s); });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::map_reach() {
+  map_bricks<mapped::reach>([this](Slot s, Scratch&) {
+    if (contact_->meets(s)) for_each_own_field(s, [&](std::int32_t component) { map_reach(s, component); });
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::drop_distant_pairs() {
+  for_bricks(0, model_.grid->owned(), [this](Slot s, Scratch&) {
+    if (contact_->meets(s)) contact_->drop_distant_pairs(*model_.grid, shared_, s);
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::move_rigid_bodies() {
+  std::vector<RigidImpulse> impulses(rigid_->count());
+  for (Scratch& w : scratch_) {
+    for (std::size_t r = 0; r < w.contact.rigid.size(); ++r) impulses[r] += w.contact.rigid[r];
+    w.contact.rigid.clear();
+  }
+  rigid_->end_step(impulses, scratch_[0].statistics.work, scratch_[0].contact.record);
+  for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch&) {
+    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
+      const int number = rigid(tile.body);
+      if (number < 0) continue;
+      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+      for (const auto block : tile.blocks) rigid_->set_velocities(number, pool.layout(), pool.block(block));
+    }
+  });
+}
+
+}  // namespace mpm::core

@@ -1,0 +1,120 @@
+#include "io/input/contact_notes.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "core/contact/component_contact.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+bool is_rigid(const core::Scene& scene, const core::BodyInput& body) {
+  return scene.materials[body.material].strength.type == "Rigid";
+}
+
+/// Contact cannot change the motion of driven rigid bodies.
+void note_driven(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const auto driven = [](const core::BodyInput& body) {
+    return body.constrain_rigid_position || body.prescribed_velocity.has_value();
+  };
+  const auto fixed = [](const core::BodyInput& body) {
+    return !body.constrain_rigid_position && body.prescribed_velocity == core::Vec3<double>{} &&
+           body.prescribed_velocity_expressions.empty();
+  };
+  const core::BodyInput *moves = nullptr, *other = nullptr;
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    if (!is_rigid(scene, body) || !driven(body)) return;
+    if (moves == nullptr && !fixed(body))
+      moves = &body;
+    else
+      other = &body;
+  });
+  if (moves == nullptr || other == nullptr) return;
+  notes.push_back(
+      {moves->source.file,
+       moves->source.line,
+       "Body",
+       {},
+       {},
+       fmt::format("rigid bodies '{}' and '{}' both have a prescribed motion: where they meet they pass "
+                   "through each other",
+                   moves->name, other->name)});
+}
+
+/// The largest set of deformable components whose normals have the same weight; two spheres have no edges.
+std::vector<std::size_t> tied_components(const core::Scene& scene) {
+  struct Of {
+    std::size_t component;
+    double weight;
+    bool edges;
+  };
+  std::vector<Of> all;
+  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
+    if (is_rigid(scene, body)) return;
+    const auto c = static_cast<std::size_t>(component);
+    const double weight = core::normal_weight(scene, c, body.material);
+    const bool edges = !std::holds_alternative<core::SphereGeometry>(body.geometry);
+    if (all.empty() || all.back().component != c) return all.push_back({c, weight, edges});
+    all.back().weight = std::max(all.back().weight, weight);
+    all.back().edges |= edges;
+  });
+  std::vector<std::size_t> largest;
+  for (const Of& first : all) {
+    std::vector<std::size_t> tied;
+    bool edges = false;
+    for (const Of& other : all) {
+      if (other.weight != first.weight) continue;
+      tied.push_back(other.component);
+      edges |= other.edges;
+    }
+    if ((edges || tied.size() > 2) && tied.size() > std::max<std::size_t>(largest.size(), 1)) largest = tied;
+  }
+  return largest;
+}
+
+std::string names_of(const core::Scene& scene, const std::vector<std::size_t>& components) {
+  constexpr std::size_t most = 5;
+  std::string names;
+  const std::size_t count = std::min(components.size(), most);
+  for (std::size_t i = 0; i < count; ++i)
+    names += fmt::format("{}'{}'",
+                         i == 0                       ? ""
+                         : i + 1 == components.size() ? " and "
+                                                      : ", ",
+                         scene.components[components[i]].name);
+  if (components.size() > most) names += fmt::format(" and {} more", components.size() - most);
+  return names;
+}
+
+void note_tied_weights(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const std::optional<Node> contact = root.child("Contact");
+  if (!contact || scene.contact.regression) return;
+  const std::vector<std::size_t> tied = tied_components(scene);
+  if (tied.size() < 2) return;
+  notes.push_back(
+      {scene.provenance.path,
+       contact->line(),
+       "Contact",
+       {},
+       {},
+       fmt::format(
+           "components {} have the same normal_vector_weight{}: their normals are the means of both bodies' "
+           "gradients of mass, which tilt at the edges of a body on a wider one and hold it there{}. Set "
+           "contact_normal to regression, or give the wider body the larger weight",
+           names_of(scene, tied), scene.contact.automatic_weights ? ", by their stiffness" : "",
+           tied.size() > 2 ? ", and where three of them meet the normals of the pairs do not go together"
+                           : "")});
+}
+
+}  // namespace
+
+void note_contact(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  note_driven(scene, notes);
+  note_tied_weights(root, scene, notes);
+}
+
+}  // namespace mpm::io

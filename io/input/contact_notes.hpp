@@ -1,0 +1,14 @@
+// Notes on scenes with contact that are valid, but may not do what is wanted.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.hpp"
+#include "io/input/diagnostics.hpp"
+#include "io/input/node.hpp"
+
+namespace mpm::io {
+
+void note_contact(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
+}  // namespace mpm::io
