@@ -239,6 +239,7 @@ class Run {
       status = "failed";
       reason = failure.what();
       code = numerical_failure;
+      if (failure.keeps_state()) save();
     } catch (const io::FileError& failure) {
       status = "failed";
       reason = failure.what();
@@ -419,6 +420,7 @@ class Run {
     const core::Totals totals = core::compute_totals(model_, communication_);
     if (report.reason.empty()) report.reason = watch_->words_of_drift();
     log_->say("\n{}", io::timing_table(report));
+    if (const std::string words = stepper_->words_of_run(); !words.empty()) log_->say("implicit   {}", words);
     log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads",
               io::state_hash(model_, communication_));
     if (totals.left_grid > 0 || totals.eroded > 0) {

@@ -191,6 +191,13 @@ void ImplicitIntegrator::solve() {
   for (;;) {
     std::vector<double> u = first_guess();
     const NewtonReport report = solver_.solve(*this, u, options);
+    ++solves_;
+    total_.iterations += report.iterations;
+    total_.linear_iterations += report.linear_iterations;
+    total_.structure_seconds += report.structure_seconds;
+    total_.residual_seconds += report.residual_seconds;
+    total_.jacobian_seconds += report.jacobian_seconds;
+    total_.linear_seconds += report.linear_seconds;
     const std::string why = objection(report, u);
     const double dt = model_.clock.dt;
     const std::string norms = fmt::format("{:.2e}", fmt::join(report.norms, " "));
@@ -208,9 +215,20 @@ void ImplicitIntegrator::solve() {
     }
     cuts += fmt::format("; shortened from {:.4g}: {} (residual {})", dt, why, norms);
     if (0.5 * dt < input_.min_step.value_or(default_smallest * length)) fail(why + ", residual " + norms);
+    ++cuts_;
     model_.clock.dt = 0.5 * dt;
     prepare();
   }
+}
+
+std::string ImplicitIntegrator::words_of_run() const {
+  if (solves_ == 0) return {};
+  return fmt::format(
+      "{}; {} Newton iterations and {} linear ones in {} solutions, {} of them rejected; seconds of Newton's "
+      "method on this rank: matrix structure {:.2f}, residuals {:.2f}, Jacobians {:.2f}, linear systems "
+      "{:.2f}",
+      solver_.description(), total_.iterations, total_.linear_iterations, solves_, cuts_,
+      total_.structure_seconds, total_.residual_seconds, total_.jacobian_seconds, total_.linear_seconds);
 }
 
 /// Names the node of the largest residual.
@@ -234,11 +252,14 @@ void ImplicitIntegrator::fail(const std::string& why) {
   std::string where;
   for (const std::string& of_rank : ranks_.gather(mine))
     if (where.empty()) where = of_rank;
-  throw NumericalFailure(fmt::format(
-      "step {}, time {:.9g}: no equilibrium with the smallest step, {:.4g}: {}; the largest residual force, "
-      "{:.4g}, is at node {}. The particles are those at the start of the step. Use smaller steps (Implicit@"
-      "min_step), or a larger rtol",
-      model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where));
+  throw NumericalFailure(
+      fmt::format("step {}, time {:.9g}: no equilibrium with the smallest step, {:.4g}: {}; the largest "
+                  "residual force, "
+                  "{:.4g}, is at node {}. The state at the start of the step is kept. Use a smaller "
+                  "Implicit@min_step, "
+                  "load more slowly, or use a larger rtol",
+                  model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where),
+      true);
 }
 
 void ImplicitIntegrator::move() {

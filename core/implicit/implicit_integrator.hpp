@@ -31,6 +31,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   StepStatistics take_statistics() override;
   std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
   std::string words_of_step() const override { return words_; }
+  std::string words_of_run() const override;
 
  private:
   /// State of an own node in the step; vectors of three.
@@ -84,6 +85,9 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   AlignedDoubles displacements_, velocities_;  ///< records of the bricks' nodes
   StepStatistics of_nodes_;
   std::string words_;
+  /// Of all steps.
+  NewtonReport total_;
+  std::int64_t solves_ = 0, cuts_ = 0;
 };
 
 }  // namespace mpm::core

@@ -62,6 +62,8 @@ class Integrator {
   virtual std::vector<std::vector<DepartingParticle>>& departing() = 0;
   /// What the log says of the step; empty where there is nothing beyond the time table.
   virtual std::string words_of_step() const { return {}; }
+  /// And at the end of the run.
+  virtual std::string words_of_run() const { return {}; }
 };
 
 /// The scheme that the scene names.

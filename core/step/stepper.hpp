@@ -15,7 +15,13 @@ namespace mpm::core {
 /// The run cannot continue: what happened, to which particle, where and when. The same on every rank.
 class NumericalFailure : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// `keeps_state`: the model is as it was before the step.
+  explicit NumericalFailure(const std::string& what, bool keeps_state = false)
+      : std::runtime_error(what), keeps_state_(keeps_state) {}
+  bool keeps_state() const { return keeps_state_; }
+
+ private:
+  bool keeps_state_;
 };
 
 class Stepper {
@@ -31,6 +37,7 @@ class Stepper {
   const std::vector<Phase>& phases() const { return phases_; }
   /// What the integrator has to say of the last step, for the log; empty for explicit steps.
   std::string words_of_step() const { return integrator_->words_of_step(); }
+  std::string words_of_run() const { return integrator_->words_of_run(); }
 
   /// Requests that the run stops; any rank may, at any time.
   void request_stop() { stop_requested_ = true; }

@@ -113,6 +113,11 @@ bool no_pictures(const Place& at) {
   return !post || (!post->h5part && post->vtk == core::PostProcessingInput::Vtk::none);
 }
 
+bool steps_are_implicit(const Place& at) {
+  return at.scene.solution.integration == core::Integration::implicit;
+}
+bool steps_are_explicit(const Place& at) { return !steps_are_implicit(at); }
+
 using Random = core::RandomFailureInput;
 const Random& random(const Place& at) { return at.material->random_failure; }
 
@@ -132,6 +137,22 @@ const std::vector<Rule>& rules() {
       "with contact_normal=\"regression\" the particles of both bodies give the normal";
   static constexpr std::string_view no_part = "an operand of Bool bodies takes no part in the run";
   static const std::vector<Rule> table{
+      {"Solution/Implicit", {}, steps_are_explicit, "used only with Integration=\"impl\""},
+      {"Solution/Implicit",
+       {"newmark_beta", "newmark_gamma"},
+       [](const Place& at) {
+         return at.scene.solution.implicit->quasistatic || at.scene.solution.implicit->backward_euler;
+       },
+       "used only by Newmark's rule of dynamic problems"},
+      {"Solution/Implicit",
+       {"rule"},
+       [](const Place& at) { return at.scene.solution.implicit->quasistatic; },
+       "used only by dynamic problems"},
+      {"Solution/TimeStep", {}, steps_are_implicit, "implicit steps take their length from Implicit"},
+      {"Solution",
+       {"algorithm"},
+       steps_are_implicit,
+       "implicit steps have one scheme: the stress at the end of the step"},
       {"Material", {}, unused_material, "no body is made of this material"},
       {"Material/StrengthModel",
        {"TensileCutoff"},
