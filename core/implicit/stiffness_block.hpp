@@ -15,12 +15,17 @@ class StiffnessBlock {
   void begin(const NodeUnknowns::Node* nodes, int count) {
     of_ = nodes;
     place_.assign(static_cast<std::size_t>(count), -1);
+    used_at_.assign(static_cast<std::size_t>(count), -1);
+    used_.clear();
     numbers_.clear();
     held_.clear();
   }
 
   /// A particle's nodes: grad S_i, for each component of the displacement, of the unknown that determines it.
-  void begin_particle() { used_.clear(); }
+  void begin_particle() {
+    for (const Weight& w : used_) used_at_[static_cast<std::size_t>(w.at)] = -1;
+    used_.clear();
+  }
   void add_node(int node, const Vec3<double>& slope) {
     const NodeUnknowns::Node& n = of_[node];
     std::int16_t& at = place_[static_cast<std::size_t>(n.from)];
@@ -48,12 +53,13 @@ class StiffnessBlock {
     std::int16_t at;
     double slope[3][3];
   };
-  static constexpr int most_nodes = 216;  ///< of one brick: 6 x 6 x 6
   Weight& weight_of(std::int16_t at) {
-    for (Weight& w : used_)
-      if (w.at == at) return w;
-    used_.push_back({at, {}});
-    return used_.back();
+    std::int16_t& index = used_at_[static_cast<std::size_t>(at)];
+    if (index < 0) {
+      index = static_cast<std::int16_t>(used_.size());
+      used_.push_back({at, {}});
+    }
+    return used_[static_cast<std::size_t>(index)];
   }
   /// Keeps the rows of the sum at a distance that holds all nodes so far.
   void grow() {
@@ -69,11 +75,12 @@ class StiffnessBlock {
   }
 
   const NodeUnknowns::Node* of_ = nullptr;
-  std::vector<std::int16_t> place_;  ///< by node of the brick
+  std::vector<std::int16_t> place_;    ///< by node of the brick
+  std::vector<std::int16_t> used_at_;  ///< by place in the sum: the index in `used_`
   std::vector<std::int64_t> numbers_;
   std::vector<std::uint8_t> held_;
   std::vector<Weight> used_;
-  std::vector<double> sum_, packed_;
+  std::vector<double> sum_, packed_, right_;
   std::size_t stride_ = 0;
 };
 
@@ -81,19 +88,35 @@ template <class D>
 void StiffnessBlock::add_particle(D d) {
   double a[9][9];
   for (int i = 0; i < 81; ++i) a[i / 9][i % 9] = d(i);
-  for (const Weight& column : used_) {
-    double right[9][3];  // d P_ij / d u_k of the column's node
-    for (int ij = 0; ij < 9; ++ij)
-      for (int k = 0; k < 3; ++k)
-        right[ij][k] = a[ij][3 * k] * column.slope[k][0] + a[ij][3 * k + 1] * column.slope[k][1] +
-                       a[ij][3 * k + 2] * column.slope[k][2];
-    for (const Weight& row : used_) {
-      double* to = sum_.data() + 3 * static_cast<std::size_t>(row.at) * stride_ + 3 * column.at;
-      for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k)
-          to[k] += row.slope[i][0] * right[3 * i][k] + row.slope[i][1] * right[3 * i + 1][k] +
-                   row.slope[i][2] * right[3 * i + 2][k];
-        to += stride_;
+  // d P_ij / d u_k of the nodes: a row of contiguous values for each ij.
+  const std::size_t n = used_.size(), width = 3 * n;
+  right_.resize(9 * width);
+  bool in_order = true;
+  for (std::size_t q = 0; q < n; ++q) {
+    const Weight& column = used_[q];
+    in_order = in_order && static_cast<std::size_t>(column.at) == q;
+    for (std::size_t ij = 0; ij < 9; ++ij)
+      for (std::size_t k = 0; k < 3; ++k)
+        right_[ij * width + 3 * q + k] = a[ij][3 * k] * column.slope[k][0] +
+                                         a[ij][3 * k + 1] * column.slope[k][1] +
+                                         a[ij][3 * k + 2] * column.slope[k][2];
+  }
+  for (const Weight& row : used_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      double* const to = sum_.data() + (3 * static_cast<std::size_t>(row.at) + i) * stride_;
+      const double* const right = right_.data() + 3 * i * width;
+      const double x = row.slope[i][0], y = row.slope[i][1], z = row.slope[i][2];
+      // The usual case: the particles of a site have the same nodes in the same order.
+      if (in_order) {
+        for (std::size_t c = 0; c < width; ++c)
+          to[c] += x * right[c] + y * right[width + c] + z * right[2 * width + c];
+      } else {
+        for (std::size_t q = 0; q < n; ++q)
+          for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t c = 3 * q + k;
+            to[3 * static_cast<std::size_t>(used_[q].at) + k] +=
+                x * right[c] + y * right[width + c] + z * right[2 * width + c];
+          }
       }
     }
   }
@@ -118,6 +141,8 @@ inline void StiffnessBlock::flush(BlockMatrix& matrix, bool structure_alone) {
     matrix.add(numbers_, packed_.data());
   }
   std::fill(place_.begin(), place_.end(), std::int16_t{-1});
+  std::fill(used_at_.begin(), used_at_.end(), std::int16_t{-1});
+  used_.clear();
   numbers_.clear();
   held_.clear();
 }
