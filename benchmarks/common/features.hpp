@@ -116,9 +116,13 @@ inline std::vector<Feature> features() {
 
   const BarInput slices{.bodies = 2, .components = true};
   add("contact", "two components without contact", "one component", {.bodies = 2}, slices);
-  for (const char* attributes : {"", R"(distance_type="2" min_distance="0.05")",
-                                 R"(distance_type="2" min_distance="0.05" contact_normal="regression")"})
-    add("contact", fmt::format("contact {}", attributes), "without", slices,
+  const std::pair<const char*, const char*> kinds[] = {
+      {"two components in contact", ""},
+      {"the same, with gaps", R"(distance_type="2" min_distance="0.05")"},
+      {"the same, normals by regression",
+       R"(distance_type="2" min_distance="0.05" contact_normal="regression")"}};
+  for (const auto& [name, attributes] : kinds)
+    add("contact", name, "without contact", slices,
         {.more = fmt::format(R"(<Contact enable="1" {}/>)", attributes), .bodies = 2, .components = true});
 
   add("output", "sound speed shown (cp)", "not", {.output = showing("pres")}, {.output = showing("pres|cp")});

@@ -57,6 +57,19 @@ class Contact(Case):
             with self.subTest(ranks=ranks, threads=threads, metis=metis):
                 self.assertEqual(self.run_of(scene(*arguments, partition), "other", ranks=ranks, threads=threads), alone)
 
+    def test_overlaps_are_named(self):
+        """Once for each pair, and the same on any ranks; not in a run that goes on."""
+        text = scene("linear", "MUSL", 1, "").replace('x0="8.2"', 'x0="6.7"')
+        said = []
+        for ranks in (1, 3):
+            outcome = self.run_in(f"on{ranks}", [self.write(text)], ranks=ranks)
+            said.append([line for line in (outcome.out + outcome.err).splitlines() if "overlap at the start" in line])
+        self.assertEqual(said[0], said[1])
+        self.assertEqual(len(said[0]), 1)
+        self.assertIn("'left' and 'right'", said[0][0])
+        again = self.run_in("again", [_mpm.restarts(self.folder / "on1")[0]])
+        self.assertNotIn("overlap at the start", again.out + again.err)
+
     def test_other_methods_and_restart(self):
         for n, (shape, algorithm, kind, distance, more) in enumerate((
                 ("QuadraticBSpline", "MUSL", 0, "", 'auto_normal_vector_weight="1"'),

@@ -1,0 +1,48 @@
+// Bodies in the same place at the start are named; bodies that touch are not.
+#include "core/contact/overlaps.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/core/step/case.hpp"
+
+using namespace mpm::tests;
+
+namespace {
+
+/// Two blocks of 4 x 4 x 4 cells with a gap along x; what is said about them.
+std::vector<std::string> words(double gap, double aside = 0) {
+  ReferenceCase c = open_space(ReferenceShape::linear, ReferenceScheme::musl);
+  const ReferenceParticle like = tumbling_block().particles.front();
+  for (const bool second : {false, true}) {
+    for (int i = 0; i < 512; ++i) {
+      ReferenceParticle p = like;
+      const auto at = [&](int n) { return 0.25 + 0.5 * (n % 8); };
+      p.x = {(second ? 7 + gap : 3) + at(i), 4.3 + at(i / 8) + (second ? aside : 0), 4.2 + at(i / 64)};
+      p.V = 0.125;
+      p.m = c.material.density * p.V;
+      p.s = {};
+      c.particles.push_back(p);
+    }
+  }
+  SmallRun run(c, 512, true);
+  run.scene->components[0].name = "one";
+  run.scene->components[1].name = "two";
+  return mpm::core::overlaps_in_words(run.model, run.solo);
+}
+
+}  // namespace
+
+TEST_CASE("Overlaps at the start: with the number of particles and the place") {
+  CHECK(words(0.3).empty());
+  CHECK(words(0).empty());                             // the faces touch
+  CHECK(words(0, 0.25).empty());                       // also with lattices that do not fit
+  CHECK(words(-0.2).empty());                          // particles are 0.3 apart
+  const std::vector<std::string> found = words(-0.3);  // 0.2, in two layers of 64
+  REQUIRE(found.size() == 1);
+  CHECK(
+      found[0] ==
+      "components 'one' and 'two' overlap at the start: 128 of their particles are within half a spacing of "
+      "the other's, in the box from (6.5, 4.3, 4.2) to (7.2, 8.3, 8.2); contact will push them apart. Move "
+      "the bodies, or give them one component");
+  CHECK(words(-4, 0.1).front().find("1024 of their particles") != std::string::npos);
+}
