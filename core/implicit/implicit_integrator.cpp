@@ -103,6 +103,8 @@ void ImplicitIntegrator::prepare() {
       at.velocity[a] = at.mass > cutoff ? sum[a] / at.mass : 0;
       at.external[a] = sum[4 + a];
     }
+    // Where the free motion is unknown, the stabilised cells alone hold the node.
+    if (rule_.dynamic() && !(at.mass > cutoff)) at.ground = 0;
   }
   const std::vector<double> at_rest(3 * state_.size(), 0.0);
   unknowns_.distribute(at_rest, displacements_);
@@ -124,8 +126,8 @@ std::vector<double> ImplicitIntegrator::first_guess() const {
       const std::size_t at = 3 * i + static_cast<std::size_t>(a);
       if (held(i, a))
         u[at] = unknowns_.held_displacements()[at];
-      else if (rule_.dynamic())
-        u[at] = model_.clock.dt * state_[i].velocity[a];
+      else
+        u[at] = free_motion(state_[i], a);
     }
   }
   return u;
@@ -146,8 +148,8 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
       const double inertia = at.mass * (rule_.inertia * u[k] - rule_.start * at.velocity[a]);
       const double drag =
           damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a]) + rule_.push * at.force[a]);
-      at.reaction[a] =
-          inertia + drag + at.ground * u[k] - rule_.carry * at.force[a] - at.external[a] - sum[4 + a];
+      at.reaction[a] = inertia + drag + at.ground * (u[k] - free_motion(at, a)) - rule_.carry * at.force[a] -
+                       at.external[a] - sum[4 + a];
       size += std::abs(inertia) + std::abs(at.external[a]);
       r[k] = held(i, a) ? held_diagonal_ * (u[k] - unknowns_.held_displacements()[k]) : at.reaction[a];
     }

@@ -37,7 +37,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   /// State of an own node in the step; vectors of three.
   struct NodeState {
     double mass;
-    double ground;       ///< stiffness against any displacement
+    double ground;       ///< stiffness against any displacement but that of free motion
     double velocity[3];  ///< at the start
     double external[3];  ///< force
     double force[3];     ///< all, at the start
@@ -63,6 +63,10 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::vector<double> first_guess() const;
   /// Why the solution cannot be accepted; empty if it can. The same on all ranks.
   std::string objection(const NewtonReport& report, std::span<const double> u) const;
+  /// Displacement of a node without forces.
+  double free_motion(const NodeState& at, int axis) const {
+    return rule_.dynamic() ? model_.clock.dt * at.velocity[axis] : 0;
+  }
   bool held(std::size_t node, int axis) const { return (unknowns_.held()[node] >> axis & 1) != 0; }
   void shorten(const std::string& why);
   [[noreturn]] void fail(const std::string& why);

@@ -1,0 +1,180 @@
+"""Implicit steps: equilibrium and dynamics against exact solutions, on any ranks, and through a restart."""
+
+import math
+import re
+
+import numpy as np
+
+import _cases
+import _mpm
+
+YOUNG, POISSON = 1000.0, 0.3
+SOFT = _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="{POISSON}"')
+RAM = _mpm.material("ram", 1.0, 'type="Rigid"')
+SHAPES = ("linear", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "SGMP", "DDMP")
+# What the laws of a tangent need, for a bar of Young's modulus 1000.
+LAWS = {
+    "IsoElastic": "", "CauchyElastic": "", "NeoHookean": "", "Corotated": "",
+    "ElaPlastic": 'Yield0="20"',
+    "IsoHarden": 'Yield0="20" TangMod="100"',
+    "SimJohnsonCook": 'Yield0="20" B="30" n="0.4" C="0.02" epso="1"',
+}
+
+
+def implicit(end, kind="quasistatic", step=None, more="", extra=""):
+    step = f'time_step="{step}"' if step else ""
+    return _mpm.solution(end, attributes='Integration="impl"',
+                         more=f'<Implicit type="{kind}" {step} {more}/>{extra}').replace('<TimeStep factor="0.5"/>', "")
+
+
+def column(shape="linear", travel=1.0, steps=10, material=SOFT, more="", output=""):
+    """A column of 2 x 2 x 8 cells between smooth walls, pressed from above by a rigid body."""
+    bodies = [_mpm.block("column", (0, 0, 0), (2, 2, 8)),
+              _mpm.block("ram", (0, 0, 8), (2, 2, 1), of="ram",
+                         more=f'<PrescribedVelocity vx="0" vy="0" vz="{-travel}"/>')]
+    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 10), "222210").replace("<Grid>", f'<Grid shape="{shape}">'),
+                      implicit(1.0, step=1 / steps, more=more), [material, RAM], output)
+
+
+def energy_of(stretch):
+    """Strain energy per initial volume of the neo-Hookean column in uniaxial strain."""
+    shear, lame = YOUNG / (2 * (1 + POISSON)), YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
+    log = math.log(stretch)
+    return 0.5 * shear * (stretch**2 - 1) - shear * log + 0.5 * lame * log**2
+
+
+def residuals(outcome_folder):
+    """The residuals of every step, from the log."""
+    text = (outcome_folder / "case.out").read_text()
+    return [[float(word) for word in found.split()] for found in re.findall(r"implicit +step .*residual ([^;]*);", text)]
+
+
+class Implicit(_mpm.Case):
+    def test_uniform_compression_is_exact(self):
+        """While no particle changes its cell. A cell cannot have a kink: while the ram's face is inside one, the top of
+        the column is strained as the whole cell is, and the column seems softer by the share of that cell."""
+        travel = 0.2
+        for shape in SHAPES:
+            with self.subTest(shape=shape):
+                self.run_in(shape, [self.write(column(shape, travel, 4))])
+                energy = _mpm.summary(self.folder / shape)["energy"]
+                exact = 32 * energy_of(1 - travel / 8)
+                kinetic = 0.5 * 4 * travel**2
+                self.assertAlmostEqual(energy["kinetic"], kinetic, delta=1e-9)
+                self.assertLess(abs(energy["internal"] / exact - 1), 0.08)
+                # The ram does the work that the column stores.
+                self.assertLess(abs(energy["relative_drift"]), 1e-6 if shape == "linear" else 0.02)
+
+    def test_newton_converges_quadratically_with_every_law(self):
+        for law, parameters in LAWS.items():
+            with self.subTest(law=law):
+                material = _mpm.material("soft", 1.0, f'type="{law}" Young="1000" Poisson="0.3" {parameters}')
+                self.run_in(law, [self.write(column("QuadraticBSpline", 0.8, 4, material, 'rtol="1e-11"'))])
+                for norms in residuals(self.folder / law):
+                    self.assertLessEqual(len(norms), 8)
+                    small = [n for n in norms if n < 1e-2]
+                    # The last decrease before rounding: the exponent of one residual over that before.
+                    orders = [math.log(b) / math.log(a) for a, b in zip(small, small[1:]) if b > 1e-13]
+                    if orders:
+                        self.assertGreater(max(orders), 1.6, norms)
+
+    def test_ranks_threads_and_restart_agree_to_the_tolerance(self):
+        whole = column("QuadraticBSpline", 1.0, 8, more='rtol="1e-9"',
+                       output='<PostProcessing time_interval="1" h5part="1" var="pres"/><Restart time_interval="0.5"/>')
+        results = {}
+        for ranks, threads in ((1, 1), (1, 2), (2, 1), (3, 1)):
+            folder = f"{ranks}x{threads}"
+            self.run_in(folder, [self.write(whole)], ranks=ranks, threads=threads)
+            results[folder] = self.state_of(folder)
+        restart = _mpm.restarts(self.folder / "1x1")[0]
+        self.run_in("again", [restart], ranks=2)
+        results["again"] = self.state_of("again")
+        for name, (place, pressure) in results.items():
+            with self.subTest(run=name):
+                self.assertLess(np.abs(place - results["1x1"][0]).max(), 1e-7)
+                self.assertLess(np.abs(pressure - results["1x1"][1]).max(), 1e-4 * np.abs(pressure).max())
+
+    def state_of(self, folder):
+        states = _cases.States(self.folder / folder)
+        return np.array([states.column(axis) for axis in "xyz"]), states.column("pres")
+
+    def test_free_flight_is_exact(self):
+        """A body that flies obliquely keeps its velocity and stays without stress, with steps of a tenth of a cell."""
+        body = _mpm.block("body", (2, 2, 2), (3, 3, 3), (1.0, 0.5, 0.25))
+        for shape in ("linear", "QuadraticBSpline"):
+            with self.subTest(shape=shape):
+                text = _mpm.scene([body], _mpm.grid((0, 0, 0), (12, 10, 8)).replace("<Grid>", f'<Grid shape="{shape}">'),
+                                  implicit(2.0, "dynamic", 0.1), [SOFT])
+                self.run_in(shape, [self.write(text)])
+                found = _mpm.summary(self.folder / shape)
+                np.testing.assert_allclose(found["bodies"][0]["velocity"], (1.0, 0.5, 0.25), atol=1e-9)
+                np.testing.assert_allclose(found["bodies"][0]["centre"], (5.5, 4.5, 4.0), atol=1e-8)
+                self.assertLess(abs(found["energy"]["internal"]), 1e-12)
+
+    def test_long_steps_keep_the_energy(self):
+        """A bar between smooth walls that swings in its first mode, five periods: steps of a third of the explicit limit
+        and of three times it. The rule itself keeps the energy; the particles' velocities lose a little in each step,
+        in proportion to the square of its increment."""
+        swing = _mpm.block("bar", (0, 0, 0), (16, 1, 1),
+                           more='<BodyForce bx="t &lt; 0.4 ? 20*sin(_pi*X/16) : 0" by="0" bz="0"/>')
+        drifts = {}
+        for rule, steps in (("", 40), ("", 400), ('rule="backward_euler"', 40)):
+            text = _mpm.scene([swing], _mpm.grid((0, 0, 0), (16, 1, 1), "222222").replace(
+                "<Grid>", '<Grid shape="QuadraticBSpline">'), implicit(4.0, "dynamic", 4.0 / steps, rule), [SOFT])
+            folder = f"{steps}{bool(rule)}"
+            self.run_in(folder, [self.write(text)])
+            drifts[steps, rule] = _mpm.summary(self.folder / folder)["energy"]
+        for (steps, rule), energy in drifts.items():
+            with self.subTest(steps=steps, rule=rule):
+                left = (energy["kinetic"] + energy["internal"]) / energy["external_work"]
+                if rule:
+                    self.assertLess(left, 0.5)
+                else:
+                    self.assertLess(abs(left - 1), 0.15 if steps == 40 else 0.08)
+
+
+class Refused(_mpm.Case):
+    def refused(self, text, *words):
+        outcome = self.run_in("refused", [self.write(text)], code=_mpm.INPUT_ERROR)
+        for word in words:
+            self.assertIn(word, outcome.err)
+
+    def test_what_implicit_steps_cannot_do(self):
+        scene = column()
+        self.refused(scene.replace('Integration="impl"', 'Integration="impl" transfer="APIC"').replace(
+            "<Grid shape=\"linear\">", '<Grid shape="QuadraticBSpline">'), "transfer", "FLIP")
+        self.refused(scene.replace("<Implicit", '<LimitVelocity max="1"/><Implicit'), "LimitVelocity")
+        self.refused(scene.replace("<Implicit", '<Volume erode="0.1"/><Implicit'), "erode")
+        self.refused(scene.replace('boundary="0"', 'boundary="3"', 1), "non-reflecting")
+        self.refused(scene.replace('<PrescribedVelocity vx="0" vy="0" vz="-1.0"/>', ""), "ram", "no prescribed motion")
+        failing = _mpm.material("soft", 1.0, 'type="ElaPlastic" Young="1000" Poisson="0.3" Yield0="20"',
+                                '<FailureModel type="PlaStrain" epmax="0.3"/>')
+        self.refused(column(material=failing), "soft", "not available with implicit steps", "FailureModel")
+        self.refused(column(more='newmark_beta="0.1"').replace("quasistatic", "dynamic"), "newmark_beta")
+        self.refused(column(more='min_step="1"'), "time_step")
+
+    def test_options_of_petsc(self):
+        path = self.write(column(steps=2))
+        explicit = self.write(_mpm.bounce(0.1), "explicit.xmp")
+        for job, options, code in ((path, ("-ksp_type", "gmres", "-pc_type", "bjacobi"), _mpm.DONE),
+                                   (path, ("-ksp_typo", "gmres"), _mpm.INPUT_ERROR),
+                                   (explicit, ("-ksp_type", "cg"), _mpm.INPUT_ERROR)):
+            with self.subTest(options=options, job=job.name):
+                outcome = _mpm.run([job, "--output-dir", self.folder / "out", "--", *options])
+                self.assertEqual(outcome.code, code, outcome)
+                if code != _mpm.DONE:
+                    self.assertIn(options[0], outcome.err)
+
+    def test_without_equilibrium_the_state_is_kept(self):
+        """Dead weight far beyond what the column bears: no equilibrium, and a restart of the last one."""
+        weak = _mpm.material("soft", 1.0, 'type="ElaPlastic" Young="1000" Poisson="0.3" Yield0="1"')
+        text = _mpm.scene([_mpm.block("column", (1, 1, 0), (2, 2, 6))], _mpm.grid((0, 0, 0), (4, 4, 8), "000010"),
+                          implicit(1.0, step=0.1, more='min_step="0.05" max_newton="8" gravity_ramp="1"',
+                                   extra='<Gravity ax="0" ay="0" az="-20"/>'), [weak])
+        outcome = self.run_in("failed", [self.write(text)], code=_mpm.NUMERICAL_FAILURE)
+        self.assertIn("no equilibrium", outcome.err)
+        self.assertTrue(_mpm.restarts(self.folder / "failed"))
+        self.assertEqual(_mpm.summary(self.folder / "failed")["status"], "failed")
+
+
+_mpm.main()
