@@ -18,14 +18,14 @@ CellStabilisation::CellStabilisation(Model& model)
     : model_(model),
       centred_(model.scene->grid.shape == ShapeFunction::sgmp ||
                model.scene->grid.shape == ShapeFunction::ddmp),
-      matrix_(matrix_of(model.grid->geometry().cell)) {
+      matrix_(cell_matrix(model.grid->geometry().cell)) {
   const NodeBlockShape shape = model.grid->shape();
   for (int n = 0; n < 8; ++n) corner_[n] = shape.index(n & 1, n >> 1 & 1, n >> 2) - shape.index(0, 0, 0);
 }
 
-/// Integral of sym grad N_a : sym grad N_b over a cell, by 2 x 2 x 2 Gauss points.
-CellStabilisation::Matrix CellStabilisation::matrix_of(const Vec3<double>& cell) {
-  Matrix m{};
+// By 2 x 2 x 2 Gauss points.
+CellMatrix cell_matrix(const Vec3<double>& cell) {
+  CellMatrix m{};
   const double gauss = 0.5 / std::sqrt(3.0), weight = cell.x * cell.y * cell.z / 8;
   for (int point = 0; point < 8; ++point) {
     double slope[8][3];

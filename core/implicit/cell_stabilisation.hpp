@@ -22,6 +22,11 @@
 
 namespace mpm::core {
 
+/// Stiffness of a cell with these edges: integral of B^T (sym grad u) for modulus 1. Rows and columns 3 n +
+/// axis of corner n = i + 2 j + 4 k; in length.
+using CellMatrix = std::array<std::array<double, 24>, 24>;
+CellMatrix cell_matrix(const Vec3<double>& cell);
+
 class CellStabilisation {
  public:
   static constexpr double alpha = 1e-3;
@@ -40,14 +45,11 @@ class CellStabilisation {
     std::int32_t lowest;  ///< node of the brick
     double stiffness;     ///< alpha (1 - fill) M
   };
-  using Matrix = std::array<std::array<double, 24>, 24>;
-
-  static Matrix matrix_of(const Vec3<double>& cell);
   bool handles(Slot s, const int (&at)[3]) const;
 
   Model& model_;
-  bool centred_;                          ///< shape functions through cell centres
-  Matrix matrix_;                         ///< of a cell of modulus 1; corner i + 2 j + 4 k
+  bool centred_;  ///< shape functions through cell centres
+  CellMatrix matrix_;
   int corner_[8];                         ///< nodes of a cell relative to its lowest
   std::vector<std::vector<Cell>> cells_;  ///< by slot
 };
