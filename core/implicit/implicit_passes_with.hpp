@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <mutex>
 
 #include <omp.h>
 
@@ -256,13 +257,14 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
                                         BlockMatrix& matrix) {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
+  std::mutex matrix_lock;
   for_bricks([&](Slot s, Scratch& at) {
     const BrickFrame frame(*model_.grid, s);
     StiffnessBlock& stiffness = at.stiffness;
     stiffness.begin(unknowns.of_brick(s), unknowns.nodes());
     if (displacements != nullptr) at.displacements.take_strain(frame, records(*displacements, s));
     const auto flush = [&] {
-#pragma omp critical(mpm_matrix)
+      const std::lock_guard one_at_a_time(matrix_lock);
       stiffness.flush(matrix, displacements == nullptr);
     };
     int site = -1;
