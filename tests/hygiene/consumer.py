@@ -141,7 +141,7 @@ class Consumer(unittest.TestCase):
         for laws in (OWN[:1], OWN[:2], OWN):
             with self.subTest(laws=laws):
                 output = call(self.mine / "my_point", write("tested", laws), "--test", "--duration", 0.02, "--cell-size", 1)
-                self.assertEqual(len(re.findall(r"^passed ", output, re.MULTILINE)), 13, output)
+                self.assertEqual(len(re.findall(r"^passed ", output, re.MULTILINE)), 15, output)
 
     def test_what_cannot_be_a_law_is_refused_by_name(self):
         output = call(self.mine / "my_refused", write("theirs", BUILT_IN), code=2)

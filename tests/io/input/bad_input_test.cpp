@@ -260,11 +260,6 @@ TEST_CASE("known, but not implemented yet") {
        "<RandomFailure GaussMean='0'/></Material>",
        {"line 9: <RandomFailure GaussMean=\"0\">: expected a number greater than 0"}},
       {"</Material>", "<RandomFailure enable='0' FailDistribution='2'/></Material>", {"ok"}},
-      {"<Solution>",
-       "<Solution Integration=\"impl\">",
-       {"line 25: <Solution Integration=\"impl\">: known, but not implemented yet; remove the attribute or "
-        "set it "
-        "to its default, expl"}},
       {"<Solution>", "<Solution flip_fraction=\"1.0\" xpic_order=\"2\">", {"ok"}},
       {"<Solution>", "<Solution transfer=\"XPIC\">", {"ok"}},
       {"<Solution>", "<Solution transfer=\"FMPM\" xpic_order=\"20\" xpic_interval=\"5\">", {"ok"}},
@@ -464,6 +459,37 @@ TEST_CASE("solution and output") {
        {"line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 must be given together or not at "
         "all; missing: "
         "dimension1, dimension2"}},
+  });
+}
+
+TEST_CASE("what implicit steps cannot do") {
+  const auto with = [](const std::string& attributes, const std::string& children) {
+    return "<Solution Integration=\"impl\"" + attributes + ">" + children;
+  };
+  check_table({
+      {"<Solution>", with("", ""), {"ok"}},
+      {"<Solution>", with("", "<Implicit type='quasistatic' rtol='1e-8' gravity_ramp='1'/>"), {"ok"}},
+      {"<Solution>",
+       with(" transfer='XPIC'", ""),
+       {"line 25: <Solution transfer=\"XPIC\">: implicit steps take FLIP alone: their displacements follow "
+        "from the nodes, and only velocity increments return to the particles"}},
+      {"<Solution>",
+       with("", "<LimitVelocity max='1'/>"),
+       {"line 25: <LimitVelocity max=\"1\">: is not available with implicit steps; remove it"}},
+      {"<Solution>",
+       with("", "<Volume update_type='3'/>"),
+       {"line 25: <Volume update_type=\"3\">: implicit steps take the volume from the deformation gradient; "
+        "remove it"}},
+      {"<Solution>",
+       with("", "<Implicit newmark_beta='0.1'/>"),
+       {"line 25: <Implicit newmark_beta=\"0.1\">: steps are stable without limit only from half of "
+        "newmark_gamma, 0.25"}},
+      {"<Solution>",
+       with("", "<Implicit time_step='1' min_step='2'/>"),
+       {"line 25: <Implicit time_step=\"1\">: expected at least min_step, 2"}},
+      {"<Solution>",
+       with("", "<Implicit time_step='1' max_step='0.5'/>"),
+       {"line 25: <Implicit max_step=\"0.5\">: expected at least time_step, 1"}},
   });
 }
 
