@@ -1,0 +1,65 @@
+"""A picture of a scene's particles in the plane of its middle, x and z, at a few times, in colours of one variable:
+
+    picture.py FOLDER [--times 0 0.05 0.1 0.2] [--variable seqv] [--out PICTURE.png]
+
+FOLDER: of a run of mpm_run with h5part="1" and the variable among its outputs. The default is four times of those that
+the run wrote, from the first to the last."""
+
+import argparse
+import pathlib
+
+import h5py
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--times", nargs="+", type=float)
+    parser.add_argument("--variable", default="seqv")
+    parser.add_argument("--out", type=pathlib.Path, help="default: JOB.png in the folder")
+    options = parser.parse_args()
+    files = sorted(options.folder.glob("*.h5part"))
+    if len(files) != 1:
+        raise SystemExit(f"{options.folder}: expected one .h5part file, found {len(files)}; run mpm_run --output-dir {options.folder} first")
+    with h5py.File(files[0]) as file:
+        steps = sorted((step for name, step in file.items() if name.startswith("Step#")), key=lambda step: int(step.name[6:]))
+        written = np.array([float(step.attrs["TimeValue"]) for step in steps])
+        times = options.times or np.linspace(written[0], written[-1], 4)
+        shown = [steps[np.abs(written - time).argmin()] for time in times]
+        if options.variable not in shown[0]:
+            raise SystemExit(f"{files[0]}: no variable {options.variable}; it has {', '.join(shown[0])}")
+        slices = [middle(step, options.variable) for step in shown]
+        titles = [f"t = {float(step.attrs['TimeValue']):g}" for step in shown]
+    draw(slices, titles, options.variable, options.out or files[0].with_suffix(".png"))
+
+
+def middle(step, variable):
+    """x, z and the variable of the layer of particles next to the middle along y, drawn from the rear to the front."""
+    x, y, z, value = (step[name][:].astype(float) for name in ("x", "y", "z", variable))
+    centre = (y.min() + y.max()) / 2
+    thick = 1.5 * np.cbrt(np.ptp(x) * np.ptp(y) * np.ptp(z) / len(x))
+    near = np.flatnonzero(np.abs(y - centre) <= thick)
+    near = near[np.argsort(-y[near])]
+    return x[near], z[near], value[near]
+
+
+def draw(slices, titles, variable, path):
+    (x0, x1), (z0, z1), (low, high) = ((min(part.min() for part in parts), max(part.max() for part in parts)) for parts in zip(*slices))
+    width = 3.2 * len(slices)
+    figure, axes = plt.subplots(1, len(slices), figsize=(width, 1.1 + 3.0 * (z1 - z0) / (x1 - x0)), dpi=150, squeeze=False,
+                                layout="constrained", sharey=True)
+    for ax, (x, z, value), title in zip(axes[0], slices, titles):
+        points = ax.scatter(x, z, c=value, s=1.5, vmin=low, vmax=high, cmap="viridis", linewidths=0)
+        ax.set(xlim=(x0, x1), ylim=(z0, z1), aspect="equal", title=title, xlabel="x")
+    axes[0][0].set_ylabel("z")
+    figure.colorbar(points, ax=axes, label=variable)
+    figure.savefig(path)
+    print(path)
+
+
+main()
