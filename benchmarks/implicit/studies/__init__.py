@@ -1,0 +1,5 @@
+"""The studies of the implicit benchmark. A new one is a module beside these and a line of this list."""
+
+from studies import cantilever, column, platen, steps
+
+STUDIES = {module.STUDY.name: module.STUDY for module in (column, platen, cantilever, steps)}
