@@ -27,7 +27,7 @@ COMMON = ("status", "particles", "steps", "unknowns", "newton", "linear", "cuts"
 @dataclasses.dataclass(frozen=True)
 class Run:
     """`labels`: what tells the run from the study's others, {column: value}. `measure`: a function of the Result that
-    returns {column: number}. `options`: for PETSc."""
+    returns {column: number or text}. `options`: for PETSc."""
 
     labels: dict
     scene: str
@@ -120,7 +120,7 @@ def run(one, out, keep=False):
         if steps:
             row.update(unknowns=max(s.unknowns for s in steps), newton=sum(len(s.norms) - 1 for s in steps),
                        linear=sum(s.linear for s in steps), cuts=sum(s.cuts for s in steps))
-        row.update({name: float(value) for name, value in one.measure(result).items()})
+        row.update({name: value if isinstance(value, str) else float(value) for name, value in one.measure(result).items()})
     elif code in (2, 3):
         row.update(status=REFUSED if code == 2 else FAILED, note=reason(said))
     elif code == -signal.SIGKILL:

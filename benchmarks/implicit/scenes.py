@@ -26,11 +26,11 @@ def block(name, lower, size, dp, of="solid", more="", attributes=""):
             f"{more}</Body>")
 
 
-def ring(name, inner, outer, height, dp, of="solid", more="", attributes=""):
-    """A quarter about the z axis."""
+def ring(name, inner, outer, height, dp, of="solid", more="", attributes="", rings=False):
+    """A quarter about the z axis, its particles in a lattice along the axes or in rings."""
     return (f'<Body name="{name}" material="{of}" type="Cylinder" {attributes}><Geometry x0="0" y0="0" z0="0" dp_bottom="{dp!r}" '
             f'dp_top="{dp!r}" Bottom_Inner_Radius="{inner}" Top_Inner_Radius="{inner}" Bottom_Outer_Radius="{outer}" '
-            f'Top_Outer_Radius="{outer}" height="{height!r}" angle="90"/>{more}</Body>')
+            f'Top_Outer_Radius="{outer}" height="{height!r}" angle="90" discretization="{int(rings)}"/>{more}</Body>')
 
 
 def moved(vx=0.0, vy=0.0, vz=0.0):

@@ -1,0 +1,69 @@
+"""A strip footing on weightless cohesive soil: Prandtl's load."""
+
+import numpy as np
+
+import scenes
+import study
+from run_one import Run
+
+HALF, WIDTH, DEPTH = 1.0, 4.0, 2.0  # of the footing, of the half of the soil, of the soil
+COHESION, YOUNG, POISSON = 1.0, 500.0, 0.3
+PRANDTL = (2 + np.pi) * COHESION
+PRESSED, STEPS = 0.08, 40
+# Von Mises with the cohesion as shear strength, which is Tresca's criterion in plane strain.
+LAWS = {"DruckerPrager": f'type="DruckerPrager" qfai="0" kfai="{COHESION}" qpsi="0" ten_f="1e6"',
+        "ElaPlastic": f'type="ElaPlastic" Yield0="{3**0.5 * COHESION!r}" bq1="0" bq2="0"'}
+
+
+class Footing(study.Study):
+    name = "footing"
+    title = "Strip footing"
+    about = f"""Half of a strip of half width {HALF:g} on weightless soil, {WIDTH:g} wide and {DEPTH:g} deep, in plane strain (cohesion {COHESION:g}, friction 0,
+E = {YOUNG:g}, Poisson's ratio {POISSON:g}); a rough rigid body with `PrescribedVelocity` presses it by {PRESSED:g} in {STEPS} load steps. L. Prandtl's load is (2 + pi) c
+= {PRANDTL:.3f} over the width. The load is the mean over the depth of the vertical stress over the soil, which equilibrium makes the same
+at every depth. *load*: the largest over Prandtl's, less 1; *last*: at the end; *growth*: of the load over the last quarter, relative; a method that locks finds no
+limit load."""
+    labels = ("law", "shape", "cells")
+    measured = ("load", "last", "growth")
+
+    def runs(self):
+        found = []
+        for law in LAWS:
+            for shape in scenes.SHAPES:
+                if law == "ElaPlastic" and shape not in ("linear", "QuadraticBSpline"):
+                    continue
+                for cells in (2, 4, 8):
+                    found.append(self.one(law, shape, cells, law == "DruckerPrager" and shape == "QuadraticBSpline" and cells == 2))
+        return found
+
+    @staticmethod
+    def one(law, shape, cells, quick):
+        h = HALF / cells
+        soil = scenes.block("soil", (0, 0, 0), (WIDTH, h, DEPTH), h / 2)
+        footing = scenes.block("footing", (0, 0, DEPTH), (HALF, h, 2 * h), h / 2, "rigid", scenes.moved(vz=-PRESSED))
+        strength = f'{LAWS[law]} Young="{YOUNG}" Poisson="{POISSON}"'
+        text = scenes.scene([soil, footing], scenes.grid(shape, (0, 0, 0), (WIDTH, h, DEPTH + 4 * h), "222210", h),
+                            scenes.implicit(1.0, 1 / STEPS), [scenes.material("solid", 1.0, strength), scenes.rigid()],
+                            scenes.pictures(1 / 20, ("SigmaZ", "density")))
+
+        def measure(result):
+            mine = result.column("z", 0) < DEPTH
+            volume = lambda i: result.column("density", 0)[mine] / result.column("density", i)[mine] * (h / 2) ** 3
+            loads = np.array([-(volume(i) * result.column("SigmaZ", i)[mine]).sum() / (DEPTH * h * HALF)
+                              for i in range(len(result.states.steps))])
+            return {"load": loads.max() / PRANDTL - 1, "last": loads[-1] / PRANDTL - 1,
+                    "growth": loads[-1] / loads[-6] - 1}
+
+        return Run({"law": law, "shape": shape, "cells": cells}, text, measure, quick)
+
+    def block(self, rows):
+        text = ["*last*, per cent, over the cells along the half width\n\n"
+                + study.convergence(rows, "last", "cells", ("law", "shape"), ".2f", 100)]
+        lines = [[r["law"], r["shape"], f"{r['cells']:g}", *(study.shown(r, n, ".2f", 100) for n in self.measured), f"{r['steps']:g}",
+                  f"{r['newton']:g}", f"{r['cuts']:g}", f"{r['seconds']:.2g}"] for r in rows if study.done(r)]
+        text.append(study.table(["law", "shape", "cells", "load, %", "last, %", "growth, %", "steps", "Newton iterations", "cuts", "seconds"], lines))
+        failed = study.failures(rows)
+        return "\n\n".join(text) + (f"\n\nNot done:\n\n{failed}" if failed else "")
+
+
+STUDY = Footing()
