@@ -24,7 +24,7 @@ def solve(inner, outer, young, poisson, yielded, pressures, elements=800):
             strain[:, :2] = slope[:, :, 0] * u[:-1, None] + slope[:, :, 1] * u[1:, None]
             trial = 2 * shear * (strain - plastic) @ deviator
             size = np.sqrt(1.5 * (trial**2).sum(axis=1))
-            part = np.minimum(1, yielded / np.maximum(size, 1e-300))  # of the trial deviator that is left
+            part = yielded / np.maximum(size, yielded)  # of the trial deviator that is left
             s = part[:, None] * trial
             stress = s + bulk * strain.sum(axis=1)[:, None]
             tangent = bulk * np.ones((elements, 3, 3)) + 2 * shear * part[:, None, None] * deviator
@@ -35,7 +35,7 @@ def solve(inner, outer, young, poisson, yielded, pressures, elements=800):
             residual[0] = inner * pressure
             np.subtract.at(residual, np.arange(elements), forces[:, 0])
             np.subtract.at(residual, np.arange(elements) + 1, forces[:, 1])
-            if np.abs(residual).max() < 1e-10 * inner * pressure:
+            if np.abs(residual).max() < 1e-8 * inner * pressure:
                 break
             blocks = weight[:, :, None] * np.einsum("eia,eij,ejb->eab", slope, tangent[:, :2, :2], slope)
             u = u + tridiagonal(blocks, residual)
