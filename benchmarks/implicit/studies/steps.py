@@ -55,7 +55,7 @@ middle, one of {CELLS}."""
                 found.append(self.one(motion, "explicit", shape, CELLS, 0.5, False))
                 for rule in RULES:
                     for ratio in RATIOS:
-                        if ratio == 1 and shape not in ("linear", "QuadraticBSpline"):
+                        if ratio == 1 and shape != "linear":
                             continue
                         found.append(self.one(motion, rule, shape, CELLS, ratio, shape == "QuadraticBSpline" and ratio >= 100))
                 if shape in ("linear", "QuadraticBSpline"):
