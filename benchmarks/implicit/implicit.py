@@ -88,7 +88,8 @@ def run(options):
     for name, runs in chosen(options).items():
         def measured(one, name=name):
             row = run_one.run(one, options.out, options.keep)
-            said = row["note"] or ", ".join(f"{k} {row[k]:.4g}" for k in STUDIES[name].measured if k in row)
+            found = {k: row[k] for k in STUDIES[name].measured if k in row}
+            said = row["note"] or ", ".join(f"{k} {v if isinstance(v, str) else format(v, '.4g')}" for k, v in found.items())
             print(f"{name} {one.key}: {row['status']}: {said}; {row['steps']} steps, {row['newton']} iterations, "
                   f"{row['seconds'] or 0:.3g} s", file=sys.stderr, flush=True)
             return row

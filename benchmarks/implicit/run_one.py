@@ -55,7 +55,8 @@ def steps_of(log):
     found = []
     line = (r"^implicit +step \d+: time \S+, length (\S+); (\d+) unknowns; residual ([^;]*); (\d+) linear iterations(.*)$")
     for length, unknowns, norms, linear, more in re.findall(line, log, re.MULTILINE):
-        found.append(Step(float(length), int(unknowns), tuple(map(float, norms.split())), int(linear), more.count("; shortened")))
+        found.append(Step(float(length), int(unknowns), tuple(map(float, norms.split())), int(linear),
+                          more.count("; shortened")))
     return found
 
 

@@ -28,9 +28,9 @@ def block(name, lower, size, dp, of="solid", more="", attributes=""):
 
 def ring(name, inner, outer, height, dp, of="solid", more="", attributes="", rings=False):
     """A quarter about the z axis, its particles in a lattice along the axes or in rings."""
-    return (f'<Body name="{name}" material="{of}" type="Cylinder" {attributes}><Geometry x0="0" y0="0" z0="0" dp_bottom="{dp!r}" '
-            f'dp_top="{dp!r}" Bottom_Inner_Radius="{inner}" Top_Inner_Radius="{inner}" Bottom_Outer_Radius="{outer}" '
-            f'Top_Outer_Radius="{outer}" height="{height!r}" angle="90" discretization="{int(rings)}"/>{more}</Body>')
+    return (f'<Body name="{name}" material="{of}" type="Cylinder" {attributes}>'
+            f'<Geometry x0="0" y0="0" z0="0" dp_bottom="{dp!r}" dp_top="{dp!r}" Bottom_Inner_Radius="{inner}" '
+            f'Top_Inner_Radius="{inner}" Bottom_Outer_Radius="{outer}" Top_Outer_Radius="{outer}" height="{height!r}" angle="90" discretization="{int(rings)}"/>{more}</Body>')
 
 
 def moved(vx=0.0, vy=0.0, vz=0.0):

@@ -63,16 +63,18 @@ class Cantilever(study.Study):
     def about(self):
         x, y = elastica()
         xs, ys = with_shear()
-        return f"""A beam of length {LENGTH:g} and depth {DEPTH:g} in plane strain (E = 12 MPa as in AMPLE's beam, Poisson's ratio 0), clamped at x = 0
-by a fixed face, under the dead load P = 3 EI/L2 in 20 load steps (`BodyForce` on the particles that began in the last
-{LOADED:g}). The elastica's end, with the same load, moves to ({x:.4f}, {y - 0:.4f}); with the stretch and the shear
-of Reissner's beam to ({xs:.4f}, {ys:.4f}), {100 * np.hypot(x - xs, y - ys) / np.hypot(LENGTH - x, y):.2f} % of the displacement away from that. *tip*: distance of the end of the axis
-from that of Reissner's beam, over the beam's displacement; *elastica*: from the elastica's. Cells: over the depth."""
+        apart = 100 * np.hypot(x - xs, y - ys) / np.hypot(LENGTH - x, y)
+        return f"""A beam of length {LENGTH:g} and depth {DEPTH:g} in plane strain (E = 12 MPa as in AMPLE's beam, Poisson's
+ratio 0), clamped at x = 0 by a fixed face, under the dead load P = 3 EI/L2 in 20 load steps (`BodyForce` on the particles
+that began in the last {LOADED:g}). The elastica's end, with the same load, moves to ({x:.4f}, {y:.4f}); with the stretch
+and the shear of Reissner's beam to ({xs:.4f}, {ys:.4f}), {apart:.2f} % of the displacement away from that. *tip*: distance
+of the end of the axis from that of Reissner's beam, over the beam's displacement; *elastica*: from the elastica's. Cells:
+over the depth."""
 
     def runs(self):
         found = []
         for shape in ("linear", "uGIMP", "QuadraticBSpline", "CubicBSpline", "CPDI2"):
-            for cells in (2, 4, 8):
+            for cells in (2, 4, 8) if shape in ("uGIMP", "QuadraticBSpline", "CPDI2") else (2, 4):
                 found.append(self.one(shape, 2, cells, shape == "QuadraticBSpline" and cells == 2))
         for shape in ("QuadraticBSpline", "CPDI2"):
             for cells in (2, 4):

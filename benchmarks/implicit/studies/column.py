@@ -35,17 +35,18 @@ def period(young):
 class Column(study.Study):
     name = "column"
     title = "Column under its weight"
-    about = f"""AMPLE's column (Coombs and Augarde, Adv. Eng. Softw. 139 (2020) 102748): height {HEIGHT:g}, density {DENSITY:g},
-Poisson's ratio 0, the force per volume grows in load steps to {DENSITY * GRAVITY:g}. *soft*: E = 10 kPa, the top sinks by 68 % of the
-height; *firm*: E = 1 MPa, as on AMPLE's page, by 2 %. Neo-Hookean, one cell wide between symmetry planes, eight particles per
-cell. Exact: the stress in a layer is the weight above it. *stress*: the sum over the particles of |sigma - exact| V0, over
-the weight's stress at the bottom and the body's volume, as AMPLE's; *place*: root mean square of the error of height, over
-the column's. *load steps*: as asked for; a step is shortened where a node would move by more than a cell, so that the soft
-column needs more; *few implicit*: as few as that allows. The explicit runs are damped near critically (`DynamicRelax`), their load grows in the first half of
-{' or '.join(f'{v:g}' for v in PERIODS.values())} periods of the slowest wave.
+    about = f"""AMPLE's column (Coombs and Augarde, Adv. Eng. Softw. 139 (2020) 102748): height {HEIGHT:g}, density
+{DENSITY:g}, Poisson's ratio 0, the force per volume grows in load steps to {DENSITY * GRAVITY:g}. *soft*: E = 10 kPa, the
+top sinks by 68 % of the height; *firm*: E = 1 MPa, as on AMPLE's page, by 2 %. Neo-Hookean, one cell wide between symmetry
+planes, eight particles per cell. Exact: the stress in a layer is the weight above it. *stress*: the sum over the particles
+of |sigma - exact| V0, over the weight's stress at the bottom and the body's volume, as AMPLE's; *place*: root mean square
+of the error of height, over the column's. *load steps*: as asked for; a step is shortened where a node would move by more
+than a cell, so that the soft column needs more; *few implicit*: as few as that allows. The explicit runs are damped near
+critically (`DynamicRelax`), their load grows in the first half of {' or '.join(f'{v:g}' for v in PERIODS.values())} periods
+of the slowest wave.
 
-AMPLE's page (https://wmcoombs.github.io/tests) reports an order of about 1 for GIMP on the firm column, and no convergence for
-linear functions."""
+AMPLE's page (https://wmcoombs.github.io/tests) reports an order of about 1 for GIMP on the firm column, and no convergence
+for linear functions."""
     labels = ("body", "steps by", "shape", "cells")
     measured = ("stress", "place")
 
@@ -64,7 +65,8 @@ linear functions."""
         for shape in ("QuadraticBSpline", "CPDI2"):
             found += [self.one("firm", "few implicit", shape, cells, False) for cells in (16, 32, 64, 128, 256)]
         for cells in (256, 512, 1024):  # where the number of explicit steps tells
-            found += [self.one("firm", by, "QuadraticBSpline", cells, False) for by in ("implicit", "explicit short", "explicit long")]
+            found += [self.one("firm", by, "QuadraticBSpline", cells, False)
+                      for by in ("implicit", "explicit short", "explicit long")]
         return found
 
     @staticmethod
@@ -112,17 +114,17 @@ linear functions."""
             best = min(same, key=lambda r: r["stress"])
             equal = min((r for r in others if r["stress"] <= row["stress"]), key=lambda r: r["seconds"], default=None)
             costs.append(row["seconds"] / row["newton"] / (best["seconds"] / best["steps"]))
-            lines.append([row["steps by"], row["shape"], f"{row['cells']:g}", f"{row['steps']:g}", f"{row['newton']:g}", f"{row['stress']:.2e}",
-                          f"{row['seconds']:.2g}", f"{best['steps']:g}", f"{best['stress']:.2e}", f"{best['seconds']:.2g}",
+            lines.append([row["steps by"], row["shape"], *(f"{row[name]:g}" for name in ("cells", "steps", "newton")),
+                          f"{row['stress']:.2e}", f"{row['seconds']:.2g}", f"{best['steps']:g}", f"{best['stress']:.2e}", f"{best['seconds']:.2g}",
                           f"{best['seconds'] / row['seconds']:.2g}",
                           "none" if equal is None else f"{equal['seconds'] / row['seconds']:.2g}"])
-        heads = ["steps by", "shape", "cells", "steps", "Newton iterations", "stress", "seconds", "explicit steps", "stress, best explicit",
-                 "its seconds", "time explicit over implicit", "the same at no larger error, any grid"]
+        heads = ["steps by", "shape", "cells", "steps", "Newton iterations", "stress", "seconds", "explicit steps",
+                 "stress, best explicit", "its seconds", "time explicit over implicit", "the same at no larger error, any grid"]
         if not lines:
             return ""
-        return (f"{study.table(heads, lines)}\n\nA Newton iteration takes as long as {min(costs):.0f} to {max(costs):.0f} explicit steps, and "
-                "a node may move by no more than a cell in a step, so that load steps grow in number with the cells as explicit "
-                "ones do. One dimension and a damping that is known to be critical favour explicit steps.")
+        return (f"{study.table(heads, lines)}\n\nA Newton iteration takes as long as {min(costs):.0f} to {max(costs):.0f} explicit "
+                "steps, and a node may move by no more than a cell in a step, so that load steps grow in number with the cells "
+                "as explicit ones do. One dimension and a damping that is known to be critical favour explicit steps.")
 
 
 STUDY = Column()

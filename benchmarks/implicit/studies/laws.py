@@ -19,8 +19,8 @@ LAWS = {
     "ElaPlastic": (METAL + ' Yield0="200"', "", 0.02),
     "IsoHarden": (METAL + ' Yield0="200" TangMod="3000"', "", 0.02),
     "SimJohnsonCook": (METAL + ' Yield0="90" B="292" n="0.31" C="0.025" epso="1"', "", 0.02),
-    "JohnsonCook": (METAL + ' Yield0="90" B="292" n="0.31" C="0.025" epso="1" m="1.09" melt="1356" roomt="293" SpecHeat="383e6"',
-                    "", 0.02),
+    "JohnsonCook": (METAL + ' Yield0="90" B="292" n="0.31" C="0.025" epso="1"'
+                    ' m="1.09" melt="1356" roomt="293" SpecHeat="383e6"', "", 0.02),
     "DruckerPrager": ('Young="70" Poisson="0.3" qfai="0.4" kfai="0.2" qpsi="0.1" ten_f="0.1"', "", 0.02),
 }
 
@@ -36,10 +36,11 @@ def seen_order(norms):
 class Laws(study.Study):
     name = "laws"
     title = "Quadratic convergence of each law"
-    about = f"""A cube of {CELLS} cells per edge, fixed at the bottom, free at the sides, that a platen presses and shears by the stated
-strain (of the height, and half as much sideways) in {STEPS} load steps, with a tolerance of 1e-12 and QuadraticBSpline. *iterations*:
-the most in a step; *order*: of the last three residuals above round-off, the largest of the steps (2: quadratic); *differences*:
-iterations with `jacobian="differences"`; *residuals*: of the last step, over the forces that balance."""
+    about = f"""A cube of {CELLS} cells per edge, fixed at the bottom, free at the sides, that a platen presses and shears
+by the stated strain (of the height, and half as much sideways) in {STEPS} load steps, with a tolerance of 1e-12 and
+QuadraticBSpline. *iterations*: the most in a step; *order*: of the last three residuals above round-off, the largest of the
+steps (2: quadratic); *differences*: iterations with `jacobian="differences"`; *residuals*: of the last step, over the
+forces that balance."""
     labels = ("law", "tangent")
     measured = ("strain", "iterations", "order", "residuals")
 
@@ -54,7 +55,8 @@ iterations with `jacobian="differences"`; *residuals*: of the last step, over th
         cube = scenes.block("cube", (2, 2, 0), (SIZE, SIZE, SIZE), h / 2)
         platen = scenes.block("platen", (1, 1, SIZE), (SIZE + 2, SIZE + 2, 2 * h), h / 2, "rigid",
                               scenes.moved(vx=strain * SIZE / 2, vz=-strain * SIZE))
-        text = scenes.scene([cube, platen], scenes.grid("QuadraticBSpline", (0, 0, 0), (SIZE + 4, SIZE + 4, SIZE + 4), "000010", h),
+        grid = scenes.grid("QuadraticBSpline", (0, 0, 0), (SIZE + 4, SIZE + 4, SIZE + 4), "000010", h)
+        text = scenes.scene([cube, platen], grid,
                             scenes.implicit(1.0, 1 / STEPS, more=f'rtol="1e-12" jacobian="{tangent}"'),
                             [scenes.material("solid", DENSITY, f'type="{law}" {values}', more), scenes.rigid()])
 
@@ -69,7 +71,8 @@ iterations with `jacobian="differences"`; *residuals*: of the last step, over th
         lines = []
         for row in study.where(rows, tangent="assembled"):
             other = study.where(rows, law=row["law"], tangent="differences")
-            lines.append([row["law"], *(study.shown(row, n, how) for n, how in (("strain", "g"), ("iterations", ".0f"), ("order", ".2f"))),
+            lines.append([row["law"], study.shown(row, "strain", "g"), study.shown(row, "iterations", ".0f"),
+                          study.shown(row, "order", ".2f"),
                           study.shown(other[0], "iterations", ".0f") if other else "–", row["residuals"] or "–"])
         failed = study.failures(rows)
         return (study.table(["law", "strain", "iterations", "order", "differences", "residuals"], lines)

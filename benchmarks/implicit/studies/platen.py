@@ -19,12 +19,13 @@ LAYERS = 1 / 8  # of the height, next to the platen, that `below` leaves out
 class Platen(study.Study):
     name = "platen"
     title = "Slow compression by a platen"
-    about = f"""A neo-Hookean block (E = {YOUNG:g}, Poisson's ratio {POISSON:g}, density {DENSITY:g}, height {HEIGHT:g}) between
-symmetry planes, two by two cells wide, is compressed to half its height by a rigid body with `PrescribedVelocity`. Exact: uniform strain, the
-vertical stress is {STRESS:.1f}. *stress*: root mean square of the error of the vertical stress over its exact value; *below*: without the
-particles that began in the upper eighth; *place*: root mean square of the error of height over the height. A step
-moves the platen by half a cell. In the explicit runs the platen is in contact, and moves at the stated part of the speed of
-waves, {WAVE:.1f}; the slower it is, the smaller the forces of inertia, and the longer the run."""
+    about = f"""A neo-Hookean block (E = {YOUNG:g}, Poisson's ratio {POISSON:g}, density {DENSITY:g}, height {HEIGHT:g})
+between symmetry planes, two by two cells wide, is compressed to half its height by a rigid body with `PrescribedVelocity`.
+Exact: uniform strain, the vertical stress is {STRESS:.1f}. *stress*: root mean square of the error of the vertical stress
+over its exact value; *below*: without the particles that began in the upper eighth; *place*: root mean square of the error
+of height over the height. A step moves the platen by half a cell. In the explicit runs the platen is in contact, and moves
+at the stated part of the speed of waves, {WAVE:.1f}; the slower it is, the smaller the forces of inertia, and the longer
+the run."""
     labels = ("steps by", "shape", "cells")
     measured = ("stress", "below", "place")
 

@@ -35,16 +35,16 @@ def left(rule, frequency, step, end):
 class Steps(study.Study):
     name = "steps"
     title = "Time steps of 1, 10, 100 and 1000 explicit ones"
-    about = f"""A neo-Hookean bar of {LENGTH:g}, {CELLS} cells, between symmetry planes (E = {YOUNG:g}, Poisson's ratio 0), particles' speeds of a
-thousandth of that of waves. *wave*: the first mode, a standing wave; *ring-down*: the halves move against each other, and all modes
-ring. Steps in cells over the speed of waves, the explicit limit; {PERIODS} periods of the first mode, so that the longest step
-is {1000 / (2 * CELLS):.0f} periods. *energy*: kinetic and internal, at the end over that of the start; *oscillator*: what
-the rule leaves of the first mode. *trapezoidal*: the default; *damped Newmark*: gamma 0.6, beta
-0.3025. The trapezoidal rule conserves the energy of the grid; what it loses here is lost between grid and particles: FLIP
-adds the nodes' velocity increments dv to the particles, whose kinetic energy then misses 1/2 (sum m_i dv_i^2 - sum m_p
-(sum S_ip dv_i)^2), of second order in the cell size and in the velocity change of a step, which is small in explicit
-steps only. Of a ring-down, backward Euler leaves what the grid does not see: the two velocities within the cell in the
-middle, one of {CELLS}."""
+    about = f"""A neo-Hookean bar of {LENGTH:g}, {CELLS} cells, between symmetry planes (E = {YOUNG:g}, Poisson's ratio 0),
+particles' speeds of a thousandth of that of waves. *wave*: the first mode, a standing wave; *ring-down*: the halves move
+against each other, and all modes ring. Steps in cells over the speed of waves, the explicit limit; {PERIODS} periods of the
+first mode, so that the longest step is {1000 / (2 * CELLS):.0f} periods. *energy*: kinetic and internal, at the end over
+that of the start; *oscillator*: what the rule leaves of the first mode. *trapezoidal*: the default; *damped Newmark*: gamma
+0.6, beta 0.3025. The trapezoidal rule conserves the energy of the grid; what it loses here is lost between grid and
+particles: FLIP adds the nodes' velocity increments dv to the particles, whose kinetic energy then misses 1/2 (sum m_i
+dv_i^2 - sum m_p (sum S_ip dv_i)^2), of second order in the cell size and in the velocity change of a step, which is small
+in explicit steps only. Of a ring-down, backward Euler leaves what the grid does not see: the two velocities within the cell
+in the middle, one of {CELLS}."""
     labels = ("motion", "rule", "shape", "cells", "ratio")
     measured = ("energy", "kinetic", "oscillator")
 
@@ -98,12 +98,13 @@ middle, one of {CELLS}."""
                     lines.append([rule, shape, *(study.shown(at[p], "energy", ".4g") if p in at else "–" for p in RATIOS)])
                 if motion == "wave":
                     at = {r["ratio"]: r for r in study.where(mine, rule=rule)}
-                    lines.append([rule, "*oscillator*", *(study.shown(at[p], "oscillator", ".4g") if p in at else "–" for p in RATIOS)])
+                    lines.append([rule, "*oscillator*",
+                                  *(study.shown(at[p], "oscillator", ".4g") if p in at else "–" for p in RATIOS)])
             text.append(f"**{motion}**: energy left, at steps of so many explicit limits\n\n"
                         + study.table(["rule", "shape", *(f"{p}" for p in RATIOS)], lines))
             finer = [r for r in study.where(rows, motion=motion, rule="trapezoidal") if r["ratio"] * CELLS == 10 * r["cells"]]
-            text.append(f"The same step, {10 * LENGTH / CELLS / WAVE / PERIOD:.2g} periods, over the cells of the bar: part of the energy "
-                        "that the trapezoidal rule loses\n\n" + self.losses(finer))
+            text.append(f"The same step, {10 * LENGTH / CELLS / WAVE / PERIOD:.2g} periods, over the cells of the bar: part of the "
+                        "energy that the trapezoidal rule loses\n\n" + self.losses(finer))
             other = [[r["shape"], study.shown(r, "energy", ".4g"), f"{r['steps']:g}", f"{r['seconds']:.2g}"]
                      for r in study.where(mine, rule="explicit")]
             if other:

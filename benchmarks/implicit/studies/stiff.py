@@ -45,13 +45,14 @@ def laminate_stress(ratio):
 class Stiff(study.Study):
     name = "stiff"
     title = "Stiff inclusions and nearly incompressible solids"
-    about = f"""Unit bodies that a rough platen compresses by {STRAIN:g} in one load step, from a fixed face; neo-Hookean. The force is the mean over the
-height of the vertical stress, which equilibrium makes the same at every height. *laminate*: a column between symmetry planes,
-whose middle half is stiffer by the ratio; exact: stresses in series. *inclusion*: a cube between
-symmetry planes, with a stiffer cube of half its edge inside; force over that at ratio 1; at 1e6 the inclusion
-must be rigid, so that 1e3 and 1e6 are nearly the same. Functions that reach beyond the interface (splines, SGMP) stiffen about half a cell
-of the matrix on each side. The round-off of a strain, 1e-16, times the modulus bounds the residual: at 1e6 a tolerance much below the default cannot be met. *block*: plane strain, free sides, Poisson's ratio to 0.499; error of
-the force against finite elements that do not lock (benchmarks/accuracy/plane_strain.py, 12 x 12 of nine nodes); a locking
+    about = f"""Unit bodies that a rough platen compresses by {STRAIN:g} in one load step, from a fixed face; neo-Hookean.
+The force is the mean over the height of the vertical stress, which equilibrium makes the same at every height. *laminate*:
+a column between symmetry planes, whose middle half is stiffer by the ratio; exact: stresses in series. *inclusion*: a cube
+between symmetry planes, with a stiffer cube of half its edge inside; force over that at ratio 1; at 1e6 the inclusion must
+be rigid, so that 1e3 and 1e6 are nearly the same. Functions that reach beyond the interface (splines, SGMP) stiffen about
+half a cell of the matrix on each side. The round-off of a strain, 1e-16, times the modulus bounds the residual: at 1e6 a
+tolerance much below the default cannot be met. *block*: plane strain, free sides, Poisson's ratio to 0.499; error of the
+force against finite elements that do not lock (benchmarks/accuracy/plane_strain.py, 12 x 12 of nine nodes); a locking
 method is too stiff."""
     labels = ("body", "shape", "value", "cells")
     measured = ("force", "error")
@@ -119,10 +120,12 @@ method is too stiff."""
         for row in mine:
             one = study.where(mine, shape=row["shape"], cells=row["cells"], value=1.0)
             ok = study.done(row) and one and study.done(one[0])
-            lines.append([row["shape"], f"{row['cells']:g}", f"{row['value']:g}", f"{row['force'] / one[0]['force']:.4f}" if ok else row["status"],
+            lines.append([row["shape"], f"{row['cells']:g}", f"{row['value']:g}",
+                          f"{row['force'] / one[0]['force']:.4f}" if ok else row["status"],
                           f"{row['newton']:g}" if ok else "–", f"{row['seconds']:.2g}" if ok else "–"])
         if lines:
-            text.append("**inclusion**\n\n" + study.table(["shape", "cells", "ratio", "force", "Newton iterations", "seconds"], lines))
+            heads = ["shape", "cells", "ratio", "force", "Newton iterations", "seconds"]
+            text.append("**inclusion**\n\n" + study.table(heads, lines))
         failed = study.failures(rows)
         return "\n\n".join(text) + (f"\n\nNot done:\n\n{failed}" if failed else "")
 
