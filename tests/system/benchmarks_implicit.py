@@ -15,6 +15,7 @@ SCRIPT = "benchmarks/implicit/implicit.py"
 sys.path[:0] = [str(_mpm.SOURCE / "benchmarks/implicit"), str(_mpm.SOURCE / "benchmarks")]
 
 import implicit  # noqa: E402: found by the line above
+from common import results  # noqa: E402
 import radial  # noqa: E402
 import run_one  # noqa: E402
 import study  # noqa: E402
@@ -99,7 +100,7 @@ class Quick(_mpm.RunOnce):
 
     def rows(self, name, **labels):
         lines = (line for line in (self.out / f"{name}.csv").read_text().splitlines() if not line.startswith("#"))
-        found = [r for r in csv.DictReader(lines) if all(r[k] == str(v) for k, v in labels.items())]
+        found = [r for r in csv.DictReader(lines) if all(results.number(r[k]) == v for k, v in labels.items())]
         self.assertTrue(found, (name, labels))
         for row in found:
             self.assertEqual(row["status"], "done", row)
@@ -117,8 +118,10 @@ class Quick(_mpm.RunOnce):
         self.assertLess(fine, self.one("stress", "column", **{**where, "steps by": "explicit short"}, shape="QuadraticBSpline", cells=32))
 
     def test_platen(self):
-        coarse, fine = (self.one("below", "platen", **{"steps by": "implicit"}, shape="QuadraticBSpline", cells=n) for n in (8, 16))
-        self.assertLess(fine, min(0.05, coarse))
+        where = {"steps by": "implicit", "shape": "QuadraticBSpline"}
+        coarse, fine = (self.one("stress", "platen", **where, cells=n) for n in (8, 16))
+        self.assertLess(fine, 0.8 * coarse)  # measured 0.114 and 0.084: the kink at the platen
+        self.assertLess(self.one("below", "platen", **where, cells=16), 0.04)
 
     def test_cantilever(self):
         self.assertLess(self.one("tip", "cantilever", shape="QuadraticBSpline", cells=2), 0.05)

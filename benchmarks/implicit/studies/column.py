@@ -57,13 +57,14 @@ for linear functions."""
                 for cells in (16, 32, 64, 128):
                     quick = body == "firm" and shape in ("linear", "uGIMP", "QuadraticBSpline") and cells <= 32
                     found.append(self.one(body, "implicit", shape, cells, quick))
-            for shape in ("uGIMP", "QuadraticBSpline"):
+            for shape in ("uGIMP", "QuadraticBSpline", "CPDI2"):
                 for cells in (16, 32, 64, 128):
                     for length in PERIODS:
                         found.append(self.one(body, f"explicit {length}", shape, cells,
                                               body == "firm" and length == "short" and cells <= 32))
         for shape in ("QuadraticBSpline", "CPDI2"):
             found += [self.one("firm", "few implicit", shape, cells, False) for cells in (16, 32, 64, 128, 256)]
+        found.append(self.one("firm", "explicit long", "CPDI2", 256, False))
         for cells in (256, 512, 1024):  # where the number of explicit steps tells
             found += [self.one("firm", by, "QuadraticBSpline", cells, False)
                       for by in ("implicit", "explicit short", "explicit long")]
