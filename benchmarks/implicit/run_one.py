@@ -1,0 +1,133 @@
+"""Runs one scene with mpm_run, on one rank and one thread, and measures it."""
+
+import dataclasses
+import functools
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+from common import results
+
+sys.path.append(str(results.ROOT / "tests/system"))
+
+import _cases  # noqa: E402: from tests/system
+import _mpm  # noqa: E402
+
+LIMIT = 600  # seconds of a run; none takes as long that does not hang
+DONE, FAILED, REFUSED = "done", "failed", "refused"
+COMMON = ("status", "particles", "steps", "unknowns", "newton", "linear", "cuts", "seconds")
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """`labels`: what tells the run from the study's others, {column: value}. `measure`: a function of the Result that
+    returns {column: number or text}. `options`: for PETSc."""
+
+    labels: dict
+    scene: str
+    measure: object
+    quick: bool = False
+    options: tuple = ()
+
+    @property
+    def key(self):
+        return "-".join(str(v).replace(" ", "_").replace("/", "_") for v in self.labels.values())
+
+
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """An implicit step, as the log states it."""
+
+    length: float
+    unknowns: int
+    norms: tuple  # of the residual, from the first guess on
+    linear: int
+    cuts: int  # times that it was taken again, shorter
+
+
+def steps_of(log):
+    found = []
+    line = (r"^implicit +step \d+: time \S+, length (\S+); (\d+) unknowns; residual ([^;]*); (\d+) linear iterations(.*)$")
+    for length, unknowns, norms, linear, more in re.findall(line, log, re.MULTILINE):
+        found.append(Step(float(length), int(unknowns), tuple(map(float, norms.split())), int(linear),
+                          more.count("; shortened")))
+    return found
+
+
+class Result:
+    """What a run has left in its folder."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.summary = json.loads((folder / "case.summary.json").read_text())
+        self.steps = steps_of((folder / "case.out").read_text())
+
+    @functools.cached_property
+    def states(self):
+        return _cases.States(self.folder)
+
+    def column(self, name, which=-1):
+        return self.states.column(name, which)
+
+    @functools.cached_property
+    def energies(self):
+        """Rows of the .sta file, as arrays by column name."""
+        return _cases.status(self.folder)
+
+
+def execute(file, folder, options):
+    """Exit code, standard error, processor seconds and seconds by the clock."""
+    command = [str(results.BIN / "mpm_run"), str(file), "--output-dir", str(folder), *(("--", *options) if options else ())]
+    start = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
+                               env=results.environment(OMP_NUM_THREADS="1", OMPI_MCA_ess_singleton_isolated="1"))
+    guard = threading.Timer(LIMIT, process.kill)
+    guard.start()
+    with process.stderr as stream:
+        said = stream.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    guard.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, said, usage.ru_utime + usage.ru_stime, time.perf_counter() - start
+
+
+def reason(said):
+    """What the program complained about, in one line without the folder of the file."""
+    lines = [line.strip() for line in said.splitlines() if line.strip()]
+    return (lines[0].split("case.xmp:")[-1] if lines else "no message")[:200]
+
+
+def run(one, out, keep=False):
+    """The row of a run: its labels, what it cost, what was measured, `note` where it was not done."""
+    folder = out / "runs" / one.key
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    file = folder / "case.xmp"
+    file.write_text(one.scene)
+    code, said, processor, wall = execute(file, folder, one.options)
+    row = {**one.labels, **dict.fromkeys(COMMON, ""), "status": DONE, "note": ""}
+    if code == 0:
+        result = Result(folder)
+        spent, steps = result.summary["wall_seconds"], result.steps
+        # Of the processor: seconds by the clock, less the share in which other programs had the processor.
+        seconds = (spent["loop"] - spent["output"]) * min(1.0, processor / wall)
+        row.update(particles=result.summary["particles"], steps=result.summary["steps"], seconds=seconds)
+        if steps:
+            row.update(unknowns=max(s.unknowns for s in steps), newton=sum(len(s.norms) - 1 for s in steps),
+                       linear=sum(s.linear for s in steps), cuts=sum(s.cuts for s in steps))
+        row.update({name: value if isinstance(value, str) else float(value) for name, value in one.measure(result).items()})
+    elif code in (2, 3):
+        row.update(status=REFUSED if code == 2 else FAILED, note=reason(said))
+    elif code == -signal.SIGKILL:
+        row.update(status=FAILED, note=f"killed after {LIMIT} s")
+    else:
+        raise SystemExit(f"{one.key}: mpm_run ended with exit code {code}\n{said}\nThe input is {file}")
+    if not keep:
+        shutil.rmtree(folder, ignore_errors=True)
+    return row

@@ -1,0 +1,77 @@
+"""A strip footing on weightless cohesive soil: Prandtl's load."""
+
+import numpy as np
+
+import scenes
+import study
+from run_one import Run
+
+HALF, WIDTH, DEPTH = 1.0, 4.0, 2.0  # of the footing, of the half of the soil, of the soil
+COHESION, YOUNG, POISSON = 1.0, 500.0, 0.3
+PRANDTL = (2 + np.pi) * COHESION
+PRESSED, STEPS = 0.08, 40
+# Von Mises with the cohesion as shear strength, which is Tresca's criterion in plane strain.
+LAWS = {"DruckerPrager": f'type="DruckerPrager" qfai="0" kfai="{COHESION}" qpsi="0" ten_f="1e6"',
+        "ElaPlastic": f'type="ElaPlastic" Yield0="{3**0.5 * COHESION!r}" bq1="0" bq2="0"'}
+
+
+class Footing(study.Study):
+    name = "footing"
+    title = "Strip footing"
+    about = f"""Half of a strip of half width {HALF:g} on weightless soil, {WIDTH:g} wide and {DEPTH:g} deep, in plane
+strain (cohesion {COHESION:g}, friction 0, E = {YOUNG:g}, Poisson's ratio {POISSON:g}); a rough rigid body with
+`PrescribedVelocity` presses it by {PRESSED:g} in {STEPS} load steps. L. Prandtl's load is (2 + pi) c = {PRANDTL:.3f} over
+the width. The load is the mean over the depth of the vertical stress over the soil, which equilibrium makes the same at
+every depth. *load*: the largest over Prandtl's, less 1; *last*: at the end; *wide*: the same with a half width that is half
+a cell larger, as the held nodes carry the soil beside the footing's edge down with them; *growth*: of the load over the
+last quarter, relative; a method that locks finds no limit load."""
+    labels = ("law", "shape", "cells")
+    measured = ("load", "last", "wide", "growth")
+
+    def runs(self):
+        found = []
+        for law in LAWS:
+            for shape in scenes.SHAPES:
+                if law == "ElaPlastic" and shape not in ("linear", "QuadraticBSpline"):
+                    continue
+                for cells in (2, 4, 8):
+                    quick = law == "DruckerPrager" and shape == "QuadraticBSpline" and cells == 2
+                    found.append(self.one(law, shape, cells, quick))
+        return found
+
+    @staticmethod
+    def one(law, shape, cells, quick):
+        h = HALF / cells
+        soil = scenes.block("soil", (0, 0, 0), (WIDTH, h, DEPTH), h / 2)
+        footing = scenes.block("footing", (0, 0, DEPTH), (HALF, h, 2 * h), h / 2, "rigid", scenes.moved(vz=-PRESSED))
+        strength = f'{LAWS[law]} Young="{YOUNG}" Poisson="{POISSON}"'
+        text = scenes.scene([soil, footing], scenes.grid(shape, (0, 0, 0), (WIDTH, h, DEPTH + 4 * h), "222210", h),
+                            scenes.implicit(1.0, 1 / STEPS), [scenes.material("solid", 1.0, strength), scenes.rigid()],
+                            scenes.pictures(1 / 20, ("SigmaZ", "density")))
+
+        def measure(result):
+            mine = result.column("z", 0) < DEPTH
+            first = result.column("density", 0)[mine]
+
+            def load(which):
+                volume = first / result.column("density", which)[mine] * (h / 2) ** 3
+                return -(volume * result.column("SigmaZ", which)[mine]).sum() / (DEPTH * h * HALF)
+
+            loads = np.array([load(i) for i in range(len(result.states.steps))])
+            return {"load": loads.max() / PRANDTL - 1, "last": loads[-1] / PRANDTL - 1,
+                    "growth": loads[-1] / loads[-6] - 1, "wide": loads[-1] / PRANDTL / (1 + 0.5 * h / HALF) - 1}
+
+        return Run({"law": law, "shape": shape, "cells": cells}, text, measure, quick)
+
+    def block(self, rows):
+        text = ["*last*, per cent, over the cells along the half width\n\n"
+                + study.convergence(rows, "last", "cells", ("law", "shape"), ".2f", 100)]
+        lines = [[r["law"], r["shape"], f"{r['cells']:g}", *(study.shown(r, n, ".2f", 100) for n in self.measured),
+                  *(f"{r[name]:g}" for name in ("steps", "newton", "cuts")), f"{r['seconds']:.2g}"] for r in rows if study.done(r)]
+        heads = ["law", "shape", "cells", *(f"{n}, %" for n in self.measured), "steps", "Newton iterations", "cuts", "seconds"]
+        text.append(study.table(heads, lines))
+        failed = study.failures(rows)
+        return "\n\n".join(text) + (f"\n\nNot done:\n\n{failed}" if failed else "")
+
+
+STUDY = Footing()

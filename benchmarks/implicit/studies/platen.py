@@ -1,0 +1,77 @@
+"""A block that a platen compresses slowly to half its height."""
+
+import numpy as np
+
+import scenes
+import study
+from run_one import Run
+
+YOUNG, POISSON, DENSITY = 1000.0, 0.3, 1.0
+HEIGHT, SHARE = 1.0, 0.5
+SHEAR = YOUNG / (2 * (1 + POISSON))
+LAME = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
+WAVE = ((LAME + 2 * SHEAR) / DENSITY) ** 0.5
+STRESS = SHEAR * (SHARE - 1 / SHARE) + LAME * np.log(SHARE) / SHARE
+EXPLICIT_SPEEDS = (0.03, 0.003)  # of the platen, over that of waves
+LAYERS = 1 / 8  # of the height, next to the platen, that `below` leaves out
+
+
+class Platen(study.Study):
+    name = "platen"
+    title = "Slow compression by a platen"
+    about = f"""A neo-Hookean block (E = {YOUNG:g}, Poisson's ratio {POISSON:g}, density {DENSITY:g}, height {HEIGHT:g})
+between symmetry planes, two by two cells wide, is compressed to half its height by a rigid body with `PrescribedVelocity`.
+Exact: uniform strain, the vertical stress is {STRESS:.1f}. *stress*: root mean square of the error of the vertical stress
+over its exact value; *below*: without the particles that began in the upper eighth; *place*: root mean square of the error
+of height over the height. A step moves the platen by half a cell. In the explicit runs the platen is in contact, and moves
+at the stated part of the speed of waves, {WAVE:.1f}; the slower it is, the smaller the forces of inertia, and the longer
+the run."""
+    labels = ("steps by", "shape", "cells")
+    measured = ("stress", "below", "place")
+
+    def runs(self):
+        found = []
+        for shape in scenes.SHAPES:
+            for cells in (8, 16, 32, 64):
+                found.append(self.one("implicit", shape, cells,
+                                      shape in ("linear", "QuadraticBSpline") and cells <= 16))
+        for shape in ("uGIMP", "QuadraticBSpline"):
+            for speed in EXPLICIT_SPEEDS:
+                for cells in (8, 16, 32, 64):
+                    found.append(self.one(f"explicit {speed:g}", shape, cells, cells <= 16 and speed == EXPLICIT_SPEEDS[0]))
+        return found
+
+    @staticmethod
+    def one(by, shape, cells, quick):
+        h, is_implicit = HEIGHT / cells, by == "implicit"
+        speed = 1.0 if is_implicit else float(by.split()[1]) * WAVE
+        end = (1 - SHARE) * HEIGHT / speed
+        solution = scenes.implicit(end, end / cells) if is_implicit else scenes.explicit(end)
+        body = scenes.block("block", (0, 0, 0), (2 * h, 2 * h, HEIGHT), h / 2)
+        platen = scenes.block("platen", (0, 0, HEIGHT), (2 * h, 2 * h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
+        parts = (scenes.grid(shape, (0, 0, 0), (2 * h, 2 * h, HEIGHT + 4 * h), "222220", h), solution,
+                 [scenes.neo_hookean(YOUNG, POISSON, DENSITY), scenes.rigid()], scenes.pictures(end, ("SigmaZ", "body")))
+        if is_implicit:
+            text = scenes.scene([body, platen], *parts)
+        else:
+            text = scenes.two_components([body], [platen], *parts, more='<Contact enable="1"/>')
+
+        def measure(result):
+            mine = result.column("z", 0) < HEIGHT
+            first, now, stress = (v[mine] for v in (result.column("z", 0), result.column("z"), result.column("SigmaZ")))
+            off, low = stress / STRESS - 1, first < (1 - LAYERS) * HEIGHT
+            return {"stress": np.sqrt((off**2).mean()), "below": np.sqrt((off[low]**2).mean()),
+                    "place": np.sqrt(((now - SHARE * first)**2).mean()) / HEIGHT}
+
+        return Run({"steps by": by, "shape": shape, "cells": cells}, text, measure, quick)
+
+    def block(self, rows):
+        text = [f"Error of {name} over the cells along the height\n\n"
+                + study.convergence(rows, name, "cells", ("steps by", "shape")) for name in self.measured]
+        lines = [[r["steps by"], r["shape"], f"{r['cells']:g}", f"{r['steps']:g}", f"{r['stress']:.2e}", f"{r['seconds']:.2g}"]
+                 for r in rows if study.done(r) and r["cells"] == max(study.values(rows, "cells"))]
+        text.append(study.table(["steps by", "shape", "cells", "steps", "stress", "seconds"], lines))
+        return "\n\n".join(text)
+
+
+STUDY = Platen()

@@ -1,0 +1,83 @@
+"""What a study of the implicit benchmark states, and pieces of its tables."""
+
+import math
+
+from common import results
+
+import run_one
+
+
+class Study:
+    """`name`, `title`, `about` (text of the page), `labels` (columns that tell runs apart), `measured` (columns)."""
+
+    name = title = about = ""
+    labels = ()
+    measured = ()
+
+    def runs(self):
+        """Of run_one.Run."""
+        raise NotImplementedError
+
+    def block(self, rows):
+        """The tables of the page, Markdown."""
+        raise NotImplementedError
+
+    @property
+    def columns(self):
+        return (*self.labels, *run_one.COMMON, *self.measured, "note")
+
+
+def order(coarse, fine, ratio):
+    """Observed order between two errors whose sizes have this ratio; None where there is none."""
+    if not all(isinstance(v, float) and math.isfinite(v) and v != 0 for v in (coarse, fine)):
+        return None
+    return math.log(abs(coarse / fine)) / math.log(ratio)
+
+
+def where(rows, **labels):
+    return [r for r in rows if all(r[k] == v for k, v in labels.items())]
+
+
+def values(rows, name):
+    """In the order of labels, each once."""
+    return list(dict.fromkeys(r[name] for r in rows))
+
+
+def done(row):
+    return row["status"] == run_one.DONE
+
+
+def shown(row, name, how, factor=1.0):
+    """The value of a row as a text; why there is none."""
+    if not done(row):
+        return row["status"]
+    return format(factor * row[name], how) if isinstance(row[name], float) else "–"
+
+
+def orders(rows, name, axis):
+    """Observed orders between neighbouring rows, as a text."""
+    found = [order(a[name], b[name], b[axis] / a[axis]) if done(a) and done(b) else None for a, b in zip(rows, rows[1:])]
+    return " ".join("–" if o is None else f"{o:.2f}" for o in found)
+
+
+def convergence(rows, name, axis, lead, how=".2e", factor=1.0):
+    """A line for each value of the labels `lead`: the error at each place of `axis`, its orders, seconds at the last."""
+    places = sorted(set(values(rows, axis)))
+    lines = []
+    for labels in dict.fromkeys(tuple(r[k] for k in lead) for r in rows):
+        mine = sorted(where(rows, **dict(zip(lead, labels))), key=lambda r: r[axis])
+        at = {r[axis]: shown(r, name, how, factor) for r in mine}
+        last = [r for r in mine if done(r)]
+        lines.append([*map(str, labels), *(at.get(p, "–") for p in places), orders(mine, name, axis),
+                      f"{last[-1]['seconds']:.2g}" if last else "–"])
+    return table([*lead, *(f"{p:g}" for p in places), "orders", "seconds"], lines)
+
+
+def table(heads, lines):
+    return results.markdown(lines, {head: (lambda line, i=i: line[i], "") for i, head in enumerate(heads)})
+
+
+def failures(rows):
+    """What was not done, with the program's message."""
+    found = dict.fromkeys((r["note"] for r in rows if not done(r)))
+    return "\n".join(f"- `{note.replace('`', '')}`" for note in found if note)

@@ -1,0 +1,188 @@
+"""benchmarks/implicit: the exact solutions against what they must keep, errors and orders that hold on coarse grids, and
+refusals by name."""
+
+import csv
+import math
+import re
+import sys
+import unittest
+import unittest.mock
+
+import _mpm
+import numpy as np
+
+SCRIPT = "benchmarks/implicit/implicit.py"
+sys.path[:0] = [str(_mpm.SOURCE / "benchmarks/implicit"), str(_mpm.SOURCE / "benchmarks")]
+
+import implicit  # noqa: E402: found by the line above
+from common import results  # noqa: E402
+import radial  # noqa: E402
+import run_one  # noqa: E402
+import study  # noqa: E402
+from studies import STUDIES, cantilever, column, laws, steps, stiff  # noqa: E402
+
+
+class Solutions(unittest.TestCase):
+    """Nothing is run."""
+
+    def test_column(self):
+        depth = np.linspace(0, column.HEIGHT, 11)
+        for young in column.YOUNG.values():
+            f = column.stretch(young, depth)
+            np.testing.assert_allclose(0.5 * young * (1 / f - f), column.DENSITY * column.GRAVITY * depth, atol=1e-9 * column.WEIGHT)
+        # Small strains: the top sinks by rho g l^2/(2 E).
+        sunk = column.HEIGHT - column.place(1e9, np.array([column.HEIGHT]))[0]
+        self.assertAlmostEqual(sunk / (column.WEIGHT * column.HEIGHT / 2e9), 1, delta=1e-4)
+
+    def test_elastica(self):
+        # Load at the very end, P L2/EI = 3: 1 - x/L = 0.25442, y/L = 0.60325, by elliptic integrals.
+        x, y = cantilever.beam(cantilever.LENGTH, 1e-3, math.inf, math.inf) / cantilever.LENGTH
+        self.assertAlmostEqual(1 - x, 0.25442, delta=3e-4)
+        self.assertAlmostEqual(-y, 0.60325, delta=3e-4)
+
+    def test_shear_of_the_beam(self):
+        # A small load: P L3/(3 EI) + P L/(k G A).
+        shear, small = 5 / 6 * 0.5 * cantilever.YOUNG * cantilever.DEPTH, 1e-3
+        with unittest.mock.patch.object(cantilever, "LOAD", small * cantilever.LOAD):
+            _, y = cantilever.beam(cantilever.LENGTH, 1e-3, math.inf, shear)
+            wanted = cantilever.LOAD * cantilever.LENGTH * (cantilever.LENGTH**2 / (3 * cantilever.STIFFNESS) + 1 / shear)
+        self.assertAlmostEqual(-y / wanted, 1, delta=1e-3)
+
+    def test_elastic_cylinder(self):
+        r, stress, moved, _ = radial.solve(1, 2, 1, 0.3, 1e9, [1e-4])
+        np.testing.assert_allclose(stress[:, 0], 1e-4 * (1 - 4 / r**2) / 3, atol=1e-9)
+        np.testing.assert_allclose(stress[:, 1], 1e-4 * (1 + 4 / r**2) / 3, atol=1e-9)
+        self.assertAlmostEqual(moved[0] / (1e-4 * 1.3 / 3 * (0.4 + 4)), 1, delta=1e-5)
+
+    def test_plastic_cylinder(self):
+        # Equilibrium, yield where it is plastic; nearly incompressible, the interface of Prager and Hodge's closed form:
+        # p = k (1 - c2/b2 + 2 ln(c/a)).
+        k, c = 1e-3 / 3**0.5, 1.4
+        pressure = k * (1 - c * c / 4 + 2 * math.log(c))
+        r, stress, _, _ = radial.solve(1, 2, 1, 0.4999, 1e-3, pressure * np.arange(1, 21) / 20)
+        off = stress - stress.mean(axis=1)[:, None]
+        mises = np.sqrt(1.5 * (off**2).sum(axis=1))
+        self.assertLess(mises.max(), 1e-3 * (1 + 1e-9))
+        self.assertAlmostEqual(r[mises > 1e-3 * (1 - 1e-6)].max(), c, delta=5e-3)
+        outside = r > c
+        np.testing.assert_allclose(stress[outside, 1], (k * c * c / 4 * (1 + 4 / r**2))[outside], rtol=5e-3)
+
+    def test_block_between_rough_faces(self):
+        # Below the longitudinal modulus, above that of free sides; a finer mesh changes it little.
+        for poisson in stiff.POISSONS:
+            force, fine = (stiff.block_force(poisson, n) for n in (6, 10))
+            shear, lame = stiff.moduli(poisson)
+            self.assertLess(-(lame + 2 * shear), fine)
+            self.assertLess(fine, -stiff.YOUNG / (1 - poisson**2))
+            self.assertAlmostEqual(force / fine, 1, delta=0.02)
+
+    def test_time_rules(self):
+        # The trapezoidal rule keeps an oscillator's energy; backward Euler divides it by 1 + (w dt)^2 in each step.
+        self.assertAlmostEqual(steps.left("trapezoidal", 1.0, 3.0, 30.0), 1, delta=1e-12)
+        self.assertAlmostEqual(steps.left("backward Euler", 1.0, 0.5, 5.0) * 1.25**10, 1, delta=1e-12)
+
+    def test_observed_orders(self):
+        self.assertAlmostEqual(study.order(4e-2, 1e-2, 2), 2, delta=1e-12)
+        self.assertAlmostEqual(laws.seen_order((1e-1, 1e-2, 1e-4, 1e-8)), 2, delta=1e-9)
+        self.assertTrue(math.isnan(laws.seen_order((1e-1, 1e-16))))
+
+    def test_log_lines(self):
+        log = ("implicit   step 3: time 0.3, length 0.05; 270 unknowns; residual 2.4e-01 1e-3; 3 linear iterations; shortened from "
+               "0.1: a node moves by 2 cells (residual 1e-1 1e-7)\n")
+        self.assertEqual(run_one.steps_of(log), [run_one.Step(0.05, 270, (0.24, 1e-3), 3, 1)])
+
+
+@unittest.skipUnless(list((_mpm.BIN.parent / "lib").glob("libmpm_implicit.*")), "built without PETSc")
+class Quick(_mpm.RunOnce):
+    """The coarse grids."""
+
+    command = (SCRIPT, "run", "--quick")
+
+    def rows(self, name, **labels):
+        lines = (line for line in (self.out / f"{name}.csv").read_text().splitlines() if not line.startswith("#"))
+        found = [r for r in csv.DictReader(lines) if all(results.number(r[k]) == v for k, v in labels.items())]
+        self.assertTrue(found, (name, labels))
+        for row in found:
+            self.assertEqual(row["status"], "done", row)
+        return found
+
+    def one(self, column_, name, **labels):
+        found = self.rows(name, **labels)
+        self.assertEqual(len(found), 1, found)
+        return float(found[0][column_])
+
+    def test_column(self):
+        where = {"body": "firm", "steps by": "implicit"}
+        coarse, fine = (self.one("stress", "column", **where, shape="QuadraticBSpline", cells=n) for n in (16, 32))
+        self.assertGreater(math.log2(coarse / fine), 1)
+        self.assertLess(fine, self.one("stress", "column", **{**where, "steps by": "explicit short"}, shape="QuadraticBSpline", cells=32))
+
+    def test_platen(self):
+        where = {"steps by": "implicit", "shape": "QuadraticBSpline"}
+        coarse, fine = (self.one("stress", "platen", **where, cells=n) for n in (8, 16))
+        self.assertLess(fine, 0.8 * coarse)  # measured 0.114 and 0.084: the kink at the platen
+        self.assertLess(self.one("below", "platen", **where, cells=16), 0.04)
+
+    def test_cantilever(self):
+        self.assertLess(self.one("tip", "cantilever", shape="QuadraticBSpline", cells=2), 0.05)
+
+    def test_cylinder(self):
+        self.assertLess(self.one("inside", "cylinder", body="elastic", shape="QuadraticBSpline"), 0.03)
+        self.assertLess(self.one("inside", "cylinder", body="plastic", shape="QuadraticBSpline"), 0.05)
+
+    def test_footing(self):
+        # Half a cell wider, at two cells along the half width.
+        self.assertLess(abs(self.one("wide", "footing")), 0.05)
+
+    def test_long_steps(self):
+        for ratio in (100, 1000):
+            self.assertGreater(self.one("energy", "steps", motion="wave", rule="trapezoidal", ratio=ratio), 0.8)
+            self.assertLess(self.one("energy", "steps", motion="wave", rule="backward Euler", ratio=ratio), 1e-8)
+        damped = self.rows("steps", motion="wave", rule="damped Newmark", ratio=1000)[0]
+        self.assertAlmostEqual(float(damped["energy"]) / float(damped["oscillator"]), 1, delta=0.1)
+
+    def test_stiff(self):
+        for poisson, most in ((0.3, 0.03), (0.45, 0.02)):
+            self.assertLess(abs(self.one("error", "stiff", body="block", shape="QuadraticBSpline", value=poisson)), most)
+        locked = self.one("error", "stiff", body="block", shape="linear", value=0.499)
+        self.assertGreater(locked, 3 * self.one("error", "stiff", body="block", shape="QuadraticBSpline", value=0.499))
+        self.rows("stiff", body="laminate", value=1e6)
+
+    def test_quadratic_convergence(self):
+        for row in self.rows("laws"):
+            self.assertGreater(float(row["order"]), 1.8, row)
+            self.assertLessEqual(float(row["iterations"]), 8, row)
+
+    def test_tables(self):
+        text = (self.out / "implicit.md").read_text()
+        for entry in STUDIES.values():
+            self.assertIn(f"## {entry.title}\n", text)
+        for line in re.findall(r"^\|.*", text, re.MULTILINE):
+            self.assertTrue(line.endswith("|") and "nan" not in line, line)
+
+
+class Document(unittest.TestCase):
+    def test_every_study_has_its_place(self):
+        text = implicit.PAGE.read_text()
+        for name, entry in STUDIES.items():
+            self.assertRegex(text, rf"\n## {re.escape(entry.title)}\n\n<!-- begin {name} -->\n[^<]")
+
+
+class Refusals(unittest.TestCase):
+    def refused(self, *words):
+        with self.assertRaises(SystemExit) as left:
+            implicit.main(words)
+        return str(left.exception)
+
+    def test_names_that_do_not_exist(self):
+        self.assertIn("study 'colum' does not exist; there is: column,", self.refused("run", "--study", "colum"))
+        self.assertIn("column: shape 'Linear' does not exist; there is: linear,",
+                      self.refused("list", "--study", "column", "--shape", "Linear"))
+
+    def test_keys_are_unique(self):
+        for entry in STUDIES.values():
+            keys = [r.key for r in entry.runs()]
+            self.assertEqual(len(keys), len(set(keys)), entry.name)
+
+
+_mpm.main()
