@@ -3,7 +3,10 @@
 // implicit_passes_<...>.cpp.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <memory>
 #include <mutex>
 
 #include <omp.h>

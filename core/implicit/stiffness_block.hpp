@@ -2,6 +2,7 @@
 // goes to the global matrix once for all particles of a site.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/implicit/newton_solver.hpp"

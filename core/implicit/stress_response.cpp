@@ -1,5 +1,7 @@
 #include "core/implicit/stress_response.hpp"
 
+#include <algorithm>
+
 namespace mpm::core {
 
 namespace {

@@ -4,6 +4,7 @@
 // Small problems are solved directly (MUMPS); larger ones by GMRES with smoothed aggregation multigrid
 // (GAMG), which is told the rigid motions. All can be replaced by PETSc's own options, after -- on the
 // command line.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
