@@ -35,7 +35,7 @@ def left(rule, frequency, step, end):
 class Steps(study.Study):
     name = "steps"
     title = "Time steps of 1, 10, 100 and 1000 explicit ones"
-    about = f"""A neo-Hookean bar of {LENGTH:g}, {CELLS} cells, between symmetry planes (E = {YOUNG:g}, Poisson's ratio 0),
+    about = f"""A neo-Hookean bar of {CELLS} cells between symmetry planes (E = {YOUNG:g}, Poisson's ratio 0),
 particles' speeds of a thousandth of that of waves. *wave*: the first mode, a standing wave; *ring-down*: the halves move
 against each other, and all modes ring. Steps in cells over the speed of waves, the explicit limit; {PERIODS} periods of the
 first mode, so that the longest step is {1000 / (2 * CELLS):.0f} periods. *energy*: kinetic and internal, at the end over

@@ -47,7 +47,7 @@ class Stiff(study.Study):
     title = "Stiff inclusions and nearly incompressible solids"
     about = f"""Unit bodies that a rough platen compresses by {STRAIN:g} in one load step, from a fixed face; neo-Hookean.
 The force is the mean over the height of the vertical stress, which equilibrium makes the same at every height. *laminate*:
-a column between symmetry planes, whose middle half is stiffer by the ratio; exact: stresses in series. *inclusion*: a cube
+a column between symmetry planes, whose middle half is stiffer by the ratio; exact, but for the strain squared: stresses in series. *inclusion*: a cube
 between symmetry planes, with a stiffer cube of half its edge inside; force over that at ratio 1; at 1e6 the inclusion must
 be rigid, so that 1e3 and 1e6 are nearly the same. Functions that reach beyond the interface (splines, SGMP) stiffen about
 half a cell of the matrix on each side. The round-off of a strain, 1e-16, times the modulus bounds the residual: at 1e6 a
