@@ -263,7 +263,7 @@ class Run {
       return;
     }
     if (const std::string why = parallel::why_no_newton_solver(); !why.empty())
-      throw core::InputErrors(solution.source, "Integration", "\"impl\" is not available: " + why);
+      throw core::InputErrors(solution.source, "Solution Integration=\"impl\"", "is not available: " + why);
     newton_ = parallel::make_newton_solver(world, options_.solver_options);
     communication_.newton = newton_.get();
   }
