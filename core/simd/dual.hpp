@@ -154,14 +154,15 @@ inline Dual<T, N> select(MaskOf<T> m, double a, const Dual<T, N>& b) {
   return select(m, Dual<T, N>(a), b);
 }
 
-// Of equal arguments the second, as for Lanes.
+// Of equal arguments the second is the minimum, as for Lanes, but the first is the maximum: laws write
+// max(x, 0) + min(x, 0), which must keep the derivative of x where x is zero.
 template <class T, int N>
 inline Dual<T, N> min(const Dual<T, N>& a, const Dual<T, N>& b) {
   return select(a.v < b.v, a, b);
 }
 template <class T, int N>
 inline Dual<T, N> max(const Dual<T, N>& a, const Dual<T, N>& b) {
-  return select(a.v > b.v, a, b);
+  return select(a.v >= b.v, a, b);
 }
 template <class T, int N>
 inline Dual<T, N> min(const Dual<T, N>& a, double b) {

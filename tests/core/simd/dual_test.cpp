@@ -125,6 +125,12 @@ Dual<double, N> variable(double x, int k) {
 
 }  // namespace
 
+TEST_CASE("the parts above and below zero have one derivative together at zero", "[core][dual]") {
+  const auto x = variable<1>(0, 0);
+  CHECK((max(x, 0.0) + min(x, 0.0)).d[0] == 1);
+  CHECK((max(x, 0.0) + min(x, 0.0)).v == 0);
+}
+
 TEST_CASE("dual numbers carry the derivatives of every operation", "[core][dual]") {
   std::mt19937 random(3);
   for (const Row& r : rows) {

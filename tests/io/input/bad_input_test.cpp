@@ -282,7 +282,6 @@ TEST_CASE("known, but not implemented yet") {
        {"line 25: <Solution transfer=\"APIC\">: is not available with this shape function: expected shape "
         "QuadraticBSpline, CubicBSpline, uGIMP or cpGIMP"}},
       {"<EndTime", "<FEMSetting/><EndTime", {"line 25: <FEMSetting>: " + remove}},
-      {"<EndTime", "<Implicit/><EndTime", {"line 25: <Implicit>: " + remove}},
       {"</PeneBlast>",
        "<Output><PostProcessing time_interval='1' tecplot='1'/></Output></PeneBlast>",
        {"line 26: <PostProcessing tecplot=\"1\">: " + zero}},
