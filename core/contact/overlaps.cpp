@@ -54,8 +54,9 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
           if (component != tile.component && apart < half && (met < 0 || component < met)) met = component;
         });
         if (met < 0) continue;
+        // By value: of two arguments, minmax returns references to temporaries.
         const auto [a, b] =
-            std::minmax(static_cast<std::size_t>(met), static_cast<std::size_t>(tile.component));
+            std::minmax({static_cast<std::size_t>(met), static_cast<std::size_t>(tile.component)});
         found[number_of(a, b)].add(x, half);
       }
     }
