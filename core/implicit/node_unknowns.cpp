@@ -107,25 +107,26 @@ void NodeUnknowns::hold_walls() {
 }
 
 void NodeUnknowns::hold_moved(double dt) {
-  std::size_t i = 0;
+  const auto is_moved = [](const double* record) {
+    const double all = record[node_field::volume.first];
+    return all > 0 && record[node_field::moved_volume.first] >= held_share * all;
+  };
   for (Slot s = 0; s < grid().owned(); ++s) {
     const double* sum = sums(s);
     Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
-    for (int n = 0; n < nodes(); ++n) {
-      const double* record = sum + node_doubles * n;
-      const double moved = record[3], all = record[4];
-      if (!(all > 0) || !(moved >= held_share * all)) continue;
-      // A wall that fixes a component goes before.
-      const auto before = of[n].held;
-      of[n].held = 7;
-      for (; i < own_.size() && own_[i].slot == s && own_[i].node < n; ++i) {}
-      if (i == own_.size() || own_[i].slot != s || own_[i].node != n) continue;
-      held_[i] = 7;
-      for (int a = 0; a < 3; ++a)
-        if ((before >> a & 1) == 0) held_to_[3 * i + static_cast<std::size_t>(a)] = dt * record[a] / moved;
-    }
-    for (; i < own_.size() && own_[i].slot == s; ++i) {}
+    for (int n = 0; n < nodes(); ++n)
+      if (is_moved(sum + node_doubles * n)) of[n].held = 7;
   }
+  for_each_own([&](std::size_t i, const double* record) {
+    if (!is_moved(record)) return;
+    for (int a = 0; a < 3; ++a) {
+      // A wall that fixes a component goes before.
+      if ((held_[i] >> a & 1) == 0)
+        held_to_[3 * i + static_cast<std::size_t>(a)] =
+            dt * record[a] / record[node_field::moved_volume.first];
+    }
+    held_[i] = 7;
+  });
 }
 
 void NodeUnknowns::distribute(std::span<const double> u, AlignedDoubles& records) {
