@@ -1,15 +1,11 @@
 """Runs one point with mpm_run, on one rank and one thread, and measures it."""
 
 import json
-import os
 import shutil
 import signal
-import subprocess
-import threading
-import time
 import xml.etree.ElementTree as ElementTree
 
-from common import results
+from common import timed_run
 
 import methods
 from case import Unmeasurable
@@ -24,23 +20,6 @@ def scene_of(case, point):
     methods.choose(root, point.method)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode")
-
-
-def execute(file, folder):
-    """Exit code, standard error, processor seconds and seconds by the clock."""
-    command = [str(results.BIN / "mpm_run"), str(file), "--output-dir", str(folder)]
-    environment = results.environment(OMP_NUM_THREADS="1", OMPI_MCA_ess_singleton_isolated="1")
-    start = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
-                               env=environment)
-    guard = threading.Timer(LIMIT, process.kill)
-    guard.start()
-    with process.stderr as stream:
-        said = stream.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    guard.cancel()
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, said, usage.ru_utime + usage.ru_stime, time.perf_counter() - start
 
 
 def loop_seconds(summary, processor, wall):
@@ -65,7 +44,7 @@ def run(case, point, out, keep=False):
     file.write_text(scene_of(case, point))
     for name, text in case.files(point).items():
         (folder / name).write_text(text)
-    code, said, processor, wall = execute(file, folder)
+    code, said, processor, wall = timed_run.execute(file, folder, LIMIT)
     method = point.method
     row = {"study": point.study, "shape": method.shape, "transfer": method.transfer, "scheme": method.scheme,
            "cells": point.cells, "split": point.split, "factor": point.factor, "status": DONE, "particles": "",

@@ -3,16 +3,12 @@
 import dataclasses
 import functools
 import json
-import os
 import re
 import shutil
 import signal
-import subprocess
 import sys
-import threading
-import time
 
-from common import results
+from common import results, timed_run
 
 sys.path.append(str(results.ROOT / "tests/system"))
 
@@ -81,22 +77,6 @@ class Result:
         return _cases.status(self.folder)
 
 
-def execute(file, folder, options):
-    """Exit code, standard error, processor seconds and seconds by the clock."""
-    command = [str(results.BIN / "mpm_run"), str(file), "--output-dir", str(folder), *(("--", *options) if options else ())]
-    start = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
-                               env=results.environment(OMP_NUM_THREADS="1", OMPI_MCA_ess_singleton_isolated="1"))
-    guard = threading.Timer(LIMIT, process.kill)
-    guard.start()
-    with process.stderr as stream:
-        said = stream.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    guard.cancel()
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, said, usage.ru_utime + usage.ru_stime, time.perf_counter() - start
-
-
 def reason(said):
     """What the program complained about, in one line without the folder of the file."""
     lines = [line.strip() for line in said.splitlines() if line.strip()]
@@ -110,7 +90,7 @@ def run(one, out, keep=False):
     folder.mkdir(parents=True)
     file = folder / "case.xmp"
     file.write_text(one.scene)
-    code, said, processor, wall = execute(file, folder, one.options)
+    code, said, processor, wall = timed_run.execute(file, folder, LIMIT, one.options)
     row = {**one.labels, **dict.fromkeys(COMMON, ""), "status": DONE, "note": ""}
     if code == 0:
         result = Result(folder)
