@@ -223,8 +223,19 @@ void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& share
       reach.push_back(farthest);
     }
   });
+  // A rigid body stops all of another one's motion at a node. Nodes farther above its surface than a linear
+  // shape function reaches from its particles are left to the other body: wide shape functions would hold a
+  // layer of it that cannot be strained. Gradients of mass need those: behind the middle of a thin plate they
+  // point to its other side.
+  constexpr double highest_held = 0.7;  // in cells
+  const double lowest_reach = -highest_held * grid.geometry().smallest_cell();
+  const auto held = [&](int field, const double* of_node) {
+    return !regression_ || rigid(components[static_cast<std::size_t>(field)]) < 0 ||
+           of_node[field] >= lowest_reach;
+  };
   at.filter([&](std::size_t n, const MeetingNodes::Pair& pair) {
     const double* of_node = reach.data() + n * components.size();
+    if (!held(pair.first, of_node) || !held(pair.second, of_node)) return false;
     return -(of_node[pair.first] + of_node[pair.second]) <= *largest_gap_;
   });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace mpm::core {
 
@@ -24,67 +25,99 @@ void ContactPoints::list(const Model& model, Slot s) {
     const BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       const double* x = pool.block(tile.blocks[b]) + pool.layout().offset(Column::position_x);
-      for (int l = 0; l < tile.used_lanes(b); ++l)
-        points.insert(points.end(), {x[l], x[block_lanes + l], x[2 * block_lanes + l],
-                                     static_cast<double>(tile.component)});
+      const int used = tile.used_lanes(b);
+      points.resize(points.size() + static_cast<std::size_t>(width * used));
+      double* to = points.data() + points.size() - width * used;
+      for (int l = 0; l < used; ++l, to += width) {
+        for (int a = 0; a < 3; ++a) to[a] = x[a * block_lanes + l];
+        to[3] = static_cast<double>(tile.component);
+      }
     }
   }
 }
 
+/// The points of all slots by cell. Where a ghost is, its neighbours tell.
+void ContactPoints::sort(const BrickGrid& grid) {
+  std::vector<BrickCoord> coord(points_.size());
+  for (Slot s = 0; s < grid.owned(); ++s) {
+    const Brick& brick = grid.brick(s);
+    for (int n = 0; n < neighbourhood; ++n) {
+      const Slot neighbour = brick.neighbour[static_cast<std::size_t>(n)];
+      if (neighbour == no_slot) continue;
+      coord[static_cast<std::size_t>(neighbour)] = brick.coord + neighbour_offset(n);
+    }
+  }
+  for_each_by_threads(std::size_t{0}, points_.size(), 4, [&](std::size_t s) {
+    if (!points_[s].empty()) sort(grid.geometry(), coord[s], points_[s], begin_[s]);
+  });
+}
+
+/// Stable: points of a cell stay in their order.
+void ContactPoints::sort(const GridGeometry& g, const BrickCoord& brick, std::vector<double>& points,
+                         std::vector<std::uint32_t>& begin) const {
+  const double first[3] = {double{brick_cells} * brick.x, double{brick_cells} * brick.y,
+                           double{brick_cells} * brick.z};
+  const auto cell_of = [&](const double* x) {
+    int cell[3];
+    for (int a = 0; a < 3; ++a) {
+      const double at = std::floor(GridGeometry::scaled(x[a], g.origin[a], g.inverse_cell[a])) - first[a];
+      cell[a] = static_cast<int>(std::clamp(at, double{lowest_cell}, double{brick_cells - 1}));
+    }
+    return static_cast<std::size_t>(number(cell[0], cell[1], cell[2]));
+  };
+  const std::size_t count = points.size() / width;
+  std::vector<std::size_t> cells(count);
+  begin.assign(cells_per_axis * cells_per_axis * cells_per_axis + 1, 0);
+  for (std::size_t p = 0; p < count; ++p) {
+    cells[p] = cell_of(points.data() + width * p);
+    ++begin[cells[p] + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  std::vector<double> sorted(points.size());
+  for (std::size_t p = 0; p < count; ++p)
+    std::copy_n(points.data() + width * p, width, sorted.data() + width * next[cells[p]]++);
+  points.swap(sorted);
+}
+
 void PointsByCell::take(const BrickGrid& grid, const ContactPoints& points, Slot s, const Range& nodes) {
   constexpr int width = ContactPoints::width;
-  const GridGeometry& g = grid.geometry();
   const Brick& brick = grid.brick(s);
   for (int a = 0; a < 3; ++a) {
     lowest_[a] = nodes.lowest[a] - layers;
     cells_[a] = nodes.highest[a] + layers - lowest_[a];
   }
-  const std::int64_t first[3] = {std::int64_t{brick_cells} * brick.coord.x,
-                                 std::int64_t{brick_cells} * brick.coord.y,
-                                 std::int64_t{brick_cells} * brick.coord.z};
-  const auto cell_of = [&](const double* x) {
-    int cell[3];
-    for (int a = 0; a < 3; ++a) {
-      const double at = std::floor(GridGeometry::scaled(x[a], g.origin[a], g.inverse_cell[a])) -
-                        static_cast<double>(first[a]) - lowest_[a];
-      if (!(at >= 0 && at < cells_[a])) return -1;
-      cell[a] = static_cast<int>(at);
-    }
-    return cell[0] + cells_[0] * (cell[1] + cells_[1] * cell[2]);
-  };
-  // A brick's particles are in its own cells or, taken by node, up to half a cell below.
-  const auto reaches = [&](int n) {
-    const BrickCoord offset = neighbour_offset(n);
-    const std::int32_t along[3] = {offset.x, offset.y, offset.z};
-    for (int a = 0; a < 3; ++a) {
-      const int cell = brick_cells * along[a] - lowest_[a];
-      if (cell + brick_cells < 0 || cell - 1 >= cells_[a]) return false;
-    }
-    return true;
-  };
-  const auto for_each_point = [&](auto f) {
+  // f(cell here, its points of one brick), brick by brick.
+  const auto for_each_run = [&](auto f) {
     for (int n = 0; n < neighbourhood; ++n) {
       const Slot neighbour = brick.neighbour[static_cast<std::size_t>(n)];
-      if (neighbour == no_slot || !reaches(n)) continue;
-      const std::span<const double> list = points.of(neighbour);
-      for (std::size_t i = 0; i < list.size(); i += width) f(list.data() + i);
+      if (neighbour == no_slot || !points.any(neighbour)) continue;
+      const BrickCoord offset = neighbour_offset(n);
+      const std::int32_t along[3] = {offset.x, offset.y, offset.z};
+      int shift[3], low[3], high[3];  // from the brick's cells to those here; the brick's cells in question
+      for (int a = 0; a < 3; ++a) {
+        shift[a] = brick_cells * along[a] - lowest_[a];
+        low[a] = std::max(ContactPoints::lowest_cell, -shift[a]);
+        high[a] = std::min(brick_cells, cells_[a] - shift[a]);
+      }
+      for (int k = low[2]; k < high[2]; ++k)
+        for (int j = low[1]; j < high[1]; ++j)
+          for (int i = low[0]; i < high[0]; ++i)
+            f(static_cast<std::size_t>(i + shift[0] +
+                                       cells_[0] * (j + shift[1] + cells_[1] * (k + shift[2]))),
+              points.of(neighbour, i, j, k));
     }
   };
   begin_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
-  cell_of_.clear();
-  for_each_point([&](const double* point) {
-    const int cell = cell_of(point);
-    cell_of_.push_back(cell);
-    if (cell >= 0) ++begin_[static_cast<std::size_t>(cell) + 1];
+  for_each_run([&](std::size_t cell, std::span<const double> run) {
+    begin_[cell + 1] += static_cast<std::uint32_t>(run.size() / width);
   });
-  for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   sorted_.resize(width * begin_.back());
   // Each cell's first place moves on to its last; shifted back below.
-  auto cell = cell_of_.begin();
-  for_each_point([&](const double* point) {
-    if (*cell >= 0)
-      std::copy_n(point, width, sorted_.data() + width * begin_[static_cast<std::size_t>(*cell)]++);
-    ++cell;
+  for_each_run([&](std::size_t cell, std::span<const double> run) {
+    std::ranges::copy(run, sorted_.begin() + static_cast<std::ptrdiff_t>(width * begin_[cell]));
+    begin_[cell] += static_cast<std::uint32_t>(run.size() / width);
   });
   std::move_backward(begin_.begin(), begin_.end() - 1, begin_.end());
   begin_.front() = 0;

@@ -1,6 +1,6 @@
 // The particles near the nodes where components meet, for normals by regression (separating_plane.hpp): a
-// list of the bricks' particles that neighbouring ranks exchange once per step, and those of a neighbourhood
-// sorted by cell.
+// list of each brick's particles, cell by cell, which neighbouring ranks exchange once per step, and those of
+// a neighbourhood by cell.
 //
 // A node's particles are those in the 64 cells around it, two to each side: with one cell to each side, the
 // last particles of a body would be farther out than any of the other, and the normal would tilt. They come
@@ -34,17 +34,34 @@ class ContactPoints {
   void collect(const Model& model, NodeHalo& halo, F wanted) {
     const BrickGrid& grid = *model.grid;
     points_.resize(static_cast<std::size_t>(grid.owned() + grid.ghosts()));
+    begin_.resize(points_.size());
     for_each_by_threads(0, grid.owned(), 4, [&](int s) {
       points_[static_cast<std::size_t>(s)].clear();
       if (wanted(static_cast<Slot>(s))) list(model, static_cast<Slot>(s));
     });
     halo.exchange_points(grid, points_);
+    sort(grid);
   }
-  std::span<const double> of(Slot s) const { return points_[static_cast<std::size_t>(s)]; }
+  bool any(Slot s) const { return !points_[static_cast<std::size_t>(s)].empty(); }
+  /// Those in a cell of a brick: x, y, z and component of each. A brick's particles are in its own cells or,
+  /// taken by node, up to half a cell below.
+  static constexpr int lowest_cell = -1, cells_per_axis = brick_cells + 1;
+  std::span<const double> of(Slot s, int i, int j, int k) const {
+    const auto at = static_cast<std::size_t>(s);
+    const std::uint32_t* begin = begin_[at].data() + number(i, j, k);
+    return std::span(points_[at]).subspan(width * begin[0], width * (begin[1] - begin[0]));
+  }
 
  private:
+  static int number(int i, int j, int k) {
+    return i - lowest_cell + cells_per_axis * (j - lowest_cell + cells_per_axis * (k - lowest_cell));
+  }
   void list(const Model& model, Slot s);
-  std::vector<std::vector<double>> points_;
+  void sort(const BrickGrid& grid);
+  void sort(const GridGeometry& g, const BrickCoord& brick, std::vector<double>& points,
+            std::vector<std::uint32_t>& begin) const;
+  std::vector<std::vector<double>> points_;        ///< by slot, then cell
+  std::vector<std::vector<std::uint32_t>> begin_;  ///< by slot: numbers of the cells' first points
 };
 
 /// Those around some of a brick's nodes.
@@ -84,7 +101,6 @@ class PointsByCell {
   int cells_[3] = {};
   std::vector<std::uint32_t> begin_;  ///< by cell, in sorted_
   std::vector<double> sorted_;
-  std::vector<std::int32_t> cell_of_;
 };
 
 }  // namespace mpm::core

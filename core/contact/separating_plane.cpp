@@ -95,17 +95,6 @@ void LabelledPoints::clear() {
   used_ = lanes;
 }
 
-void LabelledPoints::add(const Vec3<double>& x, double label) {
-  if (used_ == lanes) {
-    blocks_.push_back({});
-    used_ = 0;
-  }
-  Block& block = blocks_.back();
-  for (int a = 0; a < 3; ++a) block.row[a][used_] = x[a];
-  block.row[3][used_++] = label;
-  ++count_[label < 0 ? 0 : 1];
-}
-
 std::optional<Vec3<double>> separating_normal(const LabelledPoints& points) {
   if (points.of_first() == 0 || points.of_second() == 0) return std::nullopt;
   Plane plane = regression(sums_of(points, {}, true), {});

@@ -30,7 +30,16 @@ class LabelledPoints {
  public:
   void clear();
   /// label: -1 for the first body, +1 for the second.
-  void add(const Vec3<double>& x, double label);
+  void add(const Vec3<double>& x, double label) {
+    if (used_ == lanes) {
+      blocks_.push_back({});
+      used_ = 0;
+    }
+    Block& block = blocks_.back();
+    for (int a = 0; a < 3; ++a) block.row[a][used_] = x[a];
+    block.row[3][used_++] = label;
+    ++count_[label < 0 ? 0 : 1];
+  }
   std::size_t of_first() const { return count_[0]; }
   std::size_t of_second() const { return count_[1]; }
   /// Whole blocks of lanes: the last are filled up with labels 0. `row` 0..2: coordinates; 3: labels.
