@@ -110,10 +110,21 @@ void note_tied_weights(const Node& root, const core::Scene& scene, std::vector<c
                            : "")});
 }
 
+/// Measured in tests/system/physics_contact.py: USF strains before it knows the step's impulses.
+void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const std::optional<Node> contact = root.child("Contact"), solution = root.child("Solution");
+  if (!contact || !solution || scene.solution.scheme == core::Scheme::musl) return;
+  notes.push_back({scene.provenance.path, solution->line(), "Solution", "algorithm",
+                   solution->word("algorithm"),
+                   "with Contact, bodies that rebound gain energy, as their strains do not follow the "
+                   "impulses of contact. Use MUSL"});
+}
+
 }  // namespace
 
 void note_contact(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   note_driven(scene, notes);
+  note_scheme(root, scene, notes);
   note_tied_weights(root, scene, notes);
 }
 

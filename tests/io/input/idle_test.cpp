@@ -283,6 +283,16 @@ TEST_CASE("normals of contact: weights that tie, and weights that nothing uses")
   CHECK(notes("", "normal_vector_weight='1'", 2).empty());
   CHECK(notes("contact_normal='mass_gradient'", "", 2) == std::vector{tied});
   CHECK(notes("contact_normal='regression'", "", 2).empty());
+  for (const std::string scheme : {"USF", "USL"}) {
+    const std::string text =
+        replaced(two_bodies(bar, 4.5, true), "<Solution>",
+                 "<Contact enable='1' contact_normal='regression'/><Solution algorithm='" + scheme + "'>");
+    CHECK(notes_of(text, true) ==
+          std::vector<std::string>{
+              "line 25: <Solution algorithm=\"" + scheme +
+              "\">: with Contact, bodies that rebound gain energy, as their strains do not "
+              "follow the impulses of contact. Use MUSL"});
+  }
   CHECK(notes("", "", 3) ==
         std::vector{replaced(replaced(tied, "'target' and 'other'", "'target', 'other' and 'third'"),
                              "hold it there.",
