@@ -1,11 +1,12 @@
-"""The scenes of apps/scenes that have known answers, with coarse cells; finer ones: elastic_balls.py and
-taylor_bar_on_a_plate.py of tests/validation.
+"""The scenes of apps/scenes that have known answers, with coarse cells; finer ones: elastic_balls.py,
+taylor_bar_on_a_plate.py and symmetric_taylor_impact.py of tests/validation.
 
 Prints what it measures."""
 
 import _bar_on_plate
 import _gallery
 import _mpm
+import _symmetric_impact
 
 
 class Gallery(_mpm.Case):
@@ -58,6 +59,15 @@ class Gallery(_mpm.Case):
         self.assertLess(found["parted"], 100)
         self.assertGreater(found["height"], 0.1)
         self.assertLess(found["error_LD"], 3.2)
+
+    def test_symmetric_taylor_impact(self):
+        """Thesis 4.4.2, with two thirds of its particles along a rod; D by the law is 19.3 mm."""
+        found = self.measured(_symmetric_impact.JOB, _symmetric_impact.text(40, end=0.1), _symmetric_impact.measure)
+        self.assertGreater(found["speed"], 10)
+        self.assertGreater(found["gap"], 1)
+        self.assertTrue(45 <= found["released"] <= 65, found["released"])
+        self.assertAlmostEqual(found["L"], 32.2, delta=0.3)
+        self.assertAlmostEqual(found["D"], 19.3, delta=0.8)  # coarse cells spread too little
 
 
 if __name__ == "__main__":
