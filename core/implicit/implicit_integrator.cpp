@@ -43,7 +43,8 @@ ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communicatio
       cells_(make_cells_in_use(model, communication.halo)),
       passes_(make_implicit_passes(model)),
       unknowns_(model, communication),
-      stabilisation_(model) {
+      stabilisation_(model),
+      lags_(TimeRule::lags(input_)) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     moves_bodies_ |= passes_->loads().motion(static_cast<int>(b)).kind == BodyMotion::Kind::prescribed;
   const double h = model.grid->geometry().smallest_cell();
@@ -106,6 +107,14 @@ void ImplicitIntegrator::prepare() {
     // Where the free motion is unknown, the stabilised cells alone hold the node.
     if (rule_.dynamic() && !(at.mass > cutoff)) at.ground = 0;
   }
+  if (lags_) {
+    passes_->map_lag();
+    unknowns_.exchange(mapped::implicit_lag);
+    unknowns_.for_each_own([&](std::size_t i, const double* sum) {
+      NodeState& at = state_[i];
+      for (int a = 0; a < 3; ++a) at.lag[a] = at.mass > cutoff ? sum[a] / at.mass : 0;
+    });
+  }
   const std::vector<double> at_rest(3 * state_.size(), 0.0);
   unknowns_.distribute(at_rest, displacements_);
   passes_->map_forces(displacements_);
@@ -145,9 +154,11 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
     double size = sum[7];
     for (int a = 0; a < 3; ++a) {
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
-      const double inertia = at.mass * (rule_.inertia * u[k] - rule_.start * at.velocity[a]);
+      const double inertia =
+          at.mass * (rule_.inertia * u[k] - rule_.start * at.velocity[a] - rule_.recall * at.lag[a]);
       const double drag =
-          damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a]) + rule_.push * at.force[a]);
+          damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a] + rule_.push * at.lag[a]) +
+                     rule_.push * at.force[a]);
       at.reaction[a] = inertia + drag + at.ground * (u[k] - free_motion(at, a)) - rule_.carry * at.force[a] -
                        at.external[a] - sum[4 + a];
       size += std::abs(inertia) + std::abs(at.external[a]);
@@ -266,19 +277,26 @@ void ImplicitIntegrator::fail(const std::string& why) {
 
 void ImplicitIntegrator::move() {
   const double cutoff = model_.grid->geometry().mass_cutoff;
-  std::vector<double> gained(solution_.size());
+  std::vector<double> gained(solution_.size()), lag_gained(lags_ ? solution_.size() : 0);
   for (std::size_t i = 0; i < state_.size(); ++i) {
     const NodeState& at = state_[i];
     double work = 0;
     for (int a = 0; a < 3; ++a) {
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
-      const double u = solution_[k], push = at.mass > cutoff ? rule_.push * at.force[a] / at.mass : 0;
+      const double u = solution_[k], force = at.mass > cutoff ? at.force[a] / at.mass : 0;
       work += at.external[a] * u;
       if (held(i, a)) work += 0.5 * (at.reaction[a] - at.force[a]) * u;
-      const double v = held(i, a) ? u / model_.clock.dt : rule_.gain * u + rule_.keep * at.velocity[a] + push;
+      const double v = held(i, a)
+                           ? u / model_.clock.dt
+                           : rule_.gain * u + rule_.keep * at.velocity[a] + rule_.push * (force + at.lag[a]);
       // As in explicit steps, a wall acts on the particles through their stress alone.
       const bool on_wall = held(i, a) && unknowns_.held_displacements()[k] == 0;
       gained[k] = at.mass > cutoff && !on_wall ? v - at.velocity[a] : 0;
+      if (lags_ && at.mass > cutoff && !on_wall) {
+        const double at_end = rule_.force_at_end(u, at.velocity[a], force, at.lag[a]);
+        const double lag = held(i, a) ? 0 : rule_.fresh * (at_end - force) - rule_.fade * at.lag[a];
+        lag_gained[k] = (lag - at.lag[a]) / model_.clock.dt;
+      }
       work -= 0.5 * model_.scene->solution.damping * at.mass * (at.velocity[a] + v) * u;
     }
     if (work != 0) of_nodes_.work.add(work);
@@ -286,7 +304,9 @@ void ImplicitIntegrator::move() {
   // The last residual of a line search need not be that of the solution.
   unknowns_.distribute(solution_, displacements_);
   if (rule_.dynamic()) unknowns_.distribute(gained, velocities_);
-  passes_->move_particles(displacements_, rule_.dynamic() ? &velocities_ : nullptr);
+  if (lags_) unknowns_.distribute(lag_gained, lag_increments_);
+  passes_->move_particles(displacements_, rule_.dynamic() ? &velocities_ : nullptr,
+                          lags_ ? &lag_increments_ : nullptr);
 }
 
 double ImplicitIntegrator::stable_step(const StepStatistics& statistics) const {

@@ -1,6 +1,7 @@
 // Implicit steps (Solution@Integration "impl"): the nodes' displacements u in a step follow from the equation
 // of motion at its end, or from equilibrium,
-//   R(u) = m (inertia u - start v) - carry f - f_ext - f_int(u) = 0      (time_rule.hpp, stress_response.hpp)
+//   R(u) = m (inertia u - start v - recall q) - carry f - f_ext - f_int(u) = 0
+// (time_rule.hpp, with q over the mass here; stress_response.hpp)
 // solved by Newton's method with the laws' consistent tangents. The grid is the configuration at the start of
 // the step; particles keep their state until the step has converged (Guilkey and Weiss, IJNME 57 (2003) 1323,
 // for the method; AMPLE, Coombs and Augarde, Adv. Eng. Softw. 139 (2020) 102748, for the quasi-static form).
@@ -39,6 +40,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     double mass;
     double ground;       ///< stiffness against any displacement but that of free motion
     double velocity[3];  ///< at the start
+    double lag[3];       ///< of the acceleration, at the start
     double external[3];  ///< force
     double force[3];     ///< all, at the start
     double reaction[3];  ///< residual of the last evaluation, also of held components
@@ -80,13 +82,14 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   NodeUnknowns unknowns_;
   CellStabilisation stabilisation_;
   TimeRule rule_;
+  const bool lags_;            ///< particles carry a lag
   bool moves_bodies_ = false;  ///< some body has a prescribed motion
   double held_diagonal_ = 0;   ///< of the Jacobian's held components
   double next_ = 0;            ///< length of the next step
   double force_scale_ = 0;
   std::vector<NodeState> state_;
   std::vector<double> solution_;
-  AlignedDoubles displacements_, velocities_;  ///< records of the bricks' nodes
+  AlignedDoubles displacements_, velocities_, lag_increments_;  ///< records of the bricks' nodes
   StepStatistics of_nodes_;
   std::string words_;
   /// Of all steps.

@@ -25,6 +25,8 @@ class ImplicitPasses {
   virtual void map_start() = 0;
   /// mapped::implicit_motion.
   virtual void map_motion() = 0;
+  /// mapped::implicit_lag, of particles that carry one.
+  virtual void map_lag() = 0;
   /// mapped::implicit_force: internal forces at the end of the step, with the nodes' displacements in
   /// MotionRecords, and the sums of their absolute values.
   /// The particles do not change. False where one of them inverts or its stress is not finite.
@@ -36,8 +38,10 @@ class ImplicitPasses {
                            BlockMatrix& matrix) = 0;
 
   /// Moves the particles by the displacements, updates their stress and, where the step is dynamic, adds the
-  /// increments of `velocities` (4..6 of its records) to theirs; quasi-static particles are at rest.
-  virtual void move_particles(const AlignedDoubles& displacements, const AlignedDoubles* velocities) = 0;
+  /// increments of `velocities` (4..6 of its records) to theirs; quasi-static particles are at rest. `lags`:
+  /// increments of the lag of the acceleration, where particles carry one.
+  virtual void move_particles(const AlignedDoubles& displacements, const AlignedDoubles* velocities,
+                              const AlignedDoubles* lags) = 0;
 
   virtual std::vector<std::vector<DepartingParticle>>& departing() = 0;
   virtual StepStatistics take_statistics() = 0;

@@ -48,10 +48,12 @@ class ImplicitPassesWith final : public ImplicitPasses {
   }
   void map_start() override;
   void map_motion() override;
+  void map_lag() override;
   bool map_forces(const AlignedDoubles& displacements) override;
   void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
                    BlockMatrix& matrix) override;
-  void move_particles(const AlignedDoubles& displacements, const AlignedDoubles* velocities) override;
+  void move_particles(const AlignedDoubles& displacements, const AlignedDoubles* velocities,
+                      const AlignedDoubles* lags) override;
   std::vector<std::vector<DepartingParticle>>& departing() override { return departing_; }
   StepStatistics take_statistics() override;
 
@@ -62,7 +64,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
 
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
-    typename S::Field displacements, velocities;
+    typename S::Field displacements, velocities, lags;
     Rows9 gradient, stress;
     StressTangent stress_tangent;
     ForceTangent tangent;
@@ -107,7 +109,16 @@ class ImplicitPassesWith final : public ImplicitPasses {
   }
   bool prescribed(int body) const { return loads_.motion(body).kind == BodyMotion::Kind::prescribed; }
   void move_block(const BrickFrame& frame, const ParticleTile& tile, int b, double* block, int used,
-                  bool dynamic, Scratch& at);
+                  bool dynamic, bool lags, Scratch& at);
+  /// Adds S times the nodes' increments to three columns.
+  static void add_increments(const ColumnLayout& layout, const Place& place, const typename S::Field& of,
+                             Column first, double* block) {
+    const typename S::Interpolation gained(place, of.increment());
+    for (int a = 0; a < 3; ++a) {
+      double* const to = block + layout.offset(next(first, a));
+      store(to, load<Lanes<8>>(to) + gained.value[a]);
+    }
+  }
 
   Model& model_;
   Loads loads_;
@@ -221,6 +232,29 @@ void ImplicitPassesWith<S>::map_motion() {
 }
 
 template <ShapePolicy S>
+void ImplicitPassesWith<S>::map_lag() {
+  const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
+  for_bricks([&](Slot s, Scratch&) {
+    const BrickFrame frame(*model_.grid, s);
+    double* const contributions = clear_contributions(s);
+    for_each_block(s, [&](const ParticleTile&, const ColumnLayout& layout, double* block, int used) {
+      if (!layout.has(Column::acceleration_lag_x)) return;
+      const Place place(frame, layout, block);
+      for (int l = 0; l < used; ++l) {
+        const double m = block[layout.offset(Column::mass) + l];
+        double lag[3];
+        for (int a = 0; a < 3; ++a)
+          lag[a] = m * dt_ * block[layout.offset(next(Column::acceleration_lag_x, a)) + l];
+        for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
+          for (int a = 0; a < 3; ++a) contributions[node_doubles * node + a] += shape * lag[a];
+        });
+      }
+    });
+    fold(mapped::implicit_lag, s, contributions);
+  });
+}
+
+template <ShapePolicy S>
 bool ImplicitPassesWith<S>::map_forces(const AlignedDoubles& displacements) {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   std::atomic<bool> usable = true;
@@ -308,7 +342,7 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
 
 template <ShapePolicy S>
 void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTile& tile, int b,
-                                       double* block, int used, bool dynamic, Scratch& at) {
+                                       double* block, int used, bool dynamic, bool lags, Scratch& at) {
   const ColumnLayout& layout = *at.batch.layout;
   const Place& place = at.places[b];
   const auto velocity = [&](int a) { return block + layout.offset(next(Column::velocity_x, a)); };
@@ -325,8 +359,9 @@ void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTi
       }
     }
   } else if (dynamic) {
-    const typename S::Interpolation dv(place, at.velocities.increment());
-    for (int a = 0; a < 3; ++a) store(velocity(a), load<Lanes<8>>(velocity(a)) + dv.value[a]);
+    add_increments(layout, place, at.velocities, Column::velocity_x, block);
+    if (lags && layout.has(Column::acceleration_lag_x))
+      add_increments(layout, place, at.lags, Column::acceleration_lag_x, block);
   } else {
     std::fill_n(velocity(0), 3 * block_lanes, 0.0);
   }
@@ -343,7 +378,7 @@ void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTi
 
 template <ShapePolicy S>
 void ImplicitPassesWith<S>::move_particles(const AlignedDoubles& displacements,
-                                           const AlignedDoubles* velocities) {
+                                           const AlignedDoubles* velocities, const AlignedDoubles* lags) {
   departing_.resize(static_cast<std::size_t>(model_.grid->owned()));
   for_bricks([&](Slot s, Scratch& at) {
     const BrickFrame frame(*model_.grid, s);
@@ -352,6 +387,7 @@ void ImplicitPassesWith<S>::move_particles(const AlignedDoubles& displacements,
     at.displacements.take_strain(frame, records(displacements, s));
     at.displacements.take_motion(records(displacements, s));
     if (velocities != nullptr) at.velocities.take_motion(records(*velocities, s));
+    if (lags != nullptr) at.lags.take_motion(records(*lags, s));
     for_each_batch(
         s, frame, Blocks::own, at, [&](const ParticleTile& tile, const Body& body, std::size_t first) {
           Batch& batch = at.batch;
@@ -359,7 +395,7 @@ void ImplicitPassesWith<S>::move_particles(const AlignedDoubles& displacements,
           set_midstep_gradient(at.gradient, batch);
           for (int b = 0; b < batch.blocks; ++b)
             move_block(frame, tile, b, batch.block[b], tile.used_lanes(first + static_cast<std::size_t>(b)),
-                       velocities != nullptr, at);
+                       velocities != nullptr, lags != nullptr, at);
           body.model->update(batch, model_.options);
           at.statistics.events += batch.events;
           if (batch.layout->has(Column::sound_speed)) {

@@ -62,12 +62,16 @@ struct WarnInput {
   Level level = Level::per_step;
 };
 
+/// Time integration of dynamic implicit steps.
+enum class ImplicitRule { newmark, backward_euler, generalised_alpha };
+
 /// Read when the integration is implicit.
 struct ImplicitInput {
   bool quasistatic = false;
-  bool backward_euler = false;  ///< instead of Newmark's rule
+  ImplicitRule rule = ImplicitRule::newmark;
   double newmark_beta = 0.25;
   double newmark_gamma = 0.5;
+  double spectral_radius = 0.8;  ///< of generalised alpha: what a long step leaves of an oscillation
   std::optional<double> time_step;
   std::optional<double> min_step;
   std::optional<double> max_step;

@@ -6,6 +6,7 @@
 
 #include "core/discretise/seeds.hpp"
 #include "core/expressions/formula.hpp"
+#include "core/implicit/time_rule.hpp"
 #include "core/scene/limits.hpp"
 #include "core/step/passes.hpp"
 
@@ -130,6 +131,8 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
       std::ranges::any_of(model.materials, [](const auto& material) { return material->conductivity() > 0; });
   model.grid = std::make_unique<BrickGrid>(geometry_of(*scene), node_block_of(*scene),
                                            node_arrays_of(*scene, conducts));
+  const bool lags = solution.integration == Integration::implicit &&
+                    TimeRule::lags(solution.implicit.value_or(ImplicitInput{}));
   BlockPools pools;
   for_each_active_body(*scene, [&](int component, const BodyInput& input) {
     Body body;
@@ -146,6 +149,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     columns.add(output_columns);
     columns.add(shape_columns(*scene));
     columns.add(transfer_columns(*scene));
+    if (lags && !body.rigid) columns.add_range(Column::acceleration_lag_x, 3);
     if (std::ranges::find(model.grid->geometry().boundary, Boundary::nonreflecting) !=
         model.grid->geometry().boundary.end())
       columns.add(Column::sound_speed);  // for the dashpots there

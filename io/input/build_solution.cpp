@@ -88,7 +88,9 @@ core::WarnInput build_warn(const Node& node) {
 core::ImplicitInput build_implicit(const Node& node, const BuildContext& context) {
   core::ImplicitInput implicit;
   implicit.quasistatic = node.type() == "quasistatic";
-  implicit.backward_euler = node.word("rule") == "backward_euler";
+  if (node.word("rule") == "backward_euler") implicit.rule = core::ImplicitRule::backward_euler;
+  if (node.word("rule") == "generalised_alpha") implicit.rule = core::ImplicitRule::generalised_alpha;
+  implicit.spectral_radius = node.real("spectral_radius");
   implicit.newmark_beta = node.real("newmark_beta");
   implicit.newmark_gamma = node.real("newmark_gamma");
   implicit.time_step = node.given_real("time_step");

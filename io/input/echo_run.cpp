@@ -113,7 +113,9 @@ void echo_watches(XmlWriter& w, const core::SolutionInput& solution) {
 void echo_implicit(XmlWriter& w, const core::ImplicitInput& implicit) {
   const auto scope = w.element("Implicit");
   w.text("type", implicit.quasistatic ? "quasistatic" : "dynamic");
-  w.text("rule", implicit.backward_euler ? "backward_euler" : "newmark");
+  static constexpr std::string_view rules[] = {"newmark", "backward_euler", "generalised_alpha"};
+  w.text("rule", rules[static_cast<std::size_t>(implicit.rule)]);
+  w.number("spectral_radius", implicit.spectral_radius);
   w.number("newmark_beta", implicit.newmark_beta);
   w.number("newmark_gamma", implicit.newmark_gamma);
   w.number("gravity_ramp", implicit.gravity_ramp);

@@ -141,9 +141,17 @@ const std::vector<Rule>& rules() {
       {"Solution/Implicit",
        {"newmark_beta", "newmark_gamma"},
        [](const Place& at) {
-         return at.scene.solution.implicit->quasistatic || at.scene.solution.implicit->backward_euler;
+         const core::ImplicitInput& input = *at.scene.solution.implicit;
+         return input.quasistatic || input.rule != core::ImplicitRule::newmark;
        },
        "used only by Newmark's rule of dynamic problems"},
+      {"Solution/Implicit",
+       {"spectral_radius"},
+       [](const Place& at) {
+         const core::ImplicitInput& input = *at.scene.solution.implicit;
+         return input.quasistatic || input.rule != core::ImplicitRule::generalised_alpha;
+       },
+       "used only by rule=\"generalised_alpha\" of dynamic problems"},
       {"Solution/Implicit",
        {"rule"},
        [](const Place& at) { return at.scene.solution.implicit->quasistatic; },

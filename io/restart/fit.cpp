@@ -81,12 +81,14 @@ class Fitting {
 
   std::vector<int> sources(const BodyRecord& record, const core::Body& body,
                            const core::SourceLocation& where) {
-    // State that a law reads back cannot start at zero; output-only columns can.
+    // State that a law reads back cannot start at zero; output-only columns can, and a lag, as in a first
+    // step.
     core::UpdateOptions options = model_.options;
     options.keep_strain = false;
     core::ColumnSet needed = core::ColumnSet::mechanics();
     needed.add(body.model->columns(options));
-    const core::ColumnSet shown = shown_only();
+    core::ColumnSet from_zero = shown_only();
+    from_zero.add_range(core::Column::acceleration_lag_x, 3);
 
     std::vector<int> source;
     std::string missing, started, dropped;
@@ -102,7 +104,7 @@ class Fitting {
         continue;
       }
       source.push_back(there ? static_cast<int>(at - record.columns.begin()) : -1);
-      if (!there) list(shown.has(c) && !needed.has(c) ? started : missing, c);
+      if (!there) list(from_zero.has(c) && !needed.has(c) ? started : missing, c);
     }
     if (!missing.empty()) {
       report(where, record.name,

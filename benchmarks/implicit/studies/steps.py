@@ -12,13 +12,31 @@ WAVE = (YOUNG / DENSITY) ** 0.5
 SPEED = 1e-3 * WAVE  # amplitude
 PERIODS = 50
 PERIOD = 2 * LENGTH / WAVE
-RULES = {"trapezoidal": (0.25, 0.5), "damped Newmark": (0.3025, 0.6), "backward Euler": None}
+# Beta and gamma, or the spectral radius.
+RULES = {"trapezoidal": (0.25, 0.5), "damped Newmark": (0.3025, 0.6), "generalised alpha": 0.8, "backward Euler": None}
 RATIOS = (1, 10, 100, 1000)
+
+
+def left_by_alpha(radius, w2, step, end):
+    """The same by Chung and Hulbert's rule. What it carries is, over the step, the acceleration less -w2 u."""
+    am, af = (2 * radius - 1) / (radius + 1), radius / (radius + 1)
+    gamma, beta = 0.5 - am + af, 0.25 * (1 - am + af) ** 2
+    u, v, carried, time = 0.0, 1.0, 0.0, 0.0
+    while time < end * (1 - 1e-9):
+        dt = min(step, end - time)
+        a = dt * carried - w2 * u
+        ahead = u + dt * v + dt * dt * (0.5 - beta) * a
+        now = -(am * a + w2 * ((1 - af) * ahead + af * u)) / (1 - am + w2 * (1 - af) * beta * dt * dt)
+        u, v, time = ahead + dt * dt * beta * now, v + dt * ((1 - gamma) * a + gamma * now), time + dt
+        carried = (now + w2 * u) / dt
+    return w2 * u**2 + v**2
 
 
 def left(rule, frequency, step, end):
     """Part of an oscillator's energy that the rule leaves after steps to the end, the last one shortened; begun at its
     largest velocity. a = -w2 u at both ends of a step."""
+    if isinstance(RULES[rule], float):
+        return left_by_alpha(RULES[rule], frequency**2, step, end)
     state, time, w2 = np.array([0.0, 1.0]), 0.0, frequency**2
     while time < end * (1 - 1e-9):
         dt = min(step, end - time)
@@ -40,7 +58,7 @@ particles' speeds of a thousandth of that of waves. *wave*: the first mode, a st
 against each other, and all modes ring. Steps in cells over the speed of waves, the explicit limit; {PERIODS} periods of the
 first mode, so that the longest step is {1000 / (2 * CELLS):.0f} periods. *energy*: kinetic and internal, at the end over
 that of the start; *oscillator*: what the rule leaves of the first mode. *trapezoidal*: the default; *damped Newmark*: gamma
-0.6, beta 0.3025. The trapezoidal rule conserves the energy of the grid; what it loses here is lost between grid and
+0.6, beta 0.3025; *generalised alpha*: spectral radius {RULES['generalised alpha']}. The trapezoidal rule conserves the energy of the grid; what it loses here is lost between grid and
 particles: FLIP adds the nodes' velocity increments dv to the particles, whose kinetic energy then misses 1/2 (sum m_i
 dv_i^2 - sum m_p (sum S_ip dv_i)^2), of second order in the cell size and in the velocity change of a step, which is small
 in explicit steps only. Of a ring-down, backward Euler leaves what the grid does not see: the two velocities within the cell
@@ -70,7 +88,10 @@ in the middle, one of {CELLS}."""
             solution = scenes.explicit(end, ratio)
         else:
             numbers = RULES[rule]
-            more = f'newmark_beta="{numbers[0]}" newmark_gamma="{numbers[1]}"' if numbers else 'rule="backward_euler"'
+            if isinstance(numbers, float):
+                more = f'rule="generalised_alpha" spectral_radius="{numbers}"'
+            else:
+                more = f'newmark_beta="{numbers[0]}" newmark_gamma="{numbers[1]}"' if numbers else 'rule="backward_euler"'
             solution = scenes.implicit(end, ratio * h / WAVE, "dynamic", more)
         speed = f"{SPEED!r}*sin({np.pi / LENGTH!r}*X)" if motion == "wave" else f"if(X&lt;{LENGTH / 2!r},{SPEED!r},-{SPEED!r})"
         bar = scenes.block("bar", (0, 0, 0), (LENGTH, h, h), h / 2, more=f'<InitialVelocity vx="{speed}" vy="0" vz="0"/>')

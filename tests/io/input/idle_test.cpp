@@ -231,6 +231,27 @@ TEST_CASE("rigid bodies by themselves") {
             "line 25: <Volumetric averaging=\"cell\">: no effect: rigid bodies keep their volume"});
 }
 
+TEST_CASE("parameters of another rule of implicit steps") {
+  const auto with = [](const std::string& implicit) {
+    std::string text = replaced(bar, "<Solution>", "<Solution Integration='impl'>");
+    text = replaced(text, "<EndTime", "<Implicit " + implicit + "/><EndTime");
+    std::vector<std::string> found;
+    for (const std::string& note : notes_of(text))
+      if (note.find("<Implicit") != std::string::npos) found.push_back(note);
+    return found;
+  };
+  CHECK(with("rule='generalised_alpha' spectral_radius='0.5'").empty());
+  const std::vector<std::string> radius{
+      "line 25: <Implicit spectral_radius=\"0.5\">: no effect: used only by "
+      "rule=\"generalised_alpha\" of dynamic problems"};
+  CHECK(with("spectral_radius='0.5'") == radius);
+  CHECK(with("type='quasistatic' spectral_radius='0.5'") == radius);
+  CHECK(
+      with("rule='generalised_alpha' newmark_gamma='0.6'") ==
+      std::vector<std::string>{"line 25: <Implicit newmark_gamma=\"0.6\">: no effect: used only by Newmark's "
+                               "rule of dynamic problems"});
+}
+
 /// A second body beside the rod, of the rod's component or of one of its own.
 std::string two_bodies(std::string_view text, double x, bool own_component) {
   const std::string second = fmt::format(
