@@ -7,7 +7,10 @@
 // outside one of the surfaces. Equivalent plastic strain: (6-39) and (6-48) combined. The Mohr-Coulomb
 // constants phi, c, psi as an alternative to qfai, kfai, qpsi are matched by (6-50) to (6-58). ten_f may not
 // exceed the apex kfai/qfai (6-8), nor qpsi qfai: flow would then release energy. Where qfai = 0 there is no
-// apex and ten_f is used as given; the thesis sets it to zero (6-49). The law computes its own pressure: no
+// apex and ten_f is used as given; the thesis sets it to zero (6-49). With closes="1" material that the
+// cut-off has let expand bears pressure only once it is as dense as before; without, as in the manual, at
+// once, and loose grains that fall together stay at a low density (A. P. Tampubolon et al., ACM Transactions
+// on Graphics 36 (2017) 105, correct the same gain of volume). The law computes its own pressure: no
 // EquationOfState. Tested by tests/physics/drucker_prager_test.cpp.
 #pragma once
 
@@ -23,7 +26,10 @@ struct DruckerPrager : IsotropicElasticity {
   static constexpr std::string_view name = "DruckerPrager";
   static constexpr std::string_view summary = "soil: friction, cohesion, dilation, tension cut-off";
   using has_tangent = DruckerPrager;
-  static constexpr std::array state{core::Column::effective_plastic_strain};
+  /// The plastic volumetric strain is what the cut-off has let open and is not closed yet; with `closes`
+  /// only.
+  static constexpr std::array state{core::Column::effective_plastic_strain,
+                                    core::Column::plastic_volumetric_strain};
   static constexpr bool sets_pressure = true;
 
   static constexpr double not_given = -1;
@@ -34,6 +40,7 @@ struct DruckerPrager : IsotropicElasticity {
   double friction_angle = not_given, dilation_angle = not_given;  ///< phi and psi, degrees
   double coulomb_cohesion = not_given;                            ///< c, stress
   double match = 2;
+  double closes = 0;
   double plastic_work_coefficient = 0;
   /// Derived: by how much the tangent along a direction n may exceed K + 4/3 G where the cone is reached.
   /// Non-associated flow reduces that modulus by (G s_nn/tau + K qfai)(G s_nn/tau + K qpsi)/(G + K qfai
@@ -44,7 +51,7 @@ struct DruckerPrager : IsotropicElasticity {
     using P = DruckerPrager;
     return join(
         elastic_parameters<P>(),
-        std::array<Parameter<P>, 9>{{
+        std::array<Parameter<P>, 10>{{
             {&P::friction,
              {.name = "qfai", .min = 0, .meaning = "friction parameter", .group = "qfai, kfai, qpsi"}},
             {&P::cohesion,
@@ -94,6 +101,13 @@ struct DruckerPrager : IsotropicElasticity {
               .integer = true,
               .meaning = "cone for phi, c, psi: 1 through the compressive edges of the Mohr-Coulomb pyramid, "
                          "2 through its tensile edges, 3 inscribed (plane strain)"}},
+            {&P::closes,
+             {.name = "closes",
+              .default_value = 0,
+              .min = 0,
+              .max = 1,
+              .integer = true,
+              .meaning = "1: what tension has opened bears no pressure until it is closed"}},
             {&P::plastic_work_coefficient, plastic_work_row},
         }});
   }
@@ -118,6 +132,9 @@ struct DruckerPrager : IsotropicElasticity {
     const double excess = bulk * (friction - dilation);
     stiffening = excess * excess / (4 * (shear + bulk * friction * dilation));
   }
+  bool carries(core::Column column) const {
+    return closes != 0 || column != core::Column::plastic_volumetric_strain;
+  }
   /// kfai/qfai, the mean tension at which the cone ends.
   double apex() const { return friction > 0 ? cohesion / friction : HUGE_VAL; }
 
@@ -126,7 +143,14 @@ struct DruckerPrager : IsotropicElasticity {
     using core::max;
     using core::select;
     elastic_step_with_pressure(point);
-    const T tau = sqrt(0.5 * contract(point.s, point.s)), mean = -point.pressure;
+    T mean = -point.pressure, closing = 0.0;
+    if (closes != 0) {
+      // The change of the volume's logarithm: rates would let a grain that opens and closes lose volume.
+      mean += bulk * (core::log(max(1.0 + point.volumetric_strain, 0.1)) - point.volumetric_strain);
+      closing = core::min(point.plastic_volumetric_strain, max((tension - mean) * (1 / bulk), 0.0));
+      mean += bulk * closing;
+    }
+    const T tau = sqrt(0.5 * contract(point.s, point.s));
     // Shear alone (6-34); where the mean stress then exceeds the cut-off, the tension mechanism is active too
     // and removes the excess, and shear flows only up to the edge (or not at all).
     const double edge = cohesion - friction * tension;
@@ -137,11 +161,12 @@ struct DruckerPrager : IsotropicElasticity {
     const T mean_after = mean - bulk * expansion, tau_after = max(tau - shear * slip, 0.0);
     point.s = select(slip > 0.0, tau_after / tau, T(1.0)) * point.s;
     point.pressure = -mean_after;
+    if (closes != 0) point.plastic_volumetric_strain += select(torn, expansion, T(0.0)) - closing;
     point.effective_plastic_strain += sqrt(slip * slip * (1.0 / 3) + expansion * expansion * (2.0 / 9));
     const T strength = cohesion - friction * mean_after;
     point.bulk_modulus = bulk + select(tau_after < (1 - 1e-6) * strength, 0.0, T(stiffening));
     point.yield_stress = std::sqrt(3.0) * strength;
-    point.plastic_work = tau_after * slip + mean_after * expansion;
+    point.plastic_work = tau_after * slip + mean_after * (expansion - closing);
   }
 
  private:

@@ -179,6 +179,65 @@ TEST_CASE("the stress returns to cone, cut-off and edge", "[physics][drucker-pra
   }
 }
 
+TEST_CASE("with closes=1 what tension has opened must close first", "[physics][drucker-prager]") {
+  // Stretched by 1 %, of which ten_f/K is elastic, then compressed by 1.2 %, in steps of 0.1 %. With closes=1
+  // the strain is the logarithm of the volume.
+  const double tension = 50e3, dt = 1e-3;
+  for (const bool closes : {false, true}) {
+    INFO("closes " << closes);
+    core::ParameterValues values{{"qfai", 0.4}, {"kfai", 200e3}, {"qpsi", 0.1}, {"ten_f", tension}};
+    if (closes) values["closes"] = 1;
+    const auto material = make(soil(values));
+    PointDriver point(*material, {});
+    const auto strain = [&](double volume, int steps) {
+      const double rate = volume / (3 * steps * dt);
+      for (int i = 0; i < steps; ++i) point.step({rate, 0, 0, 0, rate, 0, 0, 0, rate}, dt);
+      return closes ? steps * std::log1p(volume / steps) : volume;
+    };
+    const double opened = strain(0.01, 10) - tension / bulk;
+    CHECK(mean(point) == Approx(tension).epsilon(1e-12));
+    const double flow = std::sqrt(2.0) / 3 * opened;
+    CHECK(point.value(Column::effective_plastic_strain) == Approx(flow).epsilon(1e-9));
+    const double half = strain(-0.5 * opened, 5);
+    CHECK(mean(point) == Approx(closes ? tension : tension + bulk * half).epsilon(1e-9));
+    const double rest = strain(-0.007, 5);
+    const double pressed = (closes ? opened : 0.0) + half + rest;
+    CHECK(mean(point) == Approx(tension + bulk * pressed).epsilon(1e-9));
+    if (closes) CHECK(point.value(Column::plastic_volumetric_strain) == Approx(0).margin(1e-15));
+    CHECK(point.value(Column::effective_plastic_strain) == Approx(flow).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("grains that open and close often are not denser than before", "[physics][drucker-prager]") {
+  const auto material =
+      make(soil({{"qfai", 0.4}, {"kfai", 0.0}, {"qpsi", 0.0}, {"ten_f", 0.0}, {"closes", 1.0}}));
+  PointDriver point(*material, {});
+  const double dt = 1e-3, size = 0.05;
+  double volume = 0;  // its logarithm
+  for (int i = 0; i < 100; ++i) {
+    // Back to the volume before, of which 1e-6 is missing at the end.
+    for (const double change : {size, 1 / (1 + size) - 1 - (i == 99 ? 1e-6 : 0)}) {
+      const double rate = change / (3 * dt);
+      point.step({rate, 0, 0, 0, rate, 0, 0, 0, rate}, dt);
+      volume += std::log1p(change);
+    }
+  }
+  CHECK(mean(point) == Approx(bulk * volume).epsilon(1e-6));
+}
+
+TEST_CASE("what dilation has opened bears pressure, with closes=1 too", "[physics][drucker-prager]") {
+  const core::ParameterValues values{
+      {"qfai", 0.4}, {"kfai", 0.0}, {"qpsi", 0.2}, {"ten_f", 0.0}, {"closes", 1.0}};
+  const auto material = make(soil(values));
+  PointDriver point(*material, {});
+  const double dt = 1e-3;
+  for (int i = 0; i < 100; ++i) {
+    point.step({i == 0 ? -1e-3 / dt : 0, 1e-4 / dt, 0, 1e-4 / dt, 0, 0, 0, 0, 0}, dt);
+  }
+  CHECK(point.value(Column::plastic_volumetric_strain) == 0);
+  CHECK(mean(point) < -1e-3 * bulk);
+}
+
 TEST_CASE("after a random path the stress is on or within the surface", "[physics][drucker-prager]") {
   for (const char* label : {"DruckerPrager", "DruckerPrager Mohr-Coulomb"}) {
     const Sample& s = sample(label);

@@ -73,6 +73,8 @@ const std::vector<Strength> strengths{
      with(soil, {{"qfai", 0.4}, {"kfai", 200e3}, {"qpsi", 0.1}, {"ten_f", 100e3}}), 0.02},
     {"DruckerPrager Mohr-Coulomb", "DruckerPrager",
      with(soil, {{"phi", 20.0}, {"c", 300e3}, {"psi", 0.0}, {"ten_f", 300e3}, {"match", 3.0}}), 0.02},
+    {"DruckerPrager closing", "DruckerPrager",
+     with(soil, {{"qfai", 0.4}, {"kfai", 200e3}, {"qpsi", 0.1}, {"ten_f", 100e3}, {"closes", 1.0}}), 0.02},
     {"DFFoam",
      "DFFoam",
      {{"Young", 1e9},

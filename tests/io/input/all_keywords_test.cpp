@@ -88,6 +88,7 @@ std::string materials() {
       plastic);
   text += material(
       "type='DruckerPrager' qfai='0.4' kfai='1' qpsi='0.1' ten_f='1' phi='30' c='1' psi='10' match='1' "
+      "closes='1' "
       "PlasticWorkCoefficient='0.5'" +
       common);
   text += material("type='DFFoam' alfa='2' epsud='1' alal='1' gama='1' bebe='3' vole='0.5'" + plastic);
