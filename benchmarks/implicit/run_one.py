@@ -23,13 +23,14 @@ COMMON = ("status", "particles", "steps", "unknowns", "newton", "linear", "cuts"
 @dataclasses.dataclass(frozen=True)
 class Run:
     """`labels`: what tells the run from the study's others, {column: value}. `measure`: a function of the Result that
-    returns {column: number or text}. `options`: for PETSc."""
+    returns {column: number or text}. `options`: for PETSc. `files`: {name: text} beside the scene."""
 
     labels: dict
     scene: str
     measure: object
     quick: bool = False
     options: tuple = ()
+    files: dict = dataclasses.field(default_factory=dict)
 
     @property
     def key(self):
@@ -90,6 +91,8 @@ def run(one, out, keep=False):
     folder.mkdir(parents=True)
     file = folder / "case.xmp"
     file.write_text(one.scene)
+    for name, text in one.files.items():
+        (folder / name).write_text(text)
     code, said, processor, wall = timed_run.execute(file, folder, LIMIT, one.options)
     row = {**one.labels, **dict.fromkeys(COMMON, ""), "status": DONE, "note": ""}
     if code == 0:

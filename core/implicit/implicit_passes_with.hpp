@@ -13,6 +13,7 @@
 
 #include "core/contact/failed_component.hpp"
 #include "core/implicit/implicit_passes.hpp"
+#include "core/implicit/site_dilatation.hpp"
 #include "core/implicit/stiffness_block.hpp"
 #include "core/implicit/stress_response.hpp"
 #include "core/simd/denormals.hpp"
@@ -32,6 +33,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
       : model_(model),
         loads_(model),
         failed_(model),
+        averages_(model.scene->solution.averaging == VolumeAveraging::cell),
         differences_(model.scene->solution.implicit && model.scene->solution.implicit->difference_tangent) {
 #pragma omp parallel
     flush_denormals_to_zero();
@@ -66,6 +68,9 @@ class ImplicitPassesWith final : public ImplicitPasses {
     Place places[batch_blocks];
     typename S::Field displacements, velocities, lags;
     Rows9 gradient, stress;
+    Rows9 averaged;             ///< gradients with averaged volume changes
+    alignas(64) Row volume;     ///< at the start of the step, with averaged volume changes
+    SiteDilatation dilatation;  ///< of the current tile
     StressTangent stress_tangent;
     ForceTangent tangent;
     AlignedDoubles copies;  ///< of a batch's blocks
@@ -89,9 +94,40 @@ class ImplicitPassesWith final : public ImplicitPasses {
         f(tile, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
     }
   }
+  /// f(tile, body), without bodies of rigid material unless `all`.
   template <class F>
-  void for_each_batch(Slot s, const BrickFrame& frame, Blocks which, Scratch& at, F f);
+  void for_each_tile(Slot s, bool all, F f) {
+    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
+      const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
+      if (all || !body.model->rigid()) f(tile, body);
+    }
+  }
+  template <class F>
+  void for_each_batch(const ParticleTile& tile, const BrickFrame& frame, Blocks which, Scratch& at, F f);
   void take_gradients(const BrickFrame& frame, Scratch& at) const;
+  /// The gradients and the batch's midstep gradient. False where a particle inverts.
+  bool take_strains(const BrickFrame& frame, const Body& body, Scratch& at) const;
+  /// What take_strains() gave the laws.
+  const Rows9& strains(const Body& body, const Scratch& at) const {
+    return averages(body) ? at.averaged : at.gradient;
+  }
+
+  // Averaged volume changes (averaged_batches.hpp).
+  bool averages(const Body& body) const { return averages_ && !body.model->rigid(); }
+  static SiteDilatation::Site& site_of(Scratch& at, int i) {
+    return at.dilatation.of(sites_of(at.places[i / block_lanes])[i % block_lanes]);
+  }
+  void find_dilatations(const ParticleTile& tile, const Body& body, const BrickFrame& frame, Scratch& at);
+  static bool average_gradients(Scratch& at);
+  void find_site_stress(const ParticleTile& tile, const Body& body, const BrickFrame& frame, Scratch& at);
+  template <class F>
+  void add_to_nodes(Scratch& at, int i, F f) const;
+  void average_stress(Scratch& at) const;
+  static void add_site_forces(const Scratch& at, double* contributions);
+  void average_tangent(Scratch& at) const;
+  void touch_site_nodes(Scratch& at) const;
+  template <class F>
+  static void add_site_stiffness(Scratch& at, bool structure_alone, F flush);
   double* clear_contributions(Slot s) const {
     double* contributions = model_.grid->contributions(NodeArray::first, s);
     std::fill_n(contributions, node_doubles * model_.grid->shape().nodes(), 0.0);
@@ -124,44 +160,43 @@ class ImplicitPassesWith final : public ImplicitPasses {
   Loads loads_;
   FailedComponent failed_;
   Vec3<double> gravity_{};  ///< of this step
+  bool averages_;           ///< volume changes over the particles of a site
   bool differences_;        ///< derivatives of the stress by differences
   double dt_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratch_;          ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
 };
 
-/// f(tile, first block) for every batch, whose places have been found; without particles of rigid material.
+/// f(first block) for every batch, whose places have been found.
 template <ShapePolicy S>
 template <class F>
-void ImplicitPassesWith<S>::for_each_batch(Slot s, const BrickFrame& frame, Blocks which, Scratch& at, F f) {
+void ImplicitPassesWith<S>::for_each_batch(const ParticleTile& tile, const BrickFrame& frame, Blocks which,
+                                           Scratch& at, F f) {
   Batch& batch = at.batch;
   batch.time = model_.clock.time + dt_;
   batch.dt = dt_;
   batch.cell_size = model_.grid->geometry().smallest_cell();
-  for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
-    const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
-    BlockPool& pool = *body.pool;
-    batch.layout = &pool.layout();
-    const auto doubles = static_cast<std::size_t>(block_lanes * pool.layout().columns());
-    if (which == Blocks::copies && at.copies.size() < 2 * batch_blocks * doubles)
-      at.copies.resize(2 * batch_blocks * doubles);  // and a second copy, for differences
-    for (std::size_t first = 0; first < tile.blocks.size(); first += batch_blocks) {
-      batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, tile.blocks.size() - first));
-      batch.particles =
-          static_cast<int>(std::min<std::size_t>(batch_particles, tile.count - block_lanes * first));
-      for (int b = 0; b < batch.blocks; ++b) {
-        double* const block = pool.block(tile.blocks[first + static_cast<std::size_t>(b)]);
-        at.places[b].find(frame, pool.layout(), block);
-        batch.block[b] = block;
-        batch.background[b] = {};
-        if (which == Blocks::own) continue;
-        batch.block[b] = at.copies.data() + static_cast<std::size_t>(b) * doubles;
-        std::copy_n(block, doubles, batch.block[b]);
-      }
-      batch.events = {};
-      batch.vanishing = batch.negative = 0;
-      f(tile, body, first);
+  BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+  batch.layout = &pool.layout();
+  const auto doubles = static_cast<std::size_t>(block_lanes * pool.layout().columns());
+  if (which == Blocks::copies && at.copies.size() < 2 * batch_blocks * doubles)
+    at.copies.resize(2 * batch_blocks * doubles);  // and a second copy, for differences
+  for (std::size_t first = 0; first < tile.blocks.size(); first += batch_blocks) {
+    batch.blocks = static_cast<int>(std::min<std::size_t>(batch_blocks, tile.blocks.size() - first));
+    batch.particles =
+        static_cast<int>(std::min<std::size_t>(batch_particles, tile.count - block_lanes * first));
+    for (int b = 0; b < batch.blocks; ++b) {
+      double* const block = pool.block(tile.blocks[first + static_cast<std::size_t>(b)]);
+      at.places[b].find(frame, pool.layout(), block);
+      batch.block[b] = block;
+      batch.background[b] = {};
+      if (which == Blocks::own) continue;
+      batch.block[b] = at.copies.data() + static_cast<std::size_t>(b) * doubles;
+      std::copy_n(block, doubles, batch.block[b]);
     }
+    batch.events = {};
+    batch.vanishing = batch.negative = 0;
+    f(first);
   }
 }
 
@@ -173,6 +208,13 @@ void ImplicitPassesWith<S>::take_gradients(const BrickFrame& frame, Scratch& at)
     S::gradient(frame, at.places[b], at.displacements, at.gradient, block_lanes * b);
   for (double(&row)[batch_particles] : at.gradient)
     std::fill(row + batch.particles, row + block_lanes * batch.blocks, 0.0);
+}
+
+template <ShapePolicy S>
+bool ImplicitPassesWith<S>::take_strains(const BrickFrame& frame, const Body& body, Scratch& at) const {
+  take_gradients(frame, at);
+  const bool averaged = !averages(body) || average_gradients(at);
+  return set_midstep_gradient(strains(body, at), at.batch) && averaged;
 }
 
 template <ShapePolicy S>
@@ -213,7 +255,11 @@ void ImplicitPassesWith<S>::map_motion() {
       const Place place(frame, layout, block);
       const bool moved = prescribed(tile.body);
       const ConstitutiveModel& material = *model_.bodies[static_cast<std::size_t>(tile.body)].model;
-      const double c = material.initial_sound_speed(), modulus = material.reference_density() * c * c;
+      const double c = material.initial_sound_speed(), shear = material.initial_shear_speed();
+      // Averaged volume changes leave nodes motions that the bulk modulus does not resist.
+      const bool soft = averages_ && shear > 0;
+      const double modulus =
+          material.reference_density() * (soft ? std::min(c * c, 4 * shear * shear) : c * c);
       for (int l = 0; l < used; ++l) {
         const double volume = block[layout.offset(Column::volume) + l];
         double per_shape[6] = {0, 0, 0, 0, volume, volume * modulus};
@@ -262,28 +308,33 @@ bool ImplicitPassesWith<S>::map_forces(const AlignedDoubles& displacements) {
     const BrickFrame frame(*model_.grid, s);
     double* const contributions = clear_contributions(s);
     at.displacements.take_strain(frame, records(displacements, s));
-    for_each_batch(s, frame, Blocks::copies, at, [&](const ParticleTile&, const Body& body, std::size_t) {
-      if (body.model->rigid()) return;
-      take_gradients(frame, at);
-      Batch& batch = at.batch;
-      if (!set_midstep_gradient(at.gradient, batch)) usable = false;
-      body.model->update(batch, model_.options);
-      if (batch.events.not_finite > 0 || batch.events.negative_volume > 0) usable = false;
-      nodal_stress(at.gradient, batch, at.stress);
-      for (int i = 0; i < batch.particles; ++i) {
-        double p[9];
-        for (int c = 0; c < 9; ++c) p[c] = at.stress[c][i];
-        S::for_each_node(at.places[i / block_lanes], i % block_lanes, inverse_cell,
-                         [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
-                           double* to = contributions + node_doubles * node;
-                           for (int a = 0; a < 3; ++a) {
-                             const double force =
-                                 p[3 * a] * slope.x + p[3 * a + 1] * slope.y + p[3 * a + 2] * slope.z;
-                             to[node_field::force.first + a] -= force;
-                             to[node_field::support.first] += std::abs(force);
-                           }
-                         });
-      }
+    for_each_tile(s, false, [&](const ParticleTile& tile, const Body& body) {
+      if (averages_) find_dilatations(tile, body, frame, at);
+      for_each_batch(tile, frame, Blocks::copies, at, [&](std::size_t) {
+        Batch& batch = at.batch;
+        if (!take_strains(frame, body, at)) usable = false;
+        body.model->update(batch, model_.options);
+        if (batch.events.not_finite > 0 || batch.events.negative_volume > 0) usable = false;
+        if (averages_)
+          average_stress(at);
+        else
+          nodal_stress(at.gradient, batch, at.stress);
+        for (int i = 0; i < batch.particles; ++i) {
+          double p[9];
+          for (int c = 0; c < 9; ++c) p[c] = at.stress[c][i];
+          S::for_each_node(at.places[i / block_lanes], i % block_lanes, inverse_cell,
+                           [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
+                             double* to = contributions + node_doubles * node;
+                             for (int a = 0; a < 3; ++a) {
+                               const double force =
+                                   p[3 * a] * slope.x + p[3 * a + 1] * slope.y + p[3 * a + 2] * slope.z;
+                               to[node_field::force.first + a] -= force;
+                               to[node_field::support.first] += std::abs(force);
+                             }
+                           });
+        }
+      });
+      if (averages_) add_site_forces(at, contributions);
     });
     fold(mapped::implicit_force, s, contributions);
   });
@@ -305,35 +356,47 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
       stiffness.flush(matrix, displacements == nullptr);
     };
     int site = -1;
-    for_each_batch(s, frame, Blocks::copies, at, [&](const ParticleTile&, const Body& body, std::size_t) {
-      if (body.model->rigid()) return;
-      Batch& batch = at.batch;
-      if (displacements != nullptr) {
-        take_gradients(frame, at);
-        set_midstep_gradient(at.gradient, batch);
-        if (differences_)
-          difference_tangent(*body.model, model_.options, batch,
-                             at.copies.data() + batch_blocks * block_lanes * batch.layout->columns(),
-                             at.stress_tangent);
-        else
-          body.model->tangent(batch, model_.options, at.stress_tangent);
-        body.model->update(batch, model_.options);
-        nodal_stress(at.gradient, batch, at.stress);
-        force_tangent(at.gradient, batch, at.stress, at.stress_tangent, at.tangent);
+    for_each_tile(s, false, [&](const ParticleTile& tile, const Body& body) {
+      if (averages_ && displacements == nullptr) at.dilatation.begin(model_.grid->shape().nodes());
+      if (averages_ && displacements != nullptr) {
+        find_dilatations(tile, body, frame, at);
+        find_site_stress(tile, body, frame, at);
       }
-      for (int i = 0; i < batch.particles; ++i) {
-        const Place& place = at.places[i / block_lanes];
-        if (const int here = sites_of(place)[i % block_lanes]; here != site) {
-          flush();
-          site = here;
+      for_each_batch(tile, frame, Blocks::copies, at, [&](std::size_t) {
+        Batch& batch = at.batch;
+        if (displacements != nullptr) {
+          take_strains(frame, body, at);
+          if (differences_)
+            difference_tangent(*body.model, model_.options, batch,
+                               at.copies.data() + batch_blocks * block_lanes * batch.layout->columns(),
+                               at.stress_tangent);
+          else
+            body.model->tangent(batch, model_.options, at.stress_tangent);
+          body.model->update(batch, model_.options);
+          nodal_stress(strains(body, at), batch, at.stress);
+          force_tangent(strains(body, at), batch, at.stress, at.stress_tangent, at.tangent);
+          if (averages_) average_tangent(at);
+        } else if (averages_) {
+          touch_site_nodes(at);
         }
-        stiffness.begin_particle();
-        S::for_each_node(place, i % block_lanes, inverse_cell,
-                         [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
-                           stiffness.add_node(node, slope);
-                         });
-        if (displacements != nullptr)
-          stiffness.add_particle([&](int component) { return at.tangent.d[component][i]; });
+        for (int i = 0; i < batch.particles; ++i) {
+          const Place& place = at.places[i / block_lanes];
+          if (const int here = sites_of(place)[i % block_lanes]; here != site) {
+            flush();
+            site = here;
+          }
+          stiffness.begin_particle();
+          S::for_each_node(place, i % block_lanes, inverse_cell,
+                           [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
+                             stiffness.add_node(node, slope);
+                           });
+          if (displacements != nullptr)
+            stiffness.add_particle([&](int component) { return at.tangent.d[component][i]; });
+        }
+      });
+      if (averages_) {
+        flush();
+        add_site_stiffness(at, displacements == nullptr, flush);
       }
     });
     flush();
@@ -388,30 +451,30 @@ void ImplicitPassesWith<S>::move_particles(const AlignedDoubles& displacements,
     at.displacements.take_motion(records(displacements, s));
     if (velocities != nullptr) at.velocities.take_motion(records(*velocities, s));
     if (lags != nullptr) at.lags.take_motion(records(*lags, s));
-    for_each_batch(
-        s, frame, Blocks::own, at, [&](const ParticleTile& tile, const Body& body, std::size_t first) {
-          Batch& batch = at.batch;
-          take_gradients(frame, at);
-          set_midstep_gradient(at.gradient, batch);
+    for_each_tile(s, true, [&](const ParticleTile& tile, const Body& body) {
+      if (averages(body)) find_dilatations(tile, body, frame, at);
+      for_each_batch(tile, frame, Blocks::own, at, [&](std::size_t first) {
+        Batch& batch = at.batch;
+        take_strains(frame, body, at);
+        for (int b = 0; b < batch.blocks; ++b)
+          move_block(frame, tile, b, batch.block[b], tile.used_lanes(first + static_cast<std::size_t>(b)),
+                     velocities != nullptr, lags != nullptr, at);
+        body.model->update(batch, model_.options);
+        at.statistics.events += batch.events;
+        if (batch.layout->has(Column::sound_speed)) {
           for (int b = 0; b < batch.blocks; ++b)
-            move_block(frame, tile, b, batch.block[b], tile.used_lanes(first + static_cast<std::size_t>(b)),
-                       velocities != nullptr, lags != nullptr, at);
-          body.model->update(batch, model_.options);
-          at.statistics.events += batch.events;
-          if (batch.layout->has(Column::sound_speed)) {
-            for (int b = 0; b < batch.blocks; ++b)
-              std::copy_n(batch.sound_speed + block_lanes * b, block_lanes,
-                          batch.column(Column::sound_speed, b));
-          }
-          at.statistics.fastest =
-              fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
-          const auto c = static_cast<int>(&tile - model_.grid->brick(s).tiles.data());
-          for (int b = 0; b < batch.blocks; ++b) {
-            const std::size_t at_block = first + static_cast<std::size_t>(b);
-            find_departing(c, at_block, frame, 0, failed_.of(tile), *batch.layout, batch.block[b],
-                           tile.used_lanes(at_block), departing);
-          }
-        });
+            std::copy_n(batch.sound_speed + block_lanes * b, block_lanes,
+                        batch.column(Column::sound_speed, b));
+        }
+        at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
+        const auto c = static_cast<int>(&tile - model_.grid->brick(s).tiles.data());
+        for (int b = 0; b < batch.blocks; ++b) {
+          const std::size_t at_block = first + static_cast<std::size_t>(b);
+          find_departing(c, at_block, frame, 0, failed_.of(tile), *batch.layout, batch.block[b],
+                         tile.used_lanes(at_block), departing);
+        }
+      });
+    });
     at.add_work_of_brick();
   });
 }
@@ -432,3 +495,5 @@ StepStatistics ImplicitPassesWith<S>::take_statistics() {
 }
 
 }  // namespace mpm::core
+
+#include "core/implicit/averaged_batches.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "core/implicit/newton_solver.hpp"
@@ -29,14 +30,7 @@ class StiffnessBlock {
   }
   void add_node(int node, const Vec3<double>& slope) {
     const NodeUnknowns::Node& n = of_[node];
-    std::int16_t& at = place_[static_cast<std::size_t>(n.from)];
-    if (at < 0) {
-      at = static_cast<std::int16_t>(numbers_.size());
-      numbers_.push_back(n.number);
-      held_.push_back(of_[n.from].held);
-      grow();
-    }
-    Weight& w = weight_of(at);
+    Weight& w = weight_of(place_of(n));
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j) w.slope[k][j] += n.sign[k] * slope[j];
   }
@@ -44,6 +38,22 @@ class StiffnessBlock {
   /// derivative of P_ij by G_kl.
   template <class D>
   void add_particle(D d);
+
+  /// The place in the sum of the unknown that determines a node, and its signs.
+  struct Unknown {
+    std::size_t place;
+    const std::int8_t (&sign)[3];
+  };
+  Unknown unknown_of(int node) {
+    const NodeUnknowns::Node& n = of_[node];
+    return {static_cast<std::size_t>(place_of(n)), n.sign};
+  }
+  /// Adds left_a right_b over the unknowns so far, three per place.
+  void add_product(std::span<const double> left, std::span<const double> right) {
+    const std::size_t n = 3 * numbers_.size();
+    for (std::size_t r = 0; r < n; ++r)
+      for (std::size_t c = 0; c < n; ++c) sum_[r * stride_ + c] += left[r] * right[c];
+  }
 
   /// Passes the sum on, without the rows and columns of held components, and clears it.
   void flush(BlockMatrix& matrix, bool structure_alone);
@@ -54,6 +64,16 @@ class StiffnessBlock {
     std::int16_t at;
     double slope[3][3];
   };
+  std::int16_t place_of(const NodeUnknowns::Node& n) {
+    std::int16_t& at = place_[static_cast<std::size_t>(n.from)];
+    if (at < 0) {
+      at = static_cast<std::int16_t>(numbers_.size());
+      numbers_.push_back(n.number);
+      held_.push_back(of_[n.from].held);
+      grow();
+    }
+    return at;
+  }
   Weight& weight_of(std::int16_t at) {
     std::int16_t& index = used_at_[static_cast<std::size_t>(at)];
     if (index < 0) {

@@ -27,10 +27,6 @@ void check_settings(const Node& solution, const core::SolutionInput& input, cons
   if (input.volume.update != core::VolumeUpdate::rate)
     refuse("Volume", "update_type",
            "implicit steps take the volume from the deformation gradient; remove it");
-  if (input.averaging != core::VolumeAveraging::none)
-    refuse("Volumetric", "averaging",
-           "is not available with implicit steps yet; use QuadraticBSpline or SGMP, "
-           "which lock less");
 }
 
 void check_faces(const Node& root, const core::GridInput& grid, const BuildContext& context) {

@@ -80,6 +80,10 @@ class Solutions(unittest.TestCase):
         # The trapezoidal rule keeps an oscillator's energy; backward Euler divides it by 1 + (w dt)^2 in each step.
         self.assertAlmostEqual(steps.left("trapezoidal", 1.0, 3.0, 30.0), 1, delta=1e-12)
         self.assertAlmostEqual(steps.left("backward Euler", 1.0, 0.5, 5.0) * 1.25**10, 1, delta=1e-12)
+        # Generalised alpha of radius 1 is the trapezoidal rule.
+        self.assertAlmostEqual(steps.left_by_alpha(1.0, 1.0, 3.0, 30.0), 1, delta=1e-12)
+        few, many = (steps.left("generalised alpha", 1.0, 1e4, 1e4 * n) for n in (60, 61))
+        self.assertAlmostEqual(many / few, steps.RULES["generalised alpha"]**2, delta=0.1)
 
     def test_observed_orders(self):
         self.assertAlmostEqual(study.order(4e-2, 1e-2, 2), 2, delta=1e-12)
@@ -147,6 +151,11 @@ class Quick(_mpm.RunOnce):
         locked = self.one("error", "stiff", body="block", shape="linear", value=0.499)
         self.assertGreater(locked, 3 * self.one("error", "stiff", body="block", shape="QuadraticBSpline", value=0.499))
         self.rows("stiff", body="laminate", value=1e6)
+
+    def test_averages_against_locking(self):
+        for body, shape, most in (("cook", "linear", 0.04), ("cook", "QuadraticBSpline", 0.015), ("block", "linear", 0.025),
+                                  ("block", "QuadraticBSpline", 0.08)):
+            self.assertLess(abs(self.one("error", "locking", body=body, shape=shape)), most, (body, shape))
 
     def test_quadratic_convergence(self):
         for row in self.rows("laws"):

@@ -489,7 +489,7 @@ TEST_CASE("what implicit steps cannot do") {
       {"<Solution>", with("", "<Implicit rule='generalised_alpha' spectral_radius='1'/>"), {"ok"}},
       {"<Solution>",
        with("", "<Implicit rule='generalised_alpha' spectral_radius='1.1'/>"),
-       {"line 25: <Implicit spectral_radius=\"1.1\">: expected a number from 0 to 1"}},
+       {"line 25: <Implicit spectral_radius=\"1.1\">: expected a number in [0, 1]"}},
       {"<Solution>",
        with("", "<Implicit time_step='1' max_step='0.5'/>"),
        {"line 25: <Implicit max_step=\"0.5\">: expected at least time_step, 1"}},

@@ -247,8 +247,8 @@ TEST_CASE("parameters of another rule of implicit steps") {
   CHECK(with("spectral_radius='0.5'") == radius);
   CHECK(with("type='quasistatic' spectral_radius='0.5'") == radius);
   CHECK(
-      with("rule='generalised_alpha' newmark_gamma='0.6'") ==
-      std::vector<std::string>{"line 25: <Implicit newmark_gamma=\"0.6\">: no effect: used only by Newmark's "
+      with("rule='generalised_alpha' newmark_beta='0.3'") ==
+      std::vector<std::string>{"line 25: <Implicit newmark_beta=\"0.3\">: no effect: used only by Newmark's "
                                "rule of dynamic problems"});
 }
 
