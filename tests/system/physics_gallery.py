@@ -1,12 +1,12 @@
 """The scenes of apps/scenes that have known answers, with coarse cells; finer ones: elastic_balls.py,
-taylor_bar_on_a_plate.py, symmetric_taylor_impact.py and
-ball_through_a_plate.py of tests/validation.
+taylor_bar_on_a_plate.py, symmetric_taylor_impact.py, ball_through_a_plate.py and granular.py of tests/validation.
 
 Prints what it measures."""
 
 import _ball_through_plate
 import _bar_on_plate
 import _gallery
+import _granular
 import _mpm
 import _symmetric_impact
 
@@ -85,6 +85,21 @@ class Gallery(_mpm.Case):
             self.assertLess(found["failed"], 0.2)
         self.assertAlmostEqual(speeds[True], 123, delta=5)
         self.assertAlmostEqual(speeds[False], 93, delta=5)
+
+    def test_sand_column(self):
+        """Lube's run-out; with these cells, a tenth of the foot, it is 17 % too far. The sand stops and keeps its density."""
+        found = self.measured("sand_column", _granular.sand_column(1, 10), _granular.measure_sand_column, 1)
+        self.assertLess(abs(found["error"]), 20)
+        self.assertLess(found["kinetic"], 1e-4)
+        self.assertGreater(found["pressed"], 0.99)
+
+    def test_aluminium_rods(self):
+        """Thesis 6.4.1: repose of 14 degrees, on a fixed wall and on a rigid body; with these cells 14.3 and 15.0."""
+        for base in ("wall", "contact"):
+            with self.subTest(base=base):
+                found = self.measured("aluminium_rods", _granular.aluminium_rods(10, base), _granular.measure_aluminium_rods)
+                self.assertAlmostEqual(found["repose"], 14, delta=1.5)
+                self.assertLess(found["kinetic"], 1e-2)
 
 
 if __name__ == "__main__":
