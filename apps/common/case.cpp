@@ -9,6 +9,7 @@
 #include "io/output/variables.hpp"
 #include "io/restart/restart.hpp"
 #include "parallel/communication.hpp"
+#include "parallel/implicit/solver_library.hpp"
 #include "parallel/launch.hpp"
 #include "physics/material/material.hpp"
 
@@ -139,6 +140,13 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
 }  // namespace
 
 std::string to_line(const core::Diagnostic& note) { return "note       " + to_text(note); }
+
+void require_newton_solver(const core::Scene& scene) {
+  if (scene.solution.integration != core::Integration::implicit) return;
+  if (const std::string why = parallel::why_no_newton_solver(); !why.empty())
+    throw core::InputErrors(scene.solution.source, "Solution Integration=\"impl\"",
+                            "is not available: " + why);
+}
 
 Case load_case(const RunOptions& options, const parallel::Communicator& world,
                const core::Catalogue& catalogue) {

@@ -24,6 +24,9 @@ struct Case {
 /// A note as printed in the log and by mpm_check.
 std::string to_line(const core::Diagnostic& note);
 
+/// Throws InputErrors where the scene takes implicit steps and their solver cannot be loaded.
+void require_newton_solver(const core::Scene& scene);
+
 /// Rank 0 reads, every rank gets the same scene or the same InputErrors. Collective.
 Case load_case(const RunOptions& options, const parallel::Communicator& world,
                const core::Catalogue& catalogue);

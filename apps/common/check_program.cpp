@@ -78,6 +78,7 @@ class Checker {
       std::string verdict = summary(scene);
       if (!settings_.accept_later && foreign.empty())
         verdict += fmt::format(", about {:.4g} particles", make_everything(scene, registry_));
+      apps::require_newton_solver(scene);
       if (users_) verdict += ", by " + users_->file;
       if (settings_.echo)
         fmt::print("{}", io::to_text(scene));

@@ -262,8 +262,7 @@ class Run {
             "Solution@Integration to impl");
       return;
     }
-    if (const std::string why = parallel::why_no_newton_solver(); !why.empty())
-      throw core::InputErrors(solution.source, "Solution Integration=\"impl\"", "is not available: " + why);
+    require_newton_solver(*case_.scene);
     newton_ = parallel::make_newton_solver(world, options_.solver_options);
     communication_.newton = newton_.get();
   }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 
 #include <fmt/format.h>
 
+#include "core/built_shapes.hpp"
 #include "core/scene/limits.hpp"
 #include "io/input/build.hpp"
 
@@ -25,6 +28,15 @@ core::ShapeFunction shape_function(std::string_view word) {
   if (word == "DDMP") return ddmp;
   if (word == "SGMP") return sgmp;
   return linear;
+}
+
+void require_built(const Node& node, std::string_view attribute, std::string_view shape,
+                   const BuildContext& context) {
+  if (std::ranges::find(core::built_shapes, shape) != std::ranges::end(core::built_shapes)) return;
+  node.report(context.diagnostics, attribute,
+              fmt::format("this program was built without {}: expected {}, or a program built with the CMake "
+                          "option -DMPM_SHAPES=all",
+                          shape, fmt::join(core::built_shapes, ", ")));
 }
 
 void read_segments(core::GridAxis& axis, const Node& cell, char letter, const BuildContext& context) {
@@ -124,10 +136,12 @@ core::GridInput build_grid(const Node& root, const BuildContext& context) {
   grid.source = context.at(*node);
   grid.mass_cutoff = node->real("mass_cutoff");
   grid.shape = shape_function(node->word("shape"));
+  require_built(*node, "shape", node->word("shape"), context);
   if (node->boolean("gimp")) {
     if (node->find("shape") && grid.shape != core::ShapeFunction::uniform_gimp)
       node->report(context.diagnostics, "gimp", "contradicts shape; remove one of the two");
     grid.shape = core::ShapeFunction::uniform_gimp;
+    if (!node->find("shape")) require_built(*node, "gimp", "uGIMP", context);
   }
   if (const std::optional<Node> dynamic = node->child("DynamicCell"))
     grid.dynamic_cell = {dynamic->boolean("enable"), dynamic->small_integer("clear_steps")};
