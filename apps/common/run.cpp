@@ -17,6 +17,7 @@
 #include "apps/common/stop.hpp"
 #include "apps/common/watch.hpp"
 #include "core/contact/overlaps.hpp"
+#include "core/contact/rigid_bodies.hpp"
 #include "core/particle_range.hpp"
 #include "core/scene/limits.hpp"
 #include "core/setup/build_model.hpp"
@@ -208,6 +209,7 @@ class Run {
     if (!case_.restart && case_.scene->contact.enable) {
       for (const std::string& overlap : core::overlaps_in_words(model_, communication_))
         log_->warn("{}", overlap);
+      for (const std::string& part : core::rigid_parts_in_words(model_)) log_->say("note       {}", part);
     }
     setup_seconds_ = clock_.seconds();
   }

@@ -2,11 +2,25 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+
+#include <fmt/format.h>
 
 #include "core/particle_range.hpp"
 
 namespace mpm::core {
+
+namespace {
+
+/// Whether others have no influence on the rigid body with this number.
+bool is_driven(const Model& model, std::size_t body) {
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
+  return model.bodies[body].prescribed_velocity ||
+         (body < inputs.size() && inputs[body]->constrain_rigid_position);
+}
+
+}  // namespace
 
 void RigidImpulse::add(const Vec3<double>& p, const Vec3<double>& arm, double given) {
   const Vec3<double> h = cross(arm, p);
@@ -31,15 +45,12 @@ RigidImpulse& RigidImpulse::operator+=(const RigidImpulse& other) {
 RigidBodies::RigidBodies(Model& model, Reductions& ranks) : model_(model), ranks_(ranks) {
   by_component_.assign(model.scene->components.size(), -1);
   by_body_.assign(model.bodies.size(), -1);
-  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     if (!body.rigid) continue;
     const int number = static_cast<int>(bodies_.size());
     by_component_[static_cast<std::size_t>(body.component)] = by_body_[b] = number;
-    const bool driven =
-        body.prescribed_velocity || (b < inputs.size() && inputs[b]->constrain_rigid_position);
-    bodies_.push_back({static_cast<int>(b), driven, 0});
+    bodies_.push_back({static_cast<int>(b), is_driven(model, b), 0});
   }
   node_mass_.resize(bodies_.size());
   find_states(ranks);
@@ -102,9 +113,38 @@ void RigidBodies::find_states(Reductions& ranks) {
     const ExactSum* s = &sums[second_sums * r];
     RigidState& state = found[r];
     state.inertia = {s[0].value(), s[1].value(), s[2].value(), s[3].value(), s[4].value(), s[5].value()};
-    state.spin = spin_of(state.inertia, {s[6].value(), s[7].value(), s[8].value()});
+    state.cut = symmetry_planes_at(static_cast<int>(r));
+    state.spin = spin_with(state, {s[6].value(), s[7].value(), s[8].value()});
+    if (!bodies_[r].driven) keep_symmetry(state);
     model_.bodies[static_cast<std::size_t>(bodies_[r].body)].rigid_state = state;
   }
+}
+
+Vec3<double> RigidBodies::symmetry_planes_at(int number) {
+  const GridGeometry& grid = model_.grid->geometry();
+  double nearest[6];  // in edges of a particle
+  std::ranges::fill(nearest, std::numeric_limits<double>::infinity());
+  for (const ConstParticleBlock& block : blocks_of(std::as_const(model_))) {
+    if (of_body(block.body) != number) continue;
+    for (const ConstParticle p : block) {
+      const Vec3<double> x = p.vector(Column::position_x);
+      const double edge = std::cbrt(p[Column::volume]);
+      for (int a = 0; a < 3; ++a) {
+        const double from_lower = x[a] - grid.origin[a],
+                     length = static_cast<double>(grid.cells[static_cast<std::size_t>(a)]) * grid.cell[a];
+        nearest[2 * a] = std::min(nearest[2 * a], from_lower / edge);
+        nearest[2 * a + 1] = std::min(nearest[2 * a + 1], (length - from_lower) / edge);
+      }
+    }
+  }
+  ranks_.minimum(nearest);
+  constexpr double at_plane = 0.6;  // half an edge up to round-off, or less
+  Vec3<double> cut{};
+  for (std::size_t face = 0; face < 6; ++face) {
+    if (grid.boundary[face] == Boundary::symmetry && nearest[face] < at_plane)
+      cut[static_cast<int>(face / 2)] = 1;
+  }
+  return cut;
 }
 
 const RigidState& RigidBodies::state(int number) const {
@@ -122,6 +162,7 @@ void RigidBodies::begin_step(const Loads& loads, const Vec3<double>& gravity, do
                          ? motion.velocity.common
                          : state.velocity + dt * (gravity + loads.acceleration(rigid.body));
     state.spin = state.spin + dt * loads.angular_acceleration(rigid.body);
+    if (!rigid.driven) keep_symmetry(state);
     node_mass_[r] =
         rigid.driven ? std::numeric_limits<double>::infinity() : state.mass / std::max(state.contacts, 1.0);
   }
@@ -180,6 +221,24 @@ void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, 
     else
       contact.dissipated.add(given - (kinetic_energy(state) - without_contact));
   }
+}
+
+std::vector<std::string> rigid_parts_in_words(const Model& model) {
+  std::vector<std::string> words;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (!body.rigid_state || is_driven(model, b)) continue;
+    std::string axes;
+    for (int a = 0; a < 3; ++a) {
+      if (body.rigid_state->cut[a] != 0) axes += fmt::format("{}{}", axes.empty() ? "" : " and ", "xyz"[a]);
+    }
+    if (!axes.empty())
+      words.push_back(fmt::format(
+          "rigid body '{}' begins at symmetry planes normal to {}: it moves as a part of the whole, "
+          "along these planes",
+          body.name, axes));
+  }
+  return words;
 }
 
 std::unique_ptr<RigidBodies> make_rigid_bodies(Model& model, Reductions& ranks) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/communication/reductions.hpp"
@@ -58,6 +59,8 @@ class RigidBodies {
     double energy_before = 0;  ///< kinetic, at the start of the step
   };
   void find_states(Reductions& ranks);
+  /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
+  Vec3<double> symmetry_planes_at(int number);
 
   Model& model_;
   Reductions& ranks_;
@@ -66,6 +69,9 @@ class RigidBodies {
   std::vector<double> node_mass_;
   std::vector<int> by_component_, by_body_;
 };
+
+/// A sentence for each free rigid body that symmetry planes cut.
+std::vector<std::string> rigid_parts_in_words(const Model& model);
 
 /// Null without contact or without rigid bodies. Collective.
 std::unique_ptr<RigidBodies> make_rigid_bodies(Model& model, Reductions& ranks);

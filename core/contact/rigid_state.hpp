@@ -4,6 +4,10 @@
 // Within a step the body moves with the velocity V and spin w that it would have without contact: every point
 // x has the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w. Impulses J
 // and their moment H about c then change momentum and angular momentum at the end of the step.
+//
+// A body that symmetry planes cut is a part of the whole: the other parts cancel impulses along the planes'
+// normals and moments about axes in the planes. The whole has the part's inertia about the normal, over its
+// mass.
 #pragma once
 
 #include <cmath>
@@ -21,8 +25,9 @@ struct RigidState {
   // Of the last step.
   Vec3<double> force{}, moment{};  ///< by contact, mean over the step; the moment about the centre
   double contacts = 0;             ///< nodes at which the body touched others
+  Vec3<double> cut{};              ///< 1 for the axes normal to symmetry planes that cut the body
 
-  static constexpr int size = 23;  ///< doubles, in restart files
+  static constexpr int size = 26;  ///< doubles, in restart files
 };
 static_assert(sizeof(RigidState) == RigidState::size * sizeof(double));
 
@@ -59,6 +64,28 @@ inline Vec3<double> spin_of(const Sym3<double>& inertia, const Vec3<double>& l) 
   return (1 / d) * (adjugate(m) * l);
 }
 
+/// The motion that symmetry planes leave: along them, and about the normal of a single one.
+inline void keep_symmetry(RigidState& s) {
+  const double planes = s.cut.x + s.cut.y + s.cut.z;
+  if (planes == 0) return;
+  for (int a = 0; a < 3; ++a) {
+    if (s.cut[a] != 0) s.velocity[a] = 0;
+    if (s.cut[a] == 0 || planes > 1) s.spin[a] = 0;
+  }
+}
+
+/// The spin with the angular momentum `l` that symmetry planes leave.
+inline Vec3<double> spin_with(const RigidState& s, const Vec3<double>& l) {
+  const double about[3] = {s.inertia.xx, s.inertia.yy, s.inertia.zz};
+  for (int a = 0; a < 3; ++a) {
+    if (s.cut[a] == 0) continue;
+    Vec3<double> spin{};
+    if (about[a] > 0) spin[a] = l[a] / about[a];
+    return spin;
+  }
+  return spin_of(s.inertia, l);
+}
+
 /// The end of a step of length dt with contact's impulse and its moment about the centre at its beginning;
 /// `driven`: contact does not change the motion.
 inline void end_step(RigidState& s, double dt, const Vec3<double>& impulse, const Vec3<double>& moment,
@@ -70,7 +97,8 @@ inline void end_step(RigidState& s, double dt, const Vec3<double>& impulse, cons
   s.moment = (1 / dt) * moment;
   if (driven) return;
   s.velocity = s.velocity + (1 / s.mass) * impulse;
-  s.spin = spin_of(s.inertia, angular_momentum);
+  s.spin = spin_with(s, angular_momentum);
+  keep_symmetry(s);
 }
 
 }  // namespace mpm::core

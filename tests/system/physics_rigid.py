@@ -114,6 +114,30 @@ class Rigid(_mpm.Case):
         self.assertLess(abs(drift), 0.2)
         self.assertGreater(np.abs(status["mx[contact:brick]"]).max(), 0)
 
+    def test_body_at_a_symmetry_plane(self):
+        """Half of a brick that strikes half of a block moves as the whole does."""
+        def struck(half, end=1.5):
+            soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
+            low, width = (4, 1) if half else (2, 2)
+            bodies = [_mpm.block("block", (2, low if half else 1, 2), (6, 3 * width, 3)),
+                      _mpm.block("brick", (2.3, low if half else 3, 5.4), (2, width, 2), (0.4, 0, -2), of="iron")]
+            lower = (0, 4, 0) if half else (0, 0, 0)
+            return scene(bodies, _mpm.grid(lower, (12, 8, 12), "002000" if half else "000000"), _mpm.solution(end), soft,
+                         0.2, f'<Console print_time="{end / 20}"/>')
+
+        text = struck(True)
+        outcome = self.run_in("half", [self.write(text)])
+        self.assertIn("rigid body 'brick' begins at symmetry planes normal to y", outcome.out)
+        half = _mpm.summary(self.folder / "half")
+        _, whole, status = self.go(struck(False), "whole")
+        print(f"half a brick: velocities {half['bodies'][1]['velocity']}, of the whole {whole['bodies'][1]['velocity']}")
+        self.assertEqual(half["bodies"][1]["velocity"][1], 0)
+        self.assertGreater(abs(whole["bodies"][1]["velocity"][2] + 2), 0.5)
+        for body in range(2):
+            for axis in (0, 2):
+                self.assertAlmostEqual(half["bodies"][body]["velocity"][axis], whole["bodies"][body]["velocity"][axis],
+                                       delta=0.05)
+
     def test_same_bits(self):
         """Ranks, threads, partition and restart."""
         one, _, _ = self.go(thrown(), "one")
