@@ -256,10 +256,10 @@ void ImplicitPassesWith<S>::map_motion() {
       const bool moved = prescribed(tile.body);
       const ConstitutiveModel& material = *model_.bodies[static_cast<std::size_t>(tile.body)].model;
       const double c = material.initial_sound_speed(), shear = material.initial_shear_speed();
-      // Averaged volume changes leave nodes motions that the bulk modulus does not resist.
-      const bool soft = averages_ && shear > 0;
+      // Nodes of cells cut by a surface can move without changing volumes, and a nearly incompressible
+      // material should not hinder that with a share of its bulk modulus.
       const double modulus =
-          material.reference_density() * (soft ? std::min(c * c, 4 * shear * shear) : c * c);
+          material.reference_density() * (shear > 0 ? std::min(c * c, 4 * shear * shear) : c * c);
       for (int l = 0; l < used; ++l) {
         const double volume = block[layout.offset(Column::volume) + l];
         double per_shape[6] = {0, 0, 0, 0, volume, volume * modulus};
