@@ -9,6 +9,7 @@ import _gallery
 import _granular
 import _mpm
 import _symmetric_impact
+import _water_drop
 
 
 class Gallery(_mpm.Case):
@@ -85,6 +86,17 @@ class Gallery(_mpm.Case):
             self.assertLess(found["failed"], 0.2)
         self.assertAlmostEqual(speeds[True], 123, delta=5)
         self.assertAlmostEqual(speeds[False], 93, delta=5)
+
+    def test_water_drop(self):
+        """Thesis 5.3.4, with half its resolution and until the drop has broken up: mass and momentum are closed."""
+        found = self.measured(_water_drop.JOB, _water_drop.text(10, end=1.0), _water_drop.measure, 10)
+        self.assertEqual(found["end"], 1)
+        self.assertLess(abs(found["mass"]), 1e-14)
+        self.assertLess(found["momentum"], 1e-10)
+        self.assertGreater(found["stopped"], 5)
+        self.assertGreater(found["spread"], 2)
+        self.assertLess(abs(found["drift"]), 10)
+        self.assertLess(found["inside"], 1)
 
     def test_sand_column(self):
         """Lube's run-out; with these cells, a tenth of the foot, it is 17 % too far. The sand stops and keeps its density."""
