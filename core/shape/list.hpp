@@ -7,7 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "core/built_shapes.hpp"
+#include "core/built.hpp"
 #include "core/scene/grid.hpp"
 #include "core/shape/bspline.hpp"
 #include "core/shape/cpdi.hpp"

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/built.hpp"
 #include "core/implicit/implicit_integrator.hpp"
 #include "core/step/speeds.hpp"
 #include "core/transfer/corrected.hpp"
@@ -104,7 +105,8 @@ double ExplicitIntegrator::stable_step(const StepStatistics& statistics) const {
 std::unique_ptr<Integrator> make_integrator(Model& model, Communication& communication) {
   if (model.scene->solution.integration == Integration::implicit) {
     if (communication.newton == nullptr) throw std::logic_error("an implicit scene without a solver");
-    return std::make_unique<ImplicitIntegrator>(model, communication, *communication.newton);
+    if constexpr (built_implicit)
+      return std::make_unique<ImplicitIntegrator>(model, communication, *communication.newton);
   }
   return std::make_unique<ExplicitIntegrator>(model, communication);
 }

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "core/built_shapes.hpp"
+#include "core/built.hpp"
 #include "core/scene/limits.hpp"
 #include "io/input/build.hpp"
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/built.hpp"
 #include "core/simd/dual.hpp"
 
 namespace mpm::physics {
@@ -32,10 +33,10 @@ void as_chosen(Instance instance, F f) {
     f(std::type_identity<core::Real>());
   } else if (instance == Instance::scalars) {
     f(std::type_identity<double>());
-  } else if constexpr (HasTangent<Law>) {
+  } else if constexpr (core::built_implicit && HasTangent<Law>) {
     f(std::type_identity<DualReal>());
   } else {
-    throw std::logic_error("derivatives of a law that has no tangent");
+    throw std::logic_error("derivatives of a law that has no tangent, or without implicit steps");
   }
 }
 
