@@ -29,7 +29,7 @@ double length_of(const ImplicitInput& input, const Model& model) {
   if (input.max_step) return *input.max_step;
   const double explicit_step = default_ratio * model.clock.first_critical_dt;
   const double end = model.scene->solution.end_time;
-  if (input.quasistatic || !std::isfinite(explicit_step)) return end / default_load_steps;
+  if (input.quasistatic() || !std::isfinite(explicit_step)) return end / default_load_steps;
   return explicit_step;
 }
 
@@ -62,7 +62,7 @@ std::vector<Phase> ImplicitIntegrator::phases() {
     step.push_back({"exchange cells", [this] { cells_->finish_exchange(); }});
   }
   step.push_back({"particles to grid", [this] { prepare(); }});
-  step.push_back({"Newton's method", [this] { solve(); }});
+  step.push_back({input_.linearised() ? "linear system" : "Newton's method", [this] { solve(); }});
   step.push_back({"grid to particles", [this] { move(); }});
   return step;
 }
@@ -127,7 +127,8 @@ void ImplicitIntegrator::prepare() {
   });
 }
 
-/// Free nodes go on with their velocity.
+/// Free nodes go on with their velocity; those of a linearised step begin at their place, where it is
+/// linearised.
 std::vector<double> ImplicitIntegrator::first_guess() const {
   std::vector<double> u(3 * state_.size());
   for (std::size_t i = 0; i < state_.size(); ++i) {
@@ -136,7 +137,7 @@ std::vector<double> ImplicitIntegrator::first_guess() const {
       if (held(i, a))
         u[at] = unknowns_.held_displacements()[at];
       else
-        u[at] = free_motion(state_[i], a);
+        u[at] = input_.linearised() ? 0 : free_motion(state_[i], a);
     }
   }
   return u;
@@ -199,7 +200,7 @@ std::string ImplicitIntegrator::objection(const NewtonReport& report, std::span<
 void ImplicitIntegrator::solve() {
   const double length = length_of(input_, model_);
   const NewtonOptions options{input_.relative_tolerance, input_.absolute_tolerance.value_or(0),
-                              input_.max_newton, input_.matrix_free};
+                              input_.max_newton, input_.matrix_free, input_.linearised()};
   std::string cuts;
   for (;;) {
     std::vector<double> u = first_guess();

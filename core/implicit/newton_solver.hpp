@@ -45,6 +45,9 @@ struct NewtonOptions {
   double absolute_tolerance = 0;     ///< |r|, force
   int max_iterations = 20;
   bool matrix_free = false;  ///< Jacobian times vector by differences of residuals; the matrix preconditions
+  /// One system, linearised at the first guess, by conjugate gradients to the relative tolerance; then no
+  /// residual is asked for.
+  bool linear = false;
 };
 
 /// How a step was solved.

@@ -61,14 +61,15 @@ struct TimeRule {
   static TimeRule quasistatic() { return {}; }
 
   static TimeRule of(const ImplicitInput& input, double dt) {
-    if (input.quasistatic) return quasistatic();
-    if (input.rule == ImplicitRule::backward_euler) return backward_euler(dt);
+    if (input.quasistatic()) return quasistatic();
+    if (input.linearised() || input.rule == ImplicitRule::backward_euler) return backward_euler(dt);
     if (input.rule == ImplicitRule::generalised_alpha) return generalised_alpha(input.spectral_radius, dt);
     return newmark(input.newmark_beta, input.newmark_gamma, dt);
   }
   /// Whether particles carry a lag.
   static bool lags(const ImplicitInput& input) {
-    return !input.quasistatic && input.rule == ImplicitRule::generalised_alpha && input.spectral_radius < 1;
+    return input.type == ImplicitType::dynamic && input.rule == ImplicitRule::generalised_alpha &&
+           input.spectral_radius < 1;
   }
   bool dynamic() const { return inertia > 0; }
   /// f' over the mass: the equation of motion, with f and q over the mass.

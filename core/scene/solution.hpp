@@ -62,12 +62,16 @@ struct WarnInput {
   Level level = Level::per_step;
 };
 
+/// What an implicit step solves: the equation of motion, equilibrium, or the equation of motion linearised at
+/// the start of the step, once.
+enum class ImplicitType { dynamic, quasistatic, semi };
+
 /// Time integration of dynamic implicit steps.
 enum class ImplicitRule { newmark, backward_euler, generalised_alpha };
 
 /// Read when the integration is implicit.
 struct ImplicitInput {
-  bool quasistatic = false;
+  ImplicitType type = ImplicitType::dynamic;
   ImplicitRule rule = ImplicitRule::newmark;
   double newmark_beta = 0.25;
   double newmark_gamma = 0.5;
@@ -81,6 +85,9 @@ struct ImplicitInput {
   double gravity_ramp = 0;  ///< time over which gravity grows from zero
   bool matrix_free = false;
   bool difference_tangent = false;  ///< derivatives of the stress by differences
+
+  bool quasistatic() const { return type == ImplicitType::quasistatic; }
+  bool linearised() const { return type == ImplicitType::semi; }
 };
 
 struct FemInput {

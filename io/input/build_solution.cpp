@@ -87,7 +87,8 @@ core::WarnInput build_warn(const Node& node) {
 
 core::ImplicitInput build_implicit(const Node& node, const BuildContext& context) {
   core::ImplicitInput implicit;
-  implicit.quasistatic = node.type() == "quasistatic";
+  if (node.type() == "quasistatic") implicit.type = core::ImplicitType::quasistatic;
+  if (node.type() == "semi") implicit.type = core::ImplicitType::semi;
   if (node.word("rule") == "backward_euler") implicit.rule = core::ImplicitRule::backward_euler;
   if (node.word("rule") == "generalised_alpha") implicit.rule = core::ImplicitRule::generalised_alpha;
   implicit.spectral_radius = node.real("spectral_radius");

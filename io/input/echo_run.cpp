@@ -112,7 +112,8 @@ void echo_watches(XmlWriter& w, const core::SolutionInput& solution) {
 
 void echo_implicit(XmlWriter& w, const core::ImplicitInput& implicit) {
   const auto scope = w.element("Implicit");
-  w.text("type", implicit.quasistatic ? "quasistatic" : "dynamic");
+  static constexpr std::string_view types[] = {"dynamic", "quasistatic", "semi"};
+  w.text("type", types[static_cast<std::size_t>(implicit.type)]);
   static constexpr std::string_view rules[] = {"newmark", "backward_euler", "generalised_alpha"};
   w.text("rule", rules[static_cast<std::size_t>(implicit.rule)]);
   w.number("spectral_radius", implicit.spectral_radius);

@@ -142,20 +142,25 @@ const std::vector<Rule>& rules() {
        {"newmark_beta", "newmark_gamma"},
        [](const Place& at) {
          const core::ImplicitInput& input = *at.scene.solution.implicit;
-         return input.quasistatic || input.rule != core::ImplicitRule::newmark;
+         return input.type != core::ImplicitType::dynamic || input.rule != core::ImplicitRule::newmark;
        },
        "used only by Newmark's rule of dynamic problems"},
       {"Solution/Implicit",
        {"spectral_radius"},
        [](const Place& at) {
          const core::ImplicitInput& input = *at.scene.solution.implicit;
-         return input.quasistatic || input.rule != core::ImplicitRule::generalised_alpha;
+         return input.type != core::ImplicitType::dynamic ||
+                input.rule != core::ImplicitRule::generalised_alpha;
        },
        "used only by rule=\"generalised_alpha\" of dynamic problems"},
       {"Solution/Implicit",
        {"rule"},
-       [](const Place& at) { return at.scene.solution.implicit->quasistatic; },
-       "used only by dynamic problems"},
+       [](const Place& at) { return at.scene.solution.implicit->type != core::ImplicitType::dynamic; },
+       "used only by type=\"dynamic\""},
+      {"Solution/Implicit",
+       {"max_newton", "atol"},
+       [](const Place& at) { return at.scene.solution.implicit->linearised(); },
+       "type=\"semi\" solves one linear system per step, to rtol"},
       {"Solution/TimeStep", {}, steps_are_implicit, "implicit steps take their length from Implicit"},
       {"Solution",
        {"algorithm"},

@@ -2,8 +2,10 @@
 // when a scene is implicit: explicit runs neither load nor start PETSc.
 //
 // Small problems are solved directly (MUMPS); larger ones by GMRES with smoothed aggregation multigrid
-// (GAMG), which is told the rigid motions. All can be replaced by PETSc's own options, after -- on the
-// command line.
+// (GAMG), which is told the rigid motions. The single system of a linearised step is solved by conjugate
+// gradients, preconditioned with the blocks of the nodes; where it turns out not to be positive definite (a
+// law that softens or whose flow is not associated), by GMRES. All can be replaced by PETSc's own options,
+// after -- on the command line.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -119,6 +121,7 @@ class PetscSolver final : public core::NewtonSolver {
     const NewtonOptions& options;
     NewtonReport report;
     std::exception_ptr failure;  ///< must not pass through PETSc
+    bool usable = true;          ///< the last state could be evaluated
     Vec solution_update = nullptr;
   };
   /// f(), whose exceptions are kept.
@@ -137,9 +140,13 @@ class PetscSolver final : public core::NewtonSolver {
   static PetscErrorCode converged(SNES, PetscInt iteration, PetscReal, PetscReal step, PetscReal norm,
                                   SNESConvergedReason* reason, void* context);
 
+  static double relative(double norm, const NonlinearProblem& problem);
   void allocate(NonlinearProblem& problem, Mat* matrix) const;
   static void give_rigid_motions(const NonlinearProblem& problem, Mat matrix);
   void choose_linear_solver(SNES snes, std::int64_t unknowns);
+  void choose_conjugate_gradients(SNES snes, double tolerance);
+  void describe(SNES snes);
+  bool try_otherwise(SNES snes, const NewtonOptions& options) const;
   void refuse_unused_options();
 
   MPI_Comm comm_ = MPI_COMM_NULL;
@@ -161,12 +168,18 @@ PetscErrorCode PetscSolver::residual(SNES, Vec u, Vec r, void* context) {
     check(VecGetArrayRead(u, &in));
     check(VecGetArray(r, &out));
     const auto size = static_cast<std::size_t>(n);
-    if (!solve.problem.residual({in, size}, {out, size})) {
+    solve.usable = solve.problem.residual({in, size}, {out, size});
+    if (!solve.usable) {
       // So large that a line search goes back from here, and still finite when squared.
       for (std::size_t i = 0; i < size; ++i) out[i] = 1e100;
     }
     check(VecRestoreArray(r, &out));
     check(VecRestoreArrayRead(u, &in));
+    if (solve.options.linear) {
+      PetscReal norm = 0;
+      check(VecNorm(r, NORM_2, &norm));
+      solve.report.norms.push_back(relative(norm, solve.problem));
+    }
     solve.report.residual_seconds += MPI_Wtime() - start;
   });
 }
@@ -193,13 +206,18 @@ PetscErrorCode PetscSolver::jacobian(SNES, Vec u, Mat shell, Mat matrix, void* c
   });
 }
 
+/// |r| over the forces that balance in it.
+double PetscSolver::relative(double norm, const NonlinearProblem& problem) {
+  const double scale = problem.force_scale();
+  return norm == 0 ? 0 : scale > 0 ? norm / scale : norm;
+}
+
 /// |r| against the forces that balance in it; or steps that are rounding errors.
 PetscErrorCode PetscSolver::converged(SNES snes, PetscInt iteration, PetscReal size, PetscReal step,
                                       PetscReal norm, SNESConvergedReason* reason, void* context) {
   Solve& solve = *static_cast<Solve*>(context);
   const double scale = solve.problem.force_scale();
-  const double relative = norm == 0 ? 0 : scale > 0 ? norm / scale : norm;
-  solve.report.norms.push_back(relative);
+  solve.report.norms.push_back(relative(norm, solve.problem));
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(norm) || norm >= 1e99)
     *reason = SNES_DIVERGED_FNORM_NAN;
@@ -280,6 +298,51 @@ void PetscSolver::choose_linear_solver(SNES snes, std::int64_t unknowns) {
   SNESType method = nullptr;
   check(SNESGetType(snes, &method));
   chose_full_steps_ = chosen == PETSC_FALSE && std::string(method) == SNESNEWTONLS;
+  describe(snes);
+}
+
+void PetscSolver::choose_conjugate_gradients(SNES snes, double tolerance) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check(SNESSetType(snes, SNESKSPONLY));
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPGetPC(ksp, &pc));
+  check(KSPSetType(ksp, KSPCG));
+  check(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, 10000));
+  check(PCSetType(pc, PCPBJACOBI));
+  check(SNESSetFromOptions(snes));
+  describe(snes);
+}
+
+/// Takes another method after a failure: a line search after full steps, GMRES after conjugate gradients that
+/// met a matrix that is not positive definite. False: there is none, or the user has chosen.
+bool PetscSolver::try_otherwise(SNES snes, const NewtonOptions& options) const {
+  if (!options.linear) {
+    if (!chose_full_steps_) return false;
+    SNESLineSearch search = nullptr;
+    check(SNESGetLineSearch(snes, &search));
+    check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+    return true;
+  }
+  KSP ksp = nullptr;
+  KSPConvergedReason why = KSP_CONVERGED_ITERATING;
+  PetscBool chosen = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, "-ksp_type", &chosen));
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPGetConvergedReason(ksp, &why));
+  if (chosen || (why != KSP_DIVERGED_INDEFINITE_MAT && why != KSP_DIVERGED_INDEFINITE_PC &&
+                 why != KSP_DIVERGED_BREAKDOWN))
+    return false;
+  check(KSPSetType(ksp, KSPGMRES));
+  return true;
+}
+
+/// Keeps the names of the linear solver.
+void PetscSolver::describe(SNES snes) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPGetPC(ksp, &pc));
   KSPType solver = nullptr;
   PCType preconditioner = nullptr;
   check(KSPGetType(ksp, &solver));
@@ -327,7 +390,10 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   check(SNESSetJacobian(snes, options.matrix_free ? action : matrix, matrix, jacobian, &solve));
   check(SNESSetConvergenceTest(snes, converged, &solve, nullptr));
   check(SNESSetTolerances(snes, 0, 0, 0, options.max_iterations, 100 * options.max_iterations));
-  choose_linear_solver(snes, 3 * problem.all_nodes());
+  if (options.linear)
+    choose_conjugate_gradients(snes, options.relative_tolerance);
+  else
+    choose_linear_solver(snes, 3 * problem.all_nodes());
   solve.report.structure_seconds = MPI_Wtime() - start;
 
   PetscErrorCode code = SNESSolve(snes, nullptr, solution);
@@ -335,20 +401,19 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   check(SNESGetConvergedReason(snes, &reason));
   NewtonReport& report = solve.report;
   PetscInt linear = 0, iterations = 0;
-  if (chose_full_steps_ && !solve.failure && (code != 0 || reason <= 0)) {
+  if (!solve.failure && (code != 0 || reason <= 0) && try_otherwise(snes, options)) {
     first_error.clear();
     check(SNESGetLinearSolveIterations(snes, &linear));
     check(SNESGetIterationNumber(snes, &iterations));
     report.linear_iterations = linear;
     report.iterations = static_cast<int>(iterations);
     report.norms.clear();
-    SNESLineSearch search = nullptr;
-    check(SNESGetLineSearch(snes, &search));
-    check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
     start_from_guess();
     code = SNESSolve(snes, nullptr, solution);
     check(SNESGetConvergedReason(snes, &reason));
   }
+  // What the linearisation leaves; and whether the state can be taken at all.
+  if (options.linear && code == 0 && reason > 0) code = SNESComputeFunction(snes, solution, r);
   if (solve.failure) {
     first_error.clear();
     std::rethrow_exception(solve.failure);
@@ -357,12 +422,13 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   check(SNESGetIterationNumber(snes, &iterations));
   report.iterations += static_cast<int>(iterations);
   report.linear_iterations += linear;
-  report.converged = code == 0 && reason > 0;
+  report.converged = code == 0 && reason > 0 && (solve.usable || !options.linear);
   if (code != 0) {
     report.reason = first_error;
     first_error.clear();
   } else if (reason <= 0) {
-    report.reason = fmt::format("Newton's method: {}", SNESConvergedReasons[reason]);
+    report.reason = fmt::format("{}: {}", options.linear ? "linear system" : "Newton's method",
+                                SNESConvergedReasons[reason]);
     if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
       KSP ksp = nullptr;
       KSPConvergedReason why = KSP_CONVERGED_ITERATING;
@@ -370,6 +436,8 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
       check(KSPGetConvergedReason(ksp, &why));
       report.reason += fmt::format(" ({})", KSPConvergedReasons[why]);
     }
+  } else if (!report.converged) {
+    report.reason = "a particle inverts";
   }
   const PetscScalar* from = nullptr;
   check(VecGetArrayRead(solution, &from));

@@ -149,7 +149,7 @@ class Implicit(_mpm.Case):
                 else:
                     self.assertLess(abs(left - 1), 0.15 if steps == 40 else 0.08)
 
-    def wave(self, folder, rule, steps, end, ratio=1.0, shape="QuadraticBSpline"):
+    def wave(self, folder, rule, steps, end, ratio=1.0, shape="QuadraticBSpline", kind="dynamic"):
         """A bar of 16 cells between symmetry planes whose first mode, a standing wave, begins with its largest velocity;
         `steps` in a length of `ratio` periods, up to `end` periods. Velocities, and the part of the energy that is left."""
         length, wave = 16.0, math.sqrt(YOUNG)
@@ -157,7 +157,7 @@ class Implicit(_mpm.Case):
         bar = _mpm.block("bar", (0, 0, 0), (16, 1, 1), (f"{1e-3 * wave!r}*sin({math.pi / length!r}*X)", 0, 0))
         material = _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="0" bq1="0" bq2="0"')
         text = _mpm.scene([bar], _mpm.grid((0, 0, 0), (16, 1, 1), "222222").replace("<Grid>", f'<Grid shape="{shape}">'),
-                          implicit(end * period, "dynamic", ratio * period / steps, rule), [material],
+                          implicit(end * period, kind, ratio * period / steps, rule), [material],
                           f'<PostProcessing time_interval="{end * period!r}" h5part="1" var="velocity_0"/>'
                           f'<Restart time_interval="{0.5 * end * period!r}"/>')
         self.run_in(folder, [self.write(text)])
@@ -200,6 +200,64 @@ class Implicit(_mpm.Case):
         path.write_text(path.read_text().replace("<Implicit", f"<Implicit {alpha(0.5)}"))
         outcome = self.run_in("changed", [_mpm.restarts(self.folder / "trapezoidal")[0], "-rt", path])
         self.assertIn("acceleration_lag_x", outcome.out)
+
+    def test_semi_implicit_steps_are_backward_euler_of_small_strains(self):
+        """One linear system per step, here of steps up to 2.5 explicit ones; strains are 1e-3."""
+        exact, _ = self.wave("fine", "", 2560, 1.1)
+        errors = []
+        for steps in (20, 40, 80):
+            semi, _ = self.wave("semi", "", steps, 1.1, kind="semi")
+            full, _ = self.wave("full", 'rule="backward_euler"', steps, 1.1)
+            self.assertLess(np.abs(semi - full).max(), 2e-3)
+            errors.append(np.abs(semi - exact).max())
+        orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
+        print(f"semi-implicit wave: errors {errors}, orders {orders}")
+        self.assertGreater(orders[-1], 0.75)
+        self.assertRegex((self.folder / "semi" / "case.out").read_text(), "PETSc .*: cg with pbjacobi; .* linear system")
+
+    def fall(self, folder, kind, shape="linear", step=0.5, end=40.0, more="", ranks=1, threads=1, material=SOFT, gravity=12):
+        """A block of four cells' edge between smooth walls comes to rest under its weight, which would shorten it by 2.4 %."""
+        block = _mpm.block("block", (0, 0, 0), (4, 4, 4))
+        text = _mpm.scene([block], _mpm.grid((0, 0, 0), (5, 5, 6), "202022").replace("<Grid>", f'<Grid shape="{shape}">'),
+                          implicit(end, kind, step, more, f'<Gravity ax="0" ay="0" az="{-gravity}"/>'), [material],
+                          f'<PostProcessing time_interval="{end}" h5part="1" var="pres"/><Restart time_interval="{end / 2}"/>')
+        outcome = self.run_in(folder, [self.write(text)], ranks=ranks, threads=threads)
+        return self.state_of(folder)[0], outcome
+
+    def test_semi_implicit_steps_come_to_the_same_rest(self):
+        """Steps of twenty explicit ones; backward Euler damps. What is linearised has no part in the state of rest."""
+        for shape in ("linear", "QuadraticBSpline"):
+            with self.subTest(shape=shape):
+                rest, _ = self.fall("static", "quasistatic", shape, 5.0)
+                fallen, _ = self.fall("semi", "semi", shape)
+                print(f"semi-implicit rest {shape}: {np.abs(fallen - rest).max():.1e}")
+                self.assertLess(np.abs(fallen - rest).max(), 2e-3)
+                # Over the work of the weight; FLIP keeps velocities that no node sees.
+                energy = _mpm.summary(self.folder / "semi")["energy"]
+                self.assertLess(energy["kinetic"], 1e-6 * energy["external_work"])
+
+    def test_semi_implicit_steps_on_ranks_and_from_a_restart(self):
+        first, _ = self.fall("1x1", "semi", end=4.0, more='rtol="1e-11"')
+        for ranks, threads in ((1, 2), (2, 1), (3, 1)):
+            with self.subTest(ranks=ranks, threads=threads):
+                again, _ = self.fall(f"{ranks}x{threads}", "semi", end=4.0, more='rtol="1e-11"', ranks=ranks, threads=threads)
+                self.assertLess(np.abs(again - first).max(), 1e-7)
+        self.run_in("again", [_mpm.restarts(self.folder / "1x1")[0]], ranks=2)
+        self.assertLess(np.abs(self.state_of("again")[0] - first).max(), 1e-7)
+
+    def test_semi_implicit_steps_with_plastic_flow(self):
+        """The elastic stiffness at the start of a step delays the flow, with first order; also where it is not associated. Errors
+        over the block's height, from full backward Euler steps."""
+        soil = _mpm.material("soft", 1.0, 'type="DruckerPrager" Young="1000" Poisson="0.3" qfai="0.3" kfai="4" qpsi="0" ten_f="1"')
+        metal = _mpm.material("soft", 1.0, 'type="IsoHarden" Young="1000" Poisson="0.3" Yield0="10" TangMod="50"')
+        for name, material in (("soil", soil), ("metal", metal)):
+            with self.subTest(name):
+                found = [self.fall(name, kind, "QuadraticBSpline", step=step, end=1.0, more=more, material=material, gravity=4)[0]
+                         for kind, step, more in (("dynamic", 0.02, 'rule="backward_euler"'), ("semi", 0.04, ""), ("semi", 0.01, ""))]
+                errors = [np.abs(place - found[0]).max() / np.ptp(found[0][2]) for place in found[1:]]
+                print(f"semi-implicit {name}: errors {errors}")
+                self.assertLess(errors[1], 0.5 * errors[0])
+                self.assertLess(errors[1], 0.04)
 
     def test_only_what_carries_a_lag_pays_for_it(self):
         for rule, columns in (("", 0), (alpha(1), 0), (alpha(0.9), 1)):

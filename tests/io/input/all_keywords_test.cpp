@@ -302,7 +302,7 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   CHECK(scene.grid.axes[0].cells == 7);
   CHECK(scene.solution.fem->rigid_walls[0].axis == 2);
   CHECK_FALSE(scene.solution.fem->rigid_walls[0].positive_normal);
-  CHECK(scene.solution.implicit->quasistatic);
+  CHECK(scene.solution.implicit->quasistatic());
   CHECK(scene.materials[6].failures.size() == 5);
 }
 

@@ -246,6 +246,10 @@ TEST_CASE("parameters of another rule of implicit steps") {
       "rule=\"generalised_alpha\" of dynamic problems"};
   CHECK(with("spectral_radius='0.5'") == radius);
   CHECK(with("type='quasistatic' spectral_radius='0.5'") == radius);
+  CHECK(with("type='semi' rtol='1e-4' time_step='0.1'").empty());
+  CHECK(with("type='semi' max_newton='5'") ==
+        std::vector<std::string>{"line 25: <Implicit max_newton=\"5\">: no effect: type=\"semi\" solves one "
+                                 "linear system per step, to rtol"});
   CHECK(
       with("rule='generalised_alpha' newmark_beta='0.3'") ==
       std::vector<std::string>{"line 25: <Implicit newmark_beta=\"0.3\">: no effect: used only by Newmark's "
