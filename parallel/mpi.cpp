@@ -6,11 +6,15 @@
 #include <limits>
 #include <utility>
 
+#include <unistd.h>
+
 namespace mpm::parallel {
 
 namespace {
 
 constexpr int tag_all_to_all = 1;
+
+pid_t launcher = 0;  // NOLINT: the parent when MPI started; 0: none
 
 std::string text_of(const char* function, int code) {
   char text[MPI_MAX_ERROR_STRING] = "";
@@ -39,7 +43,10 @@ void abort(int exit_code) {
   std::abort();
 }
 
+bool launcher_ended() { return launcher != 0 && ::getppid() != launcher; }
+
 Environment::Environment(int& argc, char**& argv) {
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) launcher = ::getppid();
   int provided = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
   if (provided < MPI_THREAD_FUNNELED) throw std::runtime_error("this MPI library does not allow threads");

@@ -32,6 +32,10 @@ int count_of(std::size_t n);
 /// Ends every rank of the run at once. For bugs, and for errors that the ranks have not agreed on.
 [[noreturn]] void abort(int exit_code);
 
+/// Whether the program that started the ranks on this machine, mpirun or its daemon, has ended since. Never
+/// without one.
+bool launcher_ended();
+
 /// Owns MPI for the duration of main: constructed first, destroyed last. An exception that leaves its scope
 /// ends every rank, because the other ranks may be waiting for this one.
 class Environment {

@@ -35,6 +35,7 @@
 #include "io/restart/restart.hpp"
 #include "parallel/communication.hpp"
 #include "parallel/implicit/solver_library.hpp"
+#include "parallel/mpi.hpp"
 #include "physics/material/material.hpp"
 
 namespace mpm::apps {
@@ -278,6 +279,13 @@ class Run {
     std::vector<std::string> superseded;
     if (!options_.dry_run) {
       lock_.emplace(file(".lock"), communication_);
+      if (communication_.reductions.any(parallel::launcher_ended())) {
+        // Ranks that outlive a killed mpirun end soon, and may have waited for the run that followed theirs.
+        lock_->release(communication_.reductions);
+        io::together(communication_, [] {
+          throw io::FileError("the run was not started: the mpirun that started its ranks has ended");
+        });
+      }
       elsewhere = continuation_ && goes_on_elsewhere() &&
                   forget_what_is_elsewhere(file(""), *continuation_, communication_);
       io::together(communication_, [&] {

@@ -4,9 +4,12 @@ import contextlib
 import fcntl
 import os
 import pathlib
+import shlex
 import shutil
 import signal
 import struct
+import subprocess
+import time
 
 import _mpm
 import _resume
@@ -75,6 +78,26 @@ class Lock(Case):
         self.assertTrue(self.lock.exists())
         for ranks in (1, 2):
             self.run_in("out", [self.out / "case.pe", "-nsteps", "1"], ranks=ranks)
+
+    def test_ranks_without_their_mpirun_do_not_begin(self):
+        """They have waited for the lock while another run ended, whose files stay as they are. Here a shell takes mpirun's part."""
+        self.run_in("out", [self.write(_resume.scene(0.5, pictures=None, histories=False))])
+        before = _mpm.contents(self.out)
+        errors = self.folder / "errors"
+        command = shlex.join(map(str, _mpm.command([self.case, "--output-dir", self.out], 1, (), "mpm_run")))
+        with self.lock.open("wb") as holder:
+            fcntl.fcntl(holder, fcntl.F_OFD_SETLK, struct.pack("hhqqi0q", fcntl.F_WRLCK, os.SEEK_SET, 0, 1, 0))
+            shell = subprocess.Popen(["sh", "-c", f"{command} > {errors} 2>&1 & echo $!; wait"], stdout=subprocess.PIPE, text=True,
+                                     env={**_mpm.ENVIRONMENT, "OMPI_COMM_WORLD_SIZE": "1"})
+            rank = pathlib.Path("/proc", shell.stdout.readline().strip())
+            self.assertTrue(_resume.wait_for(lambda: errors.exists() and "waiting up to" in errors.read_text(), shell))
+            shell.kill()
+            shell.communicate()
+            self.lock.unlink()
+        while rank.exists():
+            time.sleep(0.05)
+        self.assertIn("the mpirun that started its ranks has ended", errors.read_text())
+        self.assertEqual(_mpm.contents(self.out), before)
 
     def test_killed_run(self):
         process = self.start()
