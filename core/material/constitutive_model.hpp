@@ -18,6 +18,7 @@ struct UpdateOptions {
   double volume_min = 0;                ///< times the volume at reference density; 0: off
   double volume_max = 0;                ///< as volume_min
   bool viscosity_in_wave_speed = true;  ///< false for TimeStep@NotConsiderVisForCp
+  double tension_weight = 1;            ///< of the critical speed of a fluid in tension
   bool keep_strain = false;             ///< accumulate the strain columns (volume update 4, outputs exx..)
   bool artificial_viscosity = true;     ///< false: q = 0, in the stress and in the critical speed
 };

@@ -9,6 +9,7 @@
 #include "core/implicit/time_rule.hpp"
 #include "core/scene/limits.hpp"
 #include "core/step/passes.hpp"
+#include "core/step/speeds.hpp"
 
 namespace mpm::core {
 
@@ -124,6 +125,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     model.options.volume_update = static_cast<int>(VolumeUpdate::mid_point);
     model.options.artificial_viscosity = false;
   }
+  model.options.tension_weight = tension_weight(*scene);
   model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
   model.options.keep_strain =
       solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);

@@ -84,6 +84,7 @@ PressureRules Material::pressure_rules(const core::UpdateOptions& options) const
   return {.reference_density = laws_.reference_density,
           .bq1 = options.artificial_viscosity ? common.bq1 : 0,
           .bq2 = options.artificial_viscosity ? common.bq2 : 0,
+          .tension_weight = options.tension_weight,
           .initial_modulus = initial_modulus_,
           .initial_sound_speed = initial_sound_speed_,
           .constant_sound_speed = common.constant_sound_speed != 0,

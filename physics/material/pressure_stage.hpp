@@ -21,6 +21,7 @@ struct PressureRules {
   double reference_density = 0;
   double bq1 = 0;              ///< quadratic term of the artificial viscosity
   double bq2 = 0;              ///< linear term
+  double tension_weight = 1;   ///< of the critical speed of a fluid in tension
   double initial_modulus = 0;  ///< rho0 c0^2 at rest, the scale of negligible stresses
   double initial_sound_speed = 0;
   bool constant_sound_speed = false;  ///< for the critical step
@@ -94,6 +95,16 @@ T fill_void(double* gap_column, double* volume_column, const T& volume, const Li
   core::store(gap_column, gap - growth);
   core::store(volume_column, volume + growth);
   return core::select(open, 0.0, pressure);
+}
+
+/// A fluid in tension counts faster for the time step, where the shape functions ask for that
+/// (core/step/speeds.hpp). `shear`: 4/3 of the shear modulus.
+template <class T>
+void weigh_tension(core::Batch& batch, int row, const PressureRules& rules, const T& shear, const T& p) {
+  if (rules.tension_weight == 1) return;
+  const T speed = core::load<T>(batch.critical_speed + row);
+  const core::MaskOf<T> torn = (p < -1e-6 * rules.initial_modulus) & (shear <= 0.0);
+  core::store(batch.critical_speed + row, core::select(torn, rules.tension_weight * speed, speed));
 }
 
 /// Speeds for the time step (2-74) and, where the layout has that column, for output. `damping` is Q of all
@@ -218,6 +229,7 @@ template <class T, class Eos>
                               max(modulus, 0.0) * specific_volume);
     store_speeds(batch, block, row, rules, c2,
                  damping_speed(batch, rules, rate, c_before, specific_volume, row));
+    weigh_tension<T>(batch, row, rules, shear, p);
     if (verdict != nullptr) core::store(verdict + row, core::select(undefined, max(sentence, 1.0), sentence));
 
     count_events<T>(batch, undefined, energy, negligible, row);
