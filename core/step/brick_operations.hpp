@@ -144,10 +144,32 @@ template <ShapePolicy S, TransferPolicy T>
   transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
 }
 
+template <ShapePolicy S, TransferPolicy T>
+bool PassesWith<S, T>::follow_grid() const {
+  if (rigid_ != nullptr || loads_.any() || forces_.gravity != Vec3<double>{} || forces_.damping != 0 ||
+      velocity_limit_ < std::numeric_limits<double>::infinity())
+    return false;
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+    if (loads_.motion(static_cast<int>(b)).kind != BodyMotion::Kind::free) return false;
+  return true;
+}
+
 /// v += dv; the work of loads uses the velocities before the update.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place,
-                                         double* block, int used, Scratch& at) {
+[[gnu::always_inline]] inline void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame,
+                                                                       int body, const Place& place,
+                                                                       double* block, int used, Scratch& at) {
+  if (follows_grid_) [[likely]] {
+    const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
+    return take_velocities(frame, place, layout, block, at);
+  }
+  update_velocities_apart(s, frame, body, place, block, used, at);
+}
+
+template <ShapePolicy S, TransferPolicy T>
+[[gnu::noinline]] void PassesWith<S, T>::update_velocities_apart(Slot s, const BrickFrame& frame, int body,
+                                                                 const Place& place, double* block, int used,
+                                                                 Scratch& at) {
   if (rigid(body) >= 0) return;
   if (loads_.act(*model_.grid, s, body))
     at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data());
@@ -174,6 +196,11 @@ void PassesWith<S, T>::update_velocities(Slot s, const BrickFrame& frame, int bo
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at) {
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
+  if (follows_grid_) [[likely]] {
+    motion.move(layout, dt, block);
+    if constexpr (settles) motion.carry(layout, dt, block);
+    return;
+  }
   if (const int number = rigid(body); number >= 0) return rigid_->move(number, layout, block);
   const bool does_work = forces_.damping != 0 || forces_.gravity != Vec3<double>{};
   if (does_work) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.old);

@@ -36,6 +36,7 @@ class PassesWith final : public Passes {
     transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
     loads_.begin_step(model_.clock.time, dt);
     if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, dt);
+    follows_grid_ = follow_grid();
     begin_corrections();
   }
 
@@ -168,8 +169,12 @@ class PassesWith final : public Passes {
   // Operations on a block or a batch.
   void take_velocities(const BrickFrame& frame, const Place& place, const ColumnLayout& layout, double* block,
                        Scratch& at) const;
+  /// Whether all particles take velocities and places from the grid, and nothing else does work on them.
+  bool follow_grid() const;
   void update_velocities(Slot s, const BrickFrame& frame, int body, const Place& place, double* block,
                          int used, Scratch& at);
+  void update_velocities_apart(Slot s, const BrickFrame& frame, int body, const Place& place, double* block,
+                               int used, Scratch& at);
   void move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at);
   void update_domains(int body, const BrickFrame& frame, const ColumnLayout& layout, int b, double* block,
                       int used, Scratch& at);
@@ -220,7 +225,8 @@ class PassesWith final : public Passes {
   T transfer_;
   const Scheme scheme_;
   const int orders_;
-  bool correcting_ = false;  ///< in this step
+  bool correcting_ = false;    ///< in this step
+  bool follows_grid_ = false;  ///< follow_grid() in this step
   TransferStep transfer_step_;
   double dt = 0;           ///< of the current step
   double velocity_limit_;  ///< infinite without LimitVelocity

@@ -55,8 +55,8 @@ class SiteAverages {
     for (int l = 0; l < used; ++l) add(sites[l], volume[l], pressure(layout, block, l));
   }
   /// Gives V sigma of a block the mean pressures.
-  void average_pressures(const int* sites, const ColumnLayout& layout, const double* block,
-                         MappedRows& rows) const {
+  [[gnu::noinline]] void average_pressures(const int* sites, const ColumnLayout& layout, const double* block,
+                                           MappedRows& rows) const {
     const double* volume = block + layout.offset(Column::volume);
     for (int l = 0; l < block_lanes; ++l) {
       const double own = pressure(layout, block, l);
