@@ -57,7 +57,7 @@ double expected_factor(double alpha, double before, const Mat3<double>& l, doubl
   const double growth = alpha < 0 ? d * d : std::max((before - d) / dt, 0.0);
   const double a = (own > 0 ? own / (own + s2) : 0) * growth, width = physics::shock_width * cell;
   const double signal = c + cell * std::max(-d, 0.0);
-  const double local = width * width * a / (signal * signal + width * width * a);
+  const double local = std::min(width * width * a / (signal * signal), 1.0);
   const double old = std::max(alpha, 0.0);
   if (old <= local) return local;
   const double tau = cell / (2 * 0.05 * signal);
@@ -79,7 +79,7 @@ TEST_CASE("the factor is that of the equations", "[physics][viscosity]") {
         uniaxial(rate)};
     for (const Mat3<double>& l : gradients) {
       for (const double alpha : {-1.0, 0.0, 0.4, 1.0}) {
-        // The second: dD/dt at which alpha_loc is about a half. The step is so short that c is that at rest.
+        // The second: dD/dt at which alpha_loc is below 1. The step is so short that c is that at rest.
         for (const double before : {-2 * rate, l.xx + l.yy + l.zz + 1e-2 * dt * c * c / cell / cell, rate}) {
           PointDriver point(*material, {.cell_size = cell});
           point.set(Column::viscosity_factor, alpha);
@@ -101,7 +101,7 @@ TEST_CASE("smooth isentropic compression hardly has viscosity", "[physics][visco
   const double omega = 2 * pi * c / (100 * cell);
   PointDriver wave(*material, {.cell_size = cell});
   CHECK(largest_factor(
-            wave, [&](double t) { return -0.01 * omega * std::sin(omega * t); }, dt, 500) < 0.01);
+            wave, [&](double t) { return -0.01 * omega * std::sin(omega * t); }, dt, 500) < 2e-3);
   // Compression at a constant rate, from the first step on: a fifth of the volume.
   PointDriver steady(*material, {.cell_size = cell});
   CHECK(largest_factor(
@@ -120,7 +120,7 @@ TEST_CASE("a shock has nearly all of its viscosity", "[physics][viscosity]") {
   PointDriver point(*material, {.cell_size = cell});
   const int to_the_middle = static_cast<int>(4 * width / speed / dt);
   largest_factor(point, rate, dt, to_the_middle);
-  CHECK(factor(point) > 0.75);  // where the compression is fastest
+  CHECK(factor(point) > 0.85);  // where the compression is fastest
   const double peak = factor(point);
   // It goes in about ten crossings of a cell by sound.
   largest_factor(point, rate, dt, to_the_middle);
@@ -156,7 +156,7 @@ TEST_CASE("shear takes the viscosity from compression that is slower", "[physics
     point.step({-rate, shear, 0, 0, 0, 0, 0, 0, 0}, dt);
     return factor(point);
   };
-  CHECK(after(0) > 0.2);
+  CHECK(after(0) > 0.15);
   CHECK(after(rate) == Approx(after(0)).epsilon(1e-2));
   CHECK(after(1000 * rate) < 0.01 * after(0));
 }
@@ -185,7 +185,7 @@ TEST_CASE("the factor does not depend on the frame", "[physics][viscosity][objec
   const double spin = 0.1 * c / cell;
   PointDriver point(*material, {.cell_size = cell}), turned(*material, {.cell_size = cell});
   for (int i = 0; i < 50; ++i) {
-    const double rate = 2e-4 * i * c / cell;
+    const double rate = 1e-3 * i * c / cell;
     const Mat3<double> l{-rate, 0.5 * rate, 0, 0.1 * rate, 0.2 * rate, 0, 0.3 * rate, 0, -0.1 * rate};
     const Mat3<double> r = q * l * back;
     point.step(l, dt);

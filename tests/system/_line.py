@@ -16,7 +16,7 @@ WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.6}
 
 
 # shock_width of physics/material/viscosity_limiter.hpp, in cells.
-SHOCK_WIDTH = 10.0
+SHOCK_WIDTH = 6.0
 
 
 class Line:
@@ -113,10 +113,9 @@ class Line:
         grows = squeeze**2 if self.rate_before is None else np.maximum(self.rate_before - rate, 0) / dt
         self.rate_before = rate
         own = (32 * squeeze) ** 2  # 2 (1 - R)^4 D with R = -1; the deviator of uniaxial strain has S : S = 2/3 D^2
-        shock = np.divide(own, own + 2 / 3 * rate**2, out=np.zeros_like(rate), where=squeeze > 0)
+        shock = np.divide(own, own + 2 / 3 * rate**2, out=np.zeros_like(rate), where=own > 0)
         signal = c + self.cell * squeeze
-        strength = (SHOCK_WIDTH * self.cell) ** 2 * shock * grows
-        local = strength / (signal**2 + strength)
+        local = np.minimum((SHOCK_WIDTH * self.cell / signal) ** 2 * shock * grows, 1)
         relaxed = local + (self.alpha - local) / (1 + 0.1 * signal * dt / self.cell)
         self.alpha = np.maximum(local, relaxed)
         return self.alpha
