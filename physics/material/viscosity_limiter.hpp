@@ -2,8 +2,8 @@
 // in shocks and 0 where compression does not grow. L. Cullen and W. Dehnen, Inviscid smoothed particle
 // hydrodynamics, MNRAS 408 (2010) 669, eqs. 13 to 18 with alpha_max = 1. With D = div v and S the deviator of
 // the rate of deformation:
-//   A = xi max(-dD/dt, 0),   xi = (b D)^2/((b D)^2 + S : S),   b = 2 (1 - R)^4,   alpha_loc = min(w^2 A/v^2, 1)
-//   alpha >= alpha_loc,   dalpha/dt = 2 l v (alpha_loc - alpha)/h,   l = 0.05
+//   A = xi max(-dD/dt, 0),   xi = (b D)^2/((b D)^2 + S : S),   b = 2 (1 - R)^4
+//   alpha_loc = min(w^2 A/v^2, 1) <= alpha,   dalpha/dt = 2 l v (alpha_loc - alpha)/h,   l = 0.05
 // Theirs is alpha_loc = w^2 A/(v^2 + w^2 A), which is far from 1 in most shocks; the minimum is that of the
 // code Phantom (D. J. Price et al., PASA 35 (2018) e031). Of the particle alone: R = sign D where theirs is a
 // mean over neighbours, and dD/dt is the difference of two steps. h is the cell size, v = c + h max(-D, 0),
