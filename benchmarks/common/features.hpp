@@ -46,6 +46,8 @@ inline std::vector<Feature> features() {
   add("material", "heating (SpecHeat)", "none", {.strength = cold},
       {.strength = iso_harden_and(R"(SpecHeat="383")")});
   add("material", "artificial viscosity", "bq1 = bq2 = 0", {.strength = still}, {.strength = cold});
+  add("material", "artificial viscosity in shocks only", "in all compression", {.strength = cold},
+      {.strength = iso_harden_and(R"(limiter="shock")")});
   add("material", "first sound speed kept", "new each step", {.strength = cold},
       {.strength = iso_harden_and(R"(VarSoundspeed="1")")});
   const std::string never = R"(<FailureModel type="PlaStrain" epmax="1e9" Erosion="{}"/>)";
@@ -157,7 +159,7 @@ inline std::vector<Feature> spelled_out() {
       off("RandomFailure 0", {.failure = R"(<RandomFailure enable="0"/>)"}),
       off("material attributes at their defaults",
           {.strength = iso_harden_and(R"(FailedType="0" FailViscosity="0" VarSoundspeed="0" )"
-                                      R"(TemperatureCoefficient="0" bq1="1.5" bq2="0.06")")}),
+                                      R"(TemperatureCoefficient="0" bq1="1.5" bq2="0.06" limiter="none")")}),
       off("Contact 0", {.more = R"(<Contact enable="0"/>)"}),
       off("DomainDecomposition", {.more = R"(<DomainDecomposition method="metis"/>)"}),
       off("outputs that need no column", {.output = showing("pres|epef|seqv|SigmaX|velocity_0")}),

@@ -119,6 +119,9 @@ enum class Column : int {
   acceleration_lag_x,
   acceleration_lag_y,
   acceleration_lag_z,
+  // Of the limited artificial viscosity (physics/material/viscosity_limiter.hpp).
+  viscosity_factor,
+  velocity_divergence,  ///< of the last step
   history_0,
   history_1,
   history_2,
@@ -238,6 +241,8 @@ inline constexpr std::array<ColumnInfo, column_count> column_table{{
     {"acceleration_lag_x", "length/time^3"},
     {"acceleration_lag_y", "length/time^3"},
     {"acceleration_lag_z", "length/time^3"},
+    {"viscosity_factor", "1"},
+    {"velocity_divergence", "1/time"},
     {"history_0", "1"},
     {"history_1", "1"},
     {"history_2", "1"},

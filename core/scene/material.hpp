@@ -49,9 +49,13 @@ struct RandomFailureInput {
   bool random_damage = false;  ///< the damage threshold scatters too
 };
 
+/// Where the artificial viscosity acts: in all compression, or in shocks only.
+enum class ViscosityLimiter { none, shock };
+
 struct MaterialInput {
   std::string name;
   double reference_density = 0;  ///< mass/length^3, > 0
+  ViscosityLimiter limiter = ViscosityLimiter::none;
   LawInput strength;
   std::optional<LawInput> eos;
   std::vector<FailureInput> failures;  ///< at most ten; `none` adds no entry

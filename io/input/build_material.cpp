@@ -108,7 +108,10 @@ std::vector<core::MaterialInput> build_materials(const Node& root, const BuildCo
     material.source = context.at(node);
     if (const auto density = node.child("ReferenceDensity"))
       material.reference_density = density->real("value");
-    if (const auto strength = node.child("StrengthModel")) material.strength = build_law(*strength, context);
+    if (const auto strength = node.child("StrengthModel")) {
+      material.strength = build_law(*strength, context);
+      if (strength->word("limiter") == "shock") material.limiter = core::ViscosityLimiter::shock;
+    }
     if (const auto eos = node.child("EquationOfState")) material.eos = build_law(*eos, context);
     material.failures = build_failures(node, context);
     material.random_failure = build_random_failure(node);

@@ -26,10 +26,20 @@ void echo_header(XmlWriter& w, const core::HeaderInput& header) {
   if (!header.mass_unit.empty()) w.text("mass", header.mass_unit);
 }
 
-void echo_law(XmlWriter& w, std::string_view name, const core::LawInput& law) {
-  const auto scope = w.element(name);
+void echo_values(XmlWriter& w, const core::LawInput& law) {
   w.text("type", law.type);
   for (const auto& [attribute, value] : law.values) w.number(attribute, value);
+}
+
+void echo_strength(XmlWriter& w, const core::MaterialInput& material) {
+  const auto scope = w.element("StrengthModel");
+  echo_values(w, material.strength);
+  w.text("limiter", material.limiter == core::ViscosityLimiter::shock ? "shock" : "none");
+}
+
+void echo_eos(XmlWriter& w, const core::LawInput& law) {
+  const auto scope = w.element("EquationOfState");
+  echo_values(w, law);
 }
 
 void echo_failure(XmlWriter& w, const core::FailureInput& failure) {
@@ -46,8 +56,8 @@ void echo_material(XmlWriter& w, const core::MaterialInput& material) {
     const auto density = w.element("ReferenceDensity");
     w.number("value", material.reference_density);
   }
-  echo_law(w, "StrengthModel", material.strength);
-  if (material.eos) echo_law(w, "EquationOfState", *material.eos);
+  echo_strength(w, material);
+  if (material.eos) echo_eos(w, *material.eos);
   for (const core::FailureInput& failure : material.failures) echo_failure(w, failure);
   const core::RandomFailureInput& random = material.random_failure;
   if (!random.enable) return;

@@ -207,6 +207,17 @@ const std::vector<Rule>& rules() {
          return type == "HighExpBurn" || (type == "Null" && at.material->eos);
        },
        "the equation of state determines the stiffness"},
+      {"Material/StrengthModel",
+       {"limiter"},
+       [](const Place& at) {
+         return !rigid(*at.material) && at.strength().value_or("bq1", 0) == 0 &&
+                at.strength().value_or("bq2", 0) == 0;
+       },
+       "bq1 and bq2 are 0: there is no artificial viscosity to limit"},
+      {"Material/StrengthModel",
+       {"limiter"},
+       [](const Place& at) { return !rigid(*at.material) && steps_are_implicit(at); },
+       "implicit steps have no artificial viscosity"},
       {"Material/EquationOfState",
        {"c0", "c1", "c2", "c3", "c4", "c5", "c6"},
        [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 1; },

@@ -83,6 +83,7 @@ std::unique_ptr<Material> make_material(const core::MaterialInput& input,
   if (input.eos) read_parameters(laws.common_eos, *input.eos);
   check_expansion(input, laws);
   laws.random_failure = input.random_failure;
+  laws.limiter = input.limiter;
   if (laws.eos->traits().solid_has_sound_speed) laws.common_eos.c0 = 0;  // not that of the porous material
   for (const core::FailureInput& failure : input.failures)
     laws.failures.push_back({registry.make_failure(failure, input.reference_density), failure.erosion});

@@ -69,8 +69,14 @@ core::ColumnSet Material::columns(const core::UpdateOptions& options) const {
   if (expands_) set.add({Column::temperature, Column::thermal_strain});
   if (laws_.common.conductivity > 0) set.add(Column::temperature);
   if (scatters_) set.add(Column::threshold_factor);
+  if (limits_viscosity(options)) set.add({Column::viscosity_factor, Column::velocity_divergence});
   if (options.keep_strain || options.volume_update == 4) set.add_range(Column::strain_xx, 6);
   return set;
+}
+
+bool Material::limits_viscosity(const core::UpdateOptions& options) const {
+  const bool viscosity = options.artificial_viscosity && (laws_.common.bq1 > 0 || laws_.common.bq2 > 0);
+  return viscosity && laws_.limiter == core::ViscosityLimiter::shock && !strength_traits_.rigid;
 }
 
 StrengthRules Material::strength_rules() const {
@@ -84,6 +90,7 @@ PressureRules Material::pressure_rules(const core::UpdateOptions& options) const
   return {.reference_density = laws_.reference_density,
           .bq1 = options.artificial_viscosity ? common.bq1 : 0,
           .bq2 = options.artificial_viscosity ? common.bq2 : 0,
+          .limited = limits_viscosity(options),
           .tension_weight = options.tension_weight,
           .initial_modulus = initial_modulus_,
           .initial_sound_speed = initial_sound_speed_,
@@ -145,6 +152,10 @@ void Material::initialise(core::Batch& batch, const core::UpdateOptions& options
       for (const Column c : {Column::f_xx, Column::f_yy, Column::f_zz})
         std::fill_n(batch.column(c, b), core::block_lanes, 1.0);
     }
+  }
+  if (limits_viscosity(options)) {
+    for (int b = 0; b < batch.blocks; ++b)
+      std::fill_n(batch.column(Column::viscosity_factor, b), core::block_lanes, factor_unknown);
   }
   const StartRules rules{pressure_rules(options), laws_.common.room_temperature, laws_.common.specific_heat,
                          laws_.common_eos.e0};

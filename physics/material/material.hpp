@@ -36,6 +36,7 @@ class Material final : public core::ConstitutiveModel {
     std::unique_ptr<EosLaw> eos;
     std::vector<Failure> failures;
     core::RandomFailureInput random_failure;
+    core::ViscosityLimiter limiter = core::ViscosityLimiter::none;
   };
   explicit Material(Laws laws);
 
@@ -70,6 +71,7 @@ class Material final : public core::ConstitutiveModel {
   void differentiate_update(core::Batch& batch, const core::UpdateOptions& options) const;
   StrengthRules strength_rules() const;
   PressureRules pressure_rules(const core::UpdateOptions& options) const;
+  bool limits_viscosity(const core::UpdateOptions& options) const;
   void add_failures_of_damage();
   void draw_thresholds(core::Batch& batch) const;
 

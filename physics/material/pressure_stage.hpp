@@ -13,6 +13,7 @@
 #include "physics/history.hpp"
 #include "physics/material/failed_state.hpp"
 #include "physics/material/vectors.hpp"
+#include "physics/material/viscosity_limiter.hpp"
 #include "physics/strength/tension.hpp"
 
 namespace mpm::physics {
@@ -21,6 +22,7 @@ struct PressureRules {
   double reference_density = 0;
   double bq1 = 0;              ///< quadratic term of the artificial viscosity
   double bq2 = 0;              ///< linear term
+  bool limited = false;        ///< both act in shocks only (viscosity_limiter.hpp)
   double tension_weight = 1;   ///< of the critical speed of a fluid in tension
   double initial_modulus = 0;  ///< rho0 c0^2 at rest, the scale of negligible stresses
   double initial_sound_speed = 0;
@@ -167,6 +169,9 @@ template <class T, class Eos>
   const int pressure_at = layout.offset(Column::pressure), q_at = layout.offset(Column::viscous_pressure);
   const int energy_at = layout.offset(Column::internal_energy), failed_at = layout.offset(Column::failed);
   const int void_at = layout.offset(Column::void_volume);
+  const int factor_at = layout.offset(Column::viscosity_factor);
+  const int divergence_at = layout.offset(Column::velocity_divergence);
+  const bool limited = rules.limited && batch.cell_size > 0;
   const double length = batch.cell_size, inverse_dt = 1 / batch.dt, rho0 = rules.reference_density;
   const double negligible = -1e-12 * rules.initial_modulus;
 
@@ -202,7 +207,12 @@ template <class T, class Eos>
     const T modulus_before =
         shear + isentropic_modulus(line, now.compression, now.relative_volume, old_p, old_energy);
     const T c_before = sqrt(max(modulus_before, 0.0) * specific_volume);
-    const T q = (length * now.density * rate) * (rules.bq1 * length * rate + rules.bq2 * c_before);
+    T acting_rate = rate;
+    if (limited) {
+      acting_rate =
+          rate * limit_viscosity<T>(batch, row, block + factor_at, block + divergence_at, tr, c_before);
+    }
+    const T q = (length * now.density * acting_rate) * (rules.bq1 * length * rate + rules.bq2 * c_before);
 
     const T work = 0.5 * (volume + old_volume) * per_v0 * core::load<T>(batch.deviatoric_work + row);
     const T energy_star = old_energy - h * (old_p + core::load<T>(block + q_at) + q) + work;

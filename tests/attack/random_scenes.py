@@ -57,6 +57,8 @@ def scene(number, seed):
     lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-1"/></Detonation>' if "TNT" in laws else ""
     solution = _mpm.solution(1.0, scheme, factor, transfer, more)
     materials = [bits_laws.material(name) for name in laws]
+    if number % 4 == 1:
+        materials = [text.replace("<StrengthModel ", '<StrengthModel limiter="shock" ') for text in materials]
     return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'), solution, materials, OUTPUT, lit)
 
 

@@ -2,7 +2,9 @@
 
 One material: no strength, Mie-Grueneisen pressure, artificial viscosity. A wall without velocity at x = 0. Nothing is
 shared with the solver; the equations are thesis 2-26 to 2-43 (step), 2-57, 2-69, 2-73, 2-74 (viscosity, time step)
-and 2-82 to 2-92 (energy and pressure together), in the form that physics/material/pressure_stage.hpp states."""
+and 2-82 to 2-92 (energy and pressure together), in the form that physics/material/pressure_stage.hpp states; the limiter
+of the viscosity is that of L. Cullen and W. Dehnen (MNRAS 408 (2010) 669, eqs. 13 to 18), as viscosity_limiter.hpp adapts
+it."""
 
 import numpy as np
 
@@ -13,8 +15,12 @@ USL_MASS_FLOOR = 0.2
 WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.6}
 
 
+# shock_width of physics/material/viscosity_limiter.hpp, in cells.
+SHOCK_WIDTH = 6.0
+
+
 class Line:
-    def __init__(self, length, cell, split, speed, algorithm, factor, density, c0, s1, gamma0, bq1, bq2):
+    def __init__(self, length, cell, split, speed, algorithm, factor, density, c0, s1, gamma0, bq1, bq2, limited=False):
         self.cell, self.algorithm, self.factor = cell, algorithm, factor
         self.density, self.c0, self.s1, self.gamma0, self.bq1, self.bq2 = density, c0, s1, gamma0, bq1, bq2
         count = round(length / cell) * split
@@ -25,6 +31,7 @@ class Line:
         self.first_volume = np.full(count, size)
         self.volume = self.first_volume.copy()
         self.p, self.q, self.energy = np.zeros(count), np.zeros(count), np.zeros(count)
+        self.limited, self.alpha, self.rate_before = limited, np.zeros(count), None
         self.nodes = round(length / cell) + 4
         self.wave_limit = WAVE_LIMIT[algorithm]
         self.critical = cell / (c0 / self.wave_limit + abs(speed))
@@ -91,12 +98,27 @@ class Line:
         squeeze = np.maximum(-rate, 0)
         c = sound(self.p)
         q = rho * self.cell * squeeze * (self.bq1 * self.cell * squeeze + self.bq2 * c)
+        if self.limited:
+            q *= self.limit(rate, c, dt)
         star = self.energy - h * (self.p + self.q + q)
         self.p = (a + self.gamma0 * star) / (1 + self.gamma0 * h)
         self.energy = star - h * self.p
         self.q, self.volume = q, volume
         damping = np.where(squeeze > 0, self.bq2 * c + self.bq1 * self.cell * squeeze, 0)
         return (damping + np.sqrt(damping**2 + sound(self.p) ** 2)) / self.wave_limit
+
+    def limit(self, rate, c, dt):
+        """The factor alpha of the viscosity: that of the switch where it is larger, else on its way down to it."""
+        squeeze = np.maximum(-rate, 0)
+        grows = squeeze**2 if self.rate_before is None else np.maximum(self.rate_before - rate, 0) / dt
+        self.rate_before = rate
+        own = (32 * squeeze) ** 2  # 2 (1 - R)^4 D with R = -1; the deviator of uniaxial strain has S : S = 2/3 D^2
+        shock = np.divide(own, own + 2 / 3 * rate**2, out=np.zeros_like(rate), where=own > 0)
+        signal = c + self.cell * squeeze
+        local = np.minimum((SHOCK_WIDTH * self.cell / signal) ** 2 * shock * grows, 1)
+        relaxed = local + (self.alpha - local) / (1 + 0.1 * signal * dt / self.cell)
+        self.alpha = np.maximum(local, relaxed)
+        return self.alpha
 
     def cold(self, mu):
         """p = a + gamma0 E: a and da/dmu. In tension a is linear."""

@@ -21,7 +21,7 @@ using namespace mpm;
 const std::string common =
     " bq1='1.5' bq2='0.06' FailedType='2' TensileCutoff='-1' FailViscosity='0.1' VarSoundspeed='1' "
     "FailureDamageThreshold='0.9' Young='2e5' Poisson='0.3' TemperatureCoefficient='1e-5' roomt='300' "
-    "CoefficientOfThermalConductivity='0.1' SpecHeat='400' ";
+    "CoefficientOfThermalConductivity='0.1' SpecHeat='400' limiter='shock' ";
 const std::string plastic = common + "Yield0='200' PlasticWorkCoefficient='0.9' ";
 
 /// A material with the given models, named m0, m1, ...
@@ -295,6 +295,8 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   CHECK(io::to_text(io::parse_scene(echo, "all.xmp", physics::catalogue(), options)) == echo);
 
   CHECK(scene.materials.size() == 28);
+  CHECK(scene.materials[0].limiter == core::ViscosityLimiter::shock);
+  CHECK(scene.materials[7].limiter == core::ViscosityLimiter::none);  // unsaid
   CHECK(scene.components[0].bodies.size() == 24);
   CHECK(std::get<core::BoolGeometry>(scene.components[0].bodies[2].geometry).subtrahend.body == 1);
   CHECK(scene.detonations.size() == 2);

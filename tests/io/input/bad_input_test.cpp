@@ -208,8 +208,13 @@ TEST_CASE("laws are checked by their own tables") {
        {"line 6: <StrengthModel D1=\"1000\">: not available with type IsoHarden, only with JohnsonCook"}},
       {"Poisson=\".35\"",
        "Poisson=\".35\" SpecHeat=\"1\"",
-       {"line 6: <StrengthModel SpecHeat=\"1\">: no such attribute; expected type, Young, Poisson, Yield0, "
-        "TangMod, bq1, FailedType"}},
+       {"line 6: <StrengthModel SpecHeat=\"1\">: no such attribute; expected type, limiter, Young, Poisson, "
+        "Yield0, TangMod, bq1, FailedType"}},
+      {"Poisson=\".35\"",
+       "Poisson=\".35\" limiter=\"shocks\"",
+       {"line 6: <StrengthModel limiter=\"shocks\">: expected one of none, shock; did you mean 'shock'?"}},
+      {"Poisson=\".35\"", "Poisson=\".35\" limiter=\"none\"", {"ok"}},
+      {"Poisson=\".35\"", "Poisson=\".35\" limiter=\"shock\"", {"ok"}},
       {"type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
        "type=\"JohnsonCook\" Young=\"1\" Poisson=\".3\" D1=\"1\"",
        {"line 6: <StrengthModel>: D1, D2 must be given together or not at all; missing: D2"}},

@@ -1,5 +1,7 @@
 // What has no effect says so: one input per setting, with the note that it must bring.
 
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
@@ -82,6 +84,11 @@ TEST_CASE("settings of materials without effect") {
       {law, room,
        "line 6: <StrengthModel roomt=\"300\">: no effect: there is no temperature without SpecHeat"},
       {law, warm, ""},
+      {law, with("limiter='shock' bq1='0' bq2='0'"),
+       "line 6: <StrengthModel limiter=\"shock\">: no effect: bq1 and bq2 are 0: there is no artificial "
+       "viscosity to limit"},
+      {law, with("limiter='shock' bq1='0'"), ""},
+      {law, with("limiter='none' bq1='0' bq2='0'"), ""},
       {law, with("FailedType='0' FailureDamageThreshold='1.0'"), ""},  // the defaults ask for nothing
       {"<StrengthModel type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
        "<StrengthModel type='IsoElastic' Young='1' Poisson='0.3' SpecHeat='1'",
@@ -222,6 +229,10 @@ TEST_CASE("rigid bodies by themselves") {
         std::vector<std::string>{
             "line 6: <StrengthModel>: bq1, VarSoundspeed have no effect: a rigid body has neither stress nor "
             "heat"});
+  CHECK(
+      notes_of(replaced(rigid_bar(), rigid_law, "<StrengthModel type='Rigid' limiter='shock'")) ==
+      std::vector<std::string>{
+          "line 6: <StrengthModel limiter=\"shock\">: no effect: a rigid body has neither stress nor heat"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<LimitVelocity max='1'/><EndTime")) ==
         std::vector<std::string>{"line 25: <LimitVelocity>: no effect: it does not apply to rigid bodies"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<DynamicRelax damping='1'/><EndTime")) ==
@@ -254,6 +265,17 @@ TEST_CASE("parameters of another rule of implicit steps") {
       with("rule='generalised_alpha' newmark_beta='0.3'") ==
       std::vector<std::string>{"line 25: <Implicit newmark_beta=\"0.3\">: no effect: used only by Newmark's "
                                "rule of dynamic problems"});
+}
+
+TEST_CASE("the limiter of the viscosity with implicit steps") {
+  const std::string limited = replaced(bar, law, std::string(law) + " limiter='shock'");
+  CHECK(notes_of(limited).empty());
+  std::string text = replaced(limited, "<Solution>", "<Solution Integration='impl'>");
+  text = replaced(text, "<EndTime", "<Implicit time_step='0.01'/><EndTime");
+  const std::vector<std::string> notes = notes_of(text);
+  CHECK(std::ranges::count(notes,
+                           "line 6: <StrengthModel limiter=\"shock\">: no effect: implicit steps have no "
+                           "artificial viscosity") == 1);
 }
 
 /// A second body beside the rod, of the rod's component or of one of its own.

@@ -19,7 +19,8 @@ TEST_CASE("a scene holds what the input states") {
   CHECK(cu.reference_density == 8.93e-3);
   CHECK(cu.strength.type == "IsoHarden");
   CHECK(cu.strength.at("Poisson") == 0.35);
-  CHECK(cu.strength.at("bq1") == 1.5);       // default of the table
+  CHECK(cu.strength.at("bq1") == 1.5);  // default of the table
+  CHECK(cu.limiter == core::ViscosityLimiter::none);
   CHECK_FALSE(cu.strength.has("SpecHeat"));  // neither given nor with a default
   CHECK(cu.strength.value_or("SpecHeat", 7) == 7);
   REQUIRE(cu.eos.has_value());
@@ -94,6 +95,14 @@ TEST_CASE("a program's defaults are the input's") {
   made.solution.end_time = 1;
   made.contact = {};
   CHECK(io::to_text(made) == io::to_text(read));
+}
+
+TEST_CASE("the limiter of the artificial viscosity") {
+  const std::string text = replaced(bar, "TangMod=\"100\"", "TangMod=\"100\" limiter=\"shock\"");
+  const core::Scene scene = test::parse(text);
+  CHECK(scene.materials[0].limiter == core::ViscosityLimiter::shock);
+  CHECK_FALSE(scene.materials[0].strength.has("limiter"));  // a word, no value of the law
+  CHECK(io::to_text(scene).find("limiter=\"shock\"") != std::string::npos);
 }
 
 TEST_CASE("settings") {

@@ -1,0 +1,234 @@
+"""The artificial viscosity in all compression, limited to shocks (limiter="shock"), and off: errors, heat and run time.
+
+  viscosity.py              two shocks with linear functions and a quadratic spline, and a smooth wave with the spline; some minutes
+  viscosity.py --quick      coarse, the shocks with linear functions only; seconds
+  viscosity.py --docs       also writes the table into docs/methods.md
+
+Sod's tube and the plane shock in copper are those of accuracy.py and tests/validation; the wave is the first mode of an
+ideal gas between two walls, without a shock, against a Lagrangian solution in finite differences. Heat: the energy of the
+particles above that of the isentrope of their start at the same density, which without shocks is what viscosity takes."""
+
+import argparse
+import dataclasses
+import json
+import pathlib
+import shutil
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+import numpy as np
+from common import results, timed_run
+
+import methods
+import runner
+from case import Point
+from cases import riemann, support
+
+import _blast
+import _cases
+import _line
+
+GAMMA = 1.4
+VISCOSITIES = {"all compression": {}, "shocks": {"limiter": "shock"}, "off": {"bq1": "0", "bq2": "0"}}
+PAGE = results.ROOT / "docs/methods.md"
+
+
+def mean_error(x, found, exact, scale):
+    """Mean absolute error over the length, over `scale`."""
+    length = np.abs(np.gradient(x))
+    return (np.abs(found - exact) * length).sum() / length.sum() / scale
+
+
+def gas_heat(mass, pressure, density, isentrope):
+    """Energy above that of p = isentrope rho^gamma."""
+    return (mass * (pressure / density - isentrope * density ** (GAMMA - 1))).sum() / (GAMMA - 1)
+
+
+@dataclasses.dataclass(frozen=True)
+class Sod:
+    cells: int
+
+    name = "Sod's tube"
+
+    def point(self):
+        return Point("riemann", "sod", None, self.cells, 2, 0.4)
+
+    def text(self):
+        return riemann.CASE.scene(self.point())
+
+    def measure(self, folder):
+        found, states = riemann.CASE.measure(self.point(), folder), _cases.States(folder)
+        tube, cell = riemann.TUBES["sod"], riemann.LENGTH / self.cells
+        left = states.column("x", 0) < 0.5 * riemann.LENGTH
+        start = [np.where(left, tube.left[i], tube.right[i]) for i in (0, 2)]
+        mass = start[0] * (cell / 2) ** 3
+        heat = gas_heat(mass, states.column("pres"), states.column("density"), start[1] / start[0] ** GAMMA) / cell**2
+        # Of the exact solution: the gas between the contact, which moves at the largest speed, and the shock.
+        way = np.linspace(0, 0.5 / states.times[-1], 200001)
+        exact = _blast.riemann(tube.left, tube.right, GAMMA)(way)
+        behind = way > exact["v"].max()
+        by_shock = gas_heat(exact["rho"][behind] * (way[1] * states.times[-1]), exact["p"][behind], exact["rho"][behind],
+                            tube.right[2] / tube.right[0] ** GAMMA)
+        return {"density": found["density"], "velocity": found["velocity"], "overshoot": found["overshoot"],
+                "heat": heat / by_shock - 1}
+
+
+class Isentrope:
+    """Energy per mass over density of copper compressed without heat from its reference state."""
+
+    def __init__(self):
+        eos = _line.Line(1, 1.0, 1, 0.0, "MUSL", 1.0, bq1=0, bq2=0, **_cases.COPPER)
+        volume = np.linspace(1.3, 0.5, 80001)
+        step = volume[1] - volume[0]
+        one = np.argmin(np.abs(volume - 1))
+        cold, energy = eos.cold(1 / volume - 1)[0], np.zeros_like(volume)
+        for at in [*range(one, len(volume) - 1), *range(one, 0, -1)]:
+            to, h = (at + 1, step) if at >= one else (at - 1, -step)
+            # dE = -(cold + gamma0 E) dV by the trapezoidal rule
+            a, b = 0.5 * h * (cold[at] + cold[to]), 0.5 * h * eos.gamma0
+            energy[to] = (energy[at] * (1 - b) - a) / (1 + b)
+        density = eos.density / volume
+        self.of = lambda rho: np.interp(rho, density, energy / eos.density)
+
+
+@dataclasses.dataclass(frozen=True)
+class Copper:
+    cells: int
+
+    name = "plane shock in copper, 1 km/s"
+
+    def shock(self):
+        return _cases.Shock(1000.0, cell=100.0 / self.cells, split=4, factor=0.4)
+
+    def text(self):
+        return self.shock().text()
+
+    def measure(self, folder):
+        shock, states = self.shock(), _cases.States(folder)
+        found, exact, at = shock.measure(folder), shock.exact(), shock.profiles(states)
+        front = exact["Us"] * states.times[-1]
+        behind, isentrope = at["X"] < front, Isentrope()
+        rho = np.where(behind, exact["rho"], _cases.COPPER["density"])
+        v = np.where(behind, 0, -shock.speed)
+        layer = at["X"][1] - at["X"][0]
+        heat = layer * (at["e"] - isentrope.of(at["rho"])).sum()
+        by_shock = front * (exact["e"] - isentrope.of(exact["rho"]))
+        return {"density": mean_error(at["X"], at["rho"], rho, exact["rho"]),
+                "velocity": mean_error(at["X"], at["v"], v, shock.speed),
+                "overshoot": found["overshoot"], "heat": heat / by_shock - 1}
+
+
+@dataclasses.dataclass(frozen=True)
+class Wave:
+    """v = U sin(pi x) between walls at 0 and 1, p = rho = 1: U is 5 % of the sound speed; it ends after 1.125 periods, long
+    before a shock forms."""
+
+    cells: int
+
+    name = "smooth wave in a gas"
+    sound, speed = GAMMA**0.5, 0.05 * GAMMA**0.5
+    end = 1.125 * 2 / sound
+
+    def text(self):
+        h, g = 1 / self.cells, GAMMA - 1
+        equation = f'<EquationOfState type="Polynomial" c0="0" c1="0" c2="0" c3="0" c4="{g!r}" c5="{g!r}" c6="0" E0="{1 / g!r}"/>'
+        gas = support.block("gas", (0, 0, 0), (1, h, h), h / 2, "gas", f'<InitialVelocity vx="{self.speed!r}*sin(pi*x)" vy="0" vz="0"/>')
+        return support.scene([gas], support.grid((0, 0, 0), (1, h, h), "222222", h), support.solution(self.end, 0.4),
+                             [support.material("gas", 1.0, 'type="Null"', equation)], support.pictures(self.end, ["pres", "density"]))
+
+    def exact(self, zones=2000):
+        """Places of zones and their density, and velocities between them: no viscosity, second order."""
+        x = np.linspace(0, 1, zones + 1)
+        v, mass = self.speed * np.sin(np.pi * x), 1 / zones
+        steps = round(self.end / (0.4 * mass / self.sound))
+        dt = self.end / steps
+
+        def kick(by):
+            v[1:-1] -= by / mass * np.diff((mass / np.diff(x)) ** GAMMA)
+
+        kick(dt / 2)
+        for _ in range(steps):
+            x += dt * v
+            kick(dt)
+        kick(-dt / 2)
+        return 0.5 * (x[1:] + x[:-1]), mass / np.diff(x), x, v
+
+    def measure(self, folder):
+        states = _cases.States(folder)
+        layer = np.rint(states.column("x", 0) * 2 * self.cells - 0.5).astype(int)
+        x, rho, p, v = (np.bincount(layer, states.column(name)) / np.bincount(layer)
+                        for name in ("x", "density", "pres", "velocity_0"))
+        middles, density, nodes, velocity = self.exact()
+        heat = gas_heat(0.5 / self.cells, p, rho, 1.0)
+        return {"density": mean_error(x, rho, np.interp(x, middles, density), np.abs(density - 1).max()),
+                "velocity": mean_error(x, v, np.interp(x, nodes, velocity), np.abs(velocity).max()),
+                "overshoot": np.abs(v).max() / np.abs(velocity).max() - 1, "heat": heat / (self.speed**2 / 4)}
+
+
+def run(case, method, viscosity, folder):
+    """Errors and seconds of the loop, on one core."""
+    root = ElementTree.fromstring(case.text().encode())
+    methods.choose(root, method)
+    for law in root.iter("StrengthModel"):
+        for name, value in VISCOSITIES[viscosity].items():
+            law.set(name, value)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    file = folder / "case.xmp"
+    file.write_text(ElementTree.tostring(root, encoding="unicode"))
+    code, said, processor, wall = timed_run.execute(file, folder, runner.LIMIT)
+    if code != 0:
+        raise SystemExit(f"{file}: mpm_run ended with exit code {code}\n{said}")
+    summary = json.loads((folder / "case.summary.json").read_text())
+    return {**case.measure(folder), "steps": summary["steps"], "seconds": runner.loop_seconds(summary, processor, wall)}
+
+
+def measure(case, method, repeats, folder):
+    """A row per viscosity. The runs take turns, and of their times the shortest counts."""
+    rows = {}
+    for _ in range(repeats):
+        for viscosity in VISCOSITIES:
+            found = run(case, method, viscosity, folder)
+            before = rows.get(viscosity, found)
+            rows[viscosity] = found | {"seconds": min(found["seconds"], before["seconds"])}
+    step = {viscosity: row["seconds"] / row["steps"] for viscosity, row in rows.items()}
+    return [{"case": case.name, "cells": case.cells, "shape": method.shape, "viscosity": viscosity, **row,
+             "cost": step[viscosity] / step["all compression"] - 1} for viscosity, row in rows.items()]
+
+
+def table(rows):
+    columns = {"case": (lambda r: f"{r['case']}, {r['cells']} cells", ""), "shape": (lambda r: f"`{r['shape']}`", ""),
+               "viscosity in": (lambda r: r["viscosity"], "")}
+    for name, heading, how in (("density", "L1 error of density, %", ".2f"), ("velocity", "L1 error of velocity, %", ".2f"),
+                               ("overshoot", "overshoot, %", "+.1f"), ("heat", "heat too much, %", "+.2f")):
+        columns[heading] = (lambda r, name=name: 100 * r[name], how)
+    return results.markdown(rows, columns)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="coarse")
+    parser.add_argument("--docs", action="store_true", help="write the table into docs/methods.md")
+    parser.add_argument("--repeats", type=int, default=5, help="runs of each, for the time; default 5")
+    parser.add_argument("--out", type=pathlib.Path, default=results.ROOT / "build/accuracy", help="folder of viscosity.csv")
+    options = parser.parse_args()
+    if options.quick and options.docs:
+        parser.error("--docs needs the whole benchmark, without --quick")
+    cases = [Sod(50), Copper(50), Wave(25)] if options.quick else [Sod(200), Copper(100), Wave(100)]
+    # Of linear functions the noise of crossing particles in a gas under pressure is larger than the wave.
+    shapes = {case: ("QuadraticBSpline",) if isinstance(case, Wave) else ("linear",) if options.quick else ("linear", "QuadraticBSpline")
+              for case in cases}
+    with tempfile.TemporaryDirectory() as folder:
+        rows = [row for case in cases for shape in shapes[case]
+                for row in measure(case, methods.Method(shape), 1 if options.quick else options.repeats, pathlib.Path(folder) / "run")]
+    results.write(options.out / "viscosity.csv", rows)
+    print(table(rows))
+    if options.docs:
+        results.refresh(PAGE, {"viscosity": table(rows)})
+
+
+if __name__ == "__main__":
+    main()
