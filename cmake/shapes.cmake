@@ -29,6 +29,7 @@ function(mpm_instantiate_passes out)
 #include "core/shape/@arg_HEADER@.hpp"
 #include "core/step/passes_with.hpp"
 #include "core/transfer/affine.hpp"
+#include "core/transfer/consistent.hpp"
 #include "core/transfer/corrected.hpp"
 #include "core/transfer/flip.hpp"
 
@@ -60,8 +61,9 @@ function(mpm_shapes out)
       list(APPEND transfers Apic Tpic Aflip)
     endif()
     mpm_instantiate_passes(sources FILE passes_${name} POLICY ${policy} HEADER ${header} TRANSFERS ${transfers})
-    # XPIC and FMPM apart: more code beside the other transfers would change what the compiler inlines into them.
+    # XPIC and FMPM, and the consistent mass, apart: more code beside the other transfers would change what the compiler inlines into them.
     mpm_instantiate_passes(sources FILE passes_${name}_corrected POLICY ${policy} HEADER ${header} TRANSFERS Corrected)
+    mpm_instantiate_passes(sources FILE passes_${name}_consistent POLICY ${policy} HEADER ${header} TRANSFERS Consistent)
   endforeach()
 
   if(NOT MPM_SHAPES STREQUAL all)

@@ -6,6 +6,7 @@
 
 #include "core/shape/list.hpp"
 #include "core/transfer/affine.hpp"
+#include "core/transfer/consistent.hpp"
 #include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
@@ -27,6 +28,7 @@ auto with_transfer(const SolutionInput& solution, F f) {
   };
   switch (solution.transfer) {
     case Transfer::flip:
+      if (solution.mass == MassMatrix::consistent) return f(std::type_identity<Consistent>());
       if (solution.flip_fraction == 1) return f(std::type_identity<Flip>());
       return f(std::type_identity<FlipPic>());
     case Transfer::pic: return f(std::type_identity<FlipPic>());
