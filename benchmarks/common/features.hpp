@@ -99,10 +99,14 @@ inline std::vector<Feature> features() {
   add("transfer", "FMPM every 10th step", "FLIP", bar,
       {.solution_attributes = R"(transfer="FMPM" xpic_interval="10")"});
   add("transfer", "95 % FLIP", "FLIP", bar, {.solution_attributes = R"(flip_fraction="0.95")"});
+  const std::string consistent = R"(mass="consistent")";
+  add("transfer", "FLIP, consistent mass", "FLIP", bar, {.solution_attributes = consistent});
   const std::string quadratic = R"(shape="QuadraticBSpline")";
   for (const char* transfer : {"PIC", "APIC", "TPIC", "AFLIP", "XPIC", "FMPM"})
     add("transfer", fmt::format("{}, quadratic", transfer), "FLIP, quadratic", {.grid_attributes = quadratic},
         {.grid_attributes = quadratic, .solution_attributes = fmt::format(R"(transfer="{}")", transfer)});
+  add("transfer", "FLIP, consistent mass, quadratic", "FLIP, quadratic", {.grid_attributes = quadratic},
+      {.grid_attributes = quadratic, .solution_attributes = consistent});
   for (const char* shape :
        {"uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "DDMP", "SGMP"})
     add("shape", shape, "linear", bar, {.grid_attributes = fmt::format(R"(shape="{}")", shape)});
@@ -149,7 +153,7 @@ inline std::vector<Feature> spelled_out() {
       off("Warn", {.solution = R"(<Warn type="ie|vol|grid" level="0"/>)"}),
       off("TimeStep at its defaults",
           {.time_step = R"(<TimeStep factor="0.4" const="0" specified="0" NotConsiderVisForCp="0"/>)"}),
-      off("transfer FLIP", {.solution_attributes = R"(transfer="FLIP" flip_fraction="1")"}),
+      off("transfer FLIP", {.solution_attributes = R"(transfer="FLIP" flip_fraction="1" mass="lumped")"}),
       off("xpic_order and xpic_interval with FLIP",
           {.solution_attributes = R"(xpic_order="5" xpic_interval="3")"}),
       off("initial velocity by an expression",

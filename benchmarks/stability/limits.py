@@ -39,13 +39,13 @@ def grid(lower, upper, faces, cell, shape):
 
 def scene(material, body, grid, method, end, step):
     """`step`: the attribute of TimeStep."""
-    shape, transfer, scheme = method
+    shape, transfer, scheme, mass = method
     return f"""<?xml version="1.0"?>
 <PeneBlast version="1.0">
 {material}
 <Component name="all">{body}</Component>
 {grid}
-<Solution algorithm="{scheme}" transfer="{transfer}"><EndTime value="{end!r}"/><TimeStep {step}/></Solution>
+<Solution algorithm="{scheme}" transfer="{transfer}" mass="{mass}"><EndTime value="{end!r}"/><TimeStep {step}/></Solution>
 <Output><Console print_time="{end / 40!r}"/></Output>
 </PeneBlast>
 """
@@ -147,6 +147,7 @@ def main():
     parser.add_argument("--shape", action="append", choices=SHAPES)
     parser.add_argument("--scheme", action="append", choices=SCHEMES)
     parser.add_argument("--transfer", action="append", default=None)
+    parser.add_argument("--mass", choices=["lumped", "consistent"], default="lumped")
     parser.add_argument("--scene", action="append", choices=SCENES)
     parser.add_argument("--csv", type=pathlib.Path)
     parser.add_argument("--factor", type=float, help="report the energy growth at this factor instead")
@@ -155,14 +156,14 @@ def main():
     for shape in options.shape or SHAPES:
         for transfer in options.transfer or ["FLIP"]:
             for scheme in options.scheme or SCHEMES:
-                method = shape, transfer, scheme
+                method = shape, transfer, scheme, options.mass
                 found = {n: growth(n, method, options.factor) if options.factor else limit(n, method)
                          for n in options.scene or SCENES}
                 rows.append([*method, *(f"{v:.4g}" for v in found.values())])
                 print(*rows[-1], flush=True)
     if options.csv:
         with options.csv.open("w", newline="") as file:
-            csv.writer(file).writerows([["shape", "transfer", "scheme", *(options.scene or SCENES)], *rows])
+            csv.writer(file).writerows([["shape", "transfer", "scheme", "mass", *(options.scene or SCENES)], *rows])
 
 
 if __name__ == "__main__":

@@ -3,9 +3,10 @@
 // Every brick stores its contributions to its nodes in one to five arrays of records. A field names
 // consecutive components of an array's record; kernels, sums and the halo exchange use fields. A scheme maps
 // to the grid at most twice per step and needs the first sums again after the second map: hence two arrays.
-// Corrections of the velocities (core/transfer/corrected.hpp) are mapped between the two: the third array.
-// Contact needs the surfaces of the bodies at both: the fourth, and how far they reach: the fifth.
-// Fields of different phases may share memory: heat conduction uses the arrays while the mechanics does not.
+// Corrections of the velocities (core/transfer/corrected.hpp) are mapped between the two, and products with
+// the consistent mass matrix (core/transfer/consistent.hpp): the third array. Contact needs the surfaces of
+// the bodies at both: the fourth, and how far they reach: the fifth. Fields of different phases may share
+// memory: heat conduction uses the arrays while the mechanics does not.
 //
 // A record of the first array fills a cache line of 64 bytes, one of the others half a line.
 #pragma once
@@ -58,7 +59,7 @@ inline constexpr NodeFields support{NodeArray::first, 7, 1};
 inline constexpr NodeFields moved_volume{NodeArray::first, 3, 1};
 inline constexpr NodeFields volume{NodeArray::first, 4, 1};
 inline constexpr NodeFields modulus{NodeArray::first, 5, 1};
-// Momentum of an order of XPIC or FMPM.
+// Momentum of an order of XPIC or FMPM, or product with the consistent mass matrix.
 inline constexpr NodeFields correction{NodeArray::third, 0, 3};
 // Contact: sums of m grad S and of m S.
 inline constexpr NodeFields surface{NodeArray::fourth, 0, 3};

@@ -22,6 +22,9 @@ constexpr bool is_affine(Transfer t) {
 /// What PIC loses is mapped again (core/transfer/corrected.hpp).
 constexpr bool is_corrected(Transfer t) { return t == Transfer::xpic || t == Transfer::fmpm; }
 
+/// Mass matrix of the nodes' equation of motion.
+enum class MassMatrix { lumped, consistent };
+
 struct TimeStepInput {
   double factor = 0.9;            ///< of the critical step, (0, 1]
   bool constant = false;          ///< keep the first critical step
@@ -113,6 +116,8 @@ struct SolutionInput {
   double flip_fraction = 1;  ///< 1 FLIP ... 0 PIC
   int xpic_order = 2;        ///< of XPIC and FMPM
   int xpic_interval = 1;     ///< steps from one correction by XPIC or FMPM to the next; FLIP in between
+  MassMatrix mass = MassMatrix::lumped;  ///< consistent with FLIP alone
+  double mass_tolerance = 1e-2;          ///< of its inverse (core/transfer/consistent.hpp); no input sets it
   Integration integration = Integration::explicit_dynamics;
   bool near_boundary_stop =
       false;            ///< write a restart file and leave when a particle nears the grid's bounds

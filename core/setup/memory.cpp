@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "core/step/node_update.hpp"
+#include "core/step/passes.hpp"
 
 namespace mpm::core {
 
@@ -95,7 +96,7 @@ MemoryNeed memory_need(const Model& model) {
   const SolutionInput& solution = model.scene->solution;
   double kept = solution.scheme == Scheme::musl ? motion_width : 0;  // doubles of a node kept between passes
   if (is_corrected(solution.transfer)) kept += node_doubles;
-  const double motion = kept * grid.shape().nodes();
+  const double motion = kept * grid.shape().nodes() + mass_doubles_of(*model.scene);
   need.bricks = (place + sizeof(double) * (arrays + motion)) * grid.owned() +
                 (place + sizeof(double) * arrays) * grid.ghosts();
   for (const Brick& b : grid.bricks()) {

@@ -119,9 +119,11 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
   update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
 }
 
-/// Brings the updated nodes into at.field, and the corrected velocities into at.corrected.
+/// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the
+/// corrected velocities into at.corrected.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::take_updated_nodes(Slot s, Scratch& at) {
+  take_solved_motion(s, at);
   at.field.take_motion(at.nodes.data());
   if constexpr (corrects) {
     if (!correcting_) return;

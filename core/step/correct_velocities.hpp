@@ -11,7 +11,7 @@ void PassesWith<S, T>::begin_corrections() {
   if constexpr (corrects) {
     correcting_ = transfer_.corrects(model_.clock.step + 1);
     if (correcting_)
-      corrected_.resize(static_cast<std::size_t>(node_doubles * shared_.nodes()) *
+      corrected_.resize(static_cast<std::size_t>(record_count()) *
                         static_cast<std::size_t>(model_.grid->owned()));
   }
 }
@@ -29,10 +29,11 @@ void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int o
   }
 }
 
-/// Maps m sum S dv of the brick's particles.
+/// Maps m sum S dv of the brick's particles, dv being the increments of these records.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
-  if constexpr (corrects) {
+void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] const double* increments,
+                                      [[maybe_unused]] Scratch& at) {
+  if constexpr (corrects || solves) {
     constexpr NodeFields what = mapped::correction;
     const BrickFrame frame = this->frame(s);
     const int doubles = record_doubles(what.array) * shared_.nodes();
@@ -41,12 +42,12 @@ void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] 
     typename S::template Sums<what> sums(contributions);
     typename S::template Scatter<what> cell;
     cell.clear();
-    at.corrected.take_motion(corrected_nodes(s));
+    at.corrected.take_motion(increments);
     for_each_block(s, all_components, columns_to_mass,
                    [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                      const Place place(frame, layout, block);
                      MappedRows rows;
-                     T::template map_increment<S>(place, layout, at.corrected, block, rows);
+                     increment_momentum<S>(place, layout, at.corrected, block, rows);
                      for (int i = 0; i < used; ++i) cell.add(frame, place, i, rows, sums.records);
                    });
     cell.flush(frame, sums.records);
@@ -64,7 +65,7 @@ void PassesWith<S, T>::correct_velocities([[maybe_unused]] int order) {
       if (order == 2) sum_and_update_nodes(s, all_components, at);
       add_order(s, order - 1, at);
     });
-    map_bricks<mapped::correction>([&](Slot s, Scratch& at) { map_increments(s, at); });
+    map_bricks<mapped::correction>([&](Slot s, Scratch& at) { map_increments(s, corrected_nodes(s), at); });
   }
 }
 

@@ -29,6 +29,11 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     }
   };
 
+  const bool solves = model_.scene->solution.mass == MassMatrix::consistent;
+  const auto solve = [&](std::string name, Passes::MassSystem system) {
+    if (solves) then("consistent mass, " + std::move(name), [&, system] { pass.solve_mass(system); });
+  };
+
   if (cells_) {
     then("cells in use", [&] { cells_->find(); });
     then("exchange cells", [&] { cells_->finish_exchange(); });
@@ -59,22 +64,29 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
       correct_velocities();
+      if (pass.loads().any()) solve("velocities", Passes::MassSystem::velocity_at_end);
+      solve("increments", Passes::MassSystem::increment);
       then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
       then("exchange again", [&] { pass.finish_exchange(); });
+      solve("new velocities", Passes::MassSystem::new_velocity);
       then("stress and motion", [&] { pass.update_stress_and_move(); });
       break;
     case Scheme::usf:
       then("particles to grid", [&] { pass.map_momentum_mass(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      solve("velocities", Passes::MassSystem::velocity_at_start);
       then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
       then("exchange again", [&] { pass.finish_exchange(); });
       correct_velocities();
+      solve("increments", Passes::MassSystem::increment);
       then("velocities and motion", [&] { pass.update_velocities_and_move(); });
       break;
     case Scheme::usl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
       correct_velocities();
+      solve("velocities", Passes::MassSystem::velocity_at_end);
+      solve("increments", Passes::MassSystem::increment);
       then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
   }

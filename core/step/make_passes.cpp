@@ -1,4 +1,5 @@
 // The only place where a run's shape functions and transfer are chosen.
+#include "core/shape/cell_mass.hpp"
 #include "core/step/passes.hpp"
 #include "core/transfer/list.hpp"
 
@@ -35,10 +36,19 @@ NodeBlockShape node_block_of(const Scene& scene) {
   return with_shape(scene.grid.shape, []<class S>(std::type_identity<S>) { return S::node_block; });
 }
 
+int mass_doubles_of(const Scene& scene) {
+  if (scene.solution.mass == MassMatrix::lumped) return 0;
+  return with_shape(scene.grid.shape, []<class S>(std::type_identity<S>) {
+    const int moments = trilinear_on_lattice<S> ? cell_mass::doubles * cell_mass::cells : 0;
+    return 2 * node_doubles * S::node_block.nodes() + moments;
+  });
+}
+
 NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
   NodeArraySet arrays{NodeArray::first};
   if (conducts || scene.solution.scheme != Scheme::usl) arrays.add(NodeArray::second);
-  if (orders_of(scene.solution) > 1) arrays.add(NodeArray::third);
+  if (orders_of(scene.solution) > 1 || scene.solution.mass == MassMatrix::consistent)
+    arrays.add(NodeArray::third);
   if (scene.contact.enable) arrays.add(NodeArray::fourth);
   if (scene.contact.measures_gaps()) arrays.add(NodeArray::fifth);
   return arrays;

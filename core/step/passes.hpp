@@ -45,6 +45,11 @@ class Passes {
   virtual void correct_velocities(int order) = 0;
   virtual void finish_correction() = 0;
 
+  /// Consistent mass: solves for one of the nodes' velocities or increments, with its exchanges. Collective,
+  /// with the neighbouring ranks.
+  enum class MassSystem { velocity_at_start, velocity_at_end, increment, new_velocity };
+  virtual void solve_mass(MassSystem system) = 0;
+
   /// MUSL: nodal equation of motion, v += dv, and the new momentum back to the nodes.
   virtual void update_velocities_and_map_back() = 0;
   /// MUSL: strain with the re-mapped velocity, stress, then move.
@@ -78,5 +83,8 @@ Site site_of(const Scene& scene);
 NodeBlockShape node_block_of(const Scene& scene);
 /// The node arrays that the scene's scheme and its heat conduction use.
 NodeArraySet node_arrays_of(const Scene& scene, bool conducts);
+
+/// Doubles that solutions with the consistent mass matrix keep for a brick; 0 with lumped mass.
+int mass_doubles_of(const Scene& scene);
 
 }  // namespace mpm::core

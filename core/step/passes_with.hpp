@@ -1,8 +1,9 @@
 // The passes (passes.hpp) with shape functions S and transfer T: what each does in which order, brick by
 // brick. Operations on a brick, a block or a batch are functions of their own (brick_operations.hpp,
-// contact_operations.hpp, correct_velocities.hpp); for_bricks and for_each_block define the order and the
-// prefetching. Instantiated once per pair (passes_<shape>.cpp), through make_passes_with alone: the compiler
-// inlines members of a class template that is instantiated explicitly less freely (5 % of MUSL's time).
+// contact_operations.hpp, correct_velocities.hpp, solve_mass.hpp); for_bricks and for_each_block define the
+// order and the prefetching. Instantiated once per pair (passes_<shape>.cpp), through make_passes_with alone:
+// the compiler inlines members of a class template that is instantiated explicitly less freely (5 % of MUSL's
+// time).
 #pragma once
 
 #include <cmath>
@@ -11,9 +12,11 @@
 #include <omp.h>
 
 #include "core/contact/contact.hpp"
+#include "core/shape/cell_mass.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/grid_to_particles.hpp"
 #include "core/step/load_forces.hpp"
+#include "core/step/mass_solution.hpp"
 #include "core/step/particle_motion.hpp"
 #include "core/step/particles_to_grid.hpp"
 #include "core/step/passes.hpp"
@@ -21,6 +24,7 @@
 #include "core/step/site_averages.hpp"
 #include "core/step/speeds.hpp"
 #include "core/threads.hpp"
+#include "core/transfer/consistent.hpp"
 #include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
@@ -38,6 +42,7 @@ class PassesWith final : public Passes {
     if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, dt);
     follows_grid_ = follow_grid();
     begin_corrections();
+    begin_mass();
   }
 
   void find_fields(Reductions& ranks) override { contact_->find_fields(*model_.grid, halo_, ranks); }
@@ -53,6 +58,7 @@ class PassesWith final : public Passes {
   void finish_correction() override {
     if (correcting_) halo_.end(*model_.grid);
   }
+  void solve_mass(MassSystem system) override;
   void update_velocities_and_map_back() override;
   void update_stress_and_move() override;
   void update_stress_and_map_forces() override;
@@ -69,6 +75,8 @@ class PassesWith final : public Passes {
   static constexpr bool settles = requires { &S::settle; };
   /// Whether the transfer corrects velocities (core/transfer/corrected.hpp).
   static constexpr bool corrects = corrects_velocities<T>;
+  /// Whether it solves with the consistent mass matrix (core/transfer/consistent.hpp).
+  static constexpr bool solves = solves_mass<T>;
   struct Nothing {};
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
@@ -77,7 +85,7 @@ class PassesWith final : public Passes {
     RegressionScratch regression;
     ContactSums contact;
     SiteAverages averages;  ///< of the current tile; empty where volume changes are not averaged
-    [[no_unique_address]] std::conditional_t<corrects, typename S::Field, Nothing> corrected;
+    [[no_unique_address]] std::conditional_t<corrects || solves, typename S::Field, Nothing> corrected;
   };
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
@@ -140,12 +148,35 @@ class PassesWith final : public Passes {
   // Corrections of the velocities (correct_velocities.hpp).
   void begin_corrections();
   void add_order(Slot s, int order, Scratch& at);
-  void map_increments(Slot s, Scratch& at);
+  void map_increments(Slot s, const double* increments, Scratch& at);
   /// The nodes' sums of velocities v(l), in MotionRecords.
   double* corrected_nodes(Slot s) {
-    return corrected_.data() +
-           static_cast<std::size_t>(node_doubles * shared_.nodes()) * static_cast<std::size_t>(s);
+    return corrected_.data() + static_cast<std::size_t>(record_count()) * static_cast<std::size_t>(s);
   }
+  /// Doubles of a brick's node records.
+  int record_count() const { return node_doubles * shared_.nodes(); }
+
+  // Solutions with the consistent mass matrix (solve_mass.hpp).
+  void begin_mass();
+  void begin_solution(Slot s, MassSystem system, Scratch& at);
+  void end_solution(Slot s, MassSystem system, Scratch& at);
+  void sum_cell_masses(Slot s);
+  void map_product(Slot s, Scratch& at);
+  void take_solved_motion(Slot s, Scratch& at);
+  void take_solved_strain(Slot s, Scratch& at);
+  /// Their records (mass_solution.hpp).
+  double* solution(Slot s) {
+    return solution_.data() + static_cast<std::size_t>(record_count()) * static_cast<std::size_t>(s);
+  }
+  double* direction(Slot s) {
+    return direction_.data() + static_cast<std::size_t>(record_count()) * static_cast<std::size_t>(s);
+  }
+
+  static constexpr int cell_mass_doubles = cell_mass::doubles * cell_mass::cells;
+  double* cell_masses(Slot s) {
+    return cell_masses_.data() + static_cast<std::size_t>(cell_mass_doubles) * static_cast<std::size_t>(s);
+  }
+
   /// Whether particles move with the corrected velocities in this step.
   bool moves_corrected() const {
     if constexpr (corrects) return correcting_ && transfer_.of_end;
@@ -237,6 +268,10 @@ class PassesWith final : public Passes {
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
   AlignedDoubles corrected_;      ///< by slot; XPIC, FMPM: corrected_nodes()
+  AlignedDoubles solution_;       ///< by slot; consistent mass: solution()
+  AlignedDoubles cell_masses_;    ///< by slot; consistent mass: cell_masses()
+  bool masses_known_ = false;     ///< in this step
+  AlignedDoubles direction_;      ///< by slot; consistent mass: direction()
   std::vector<double> critical_;  ///< by slot; USF: largest critical speed of the stress pass
 };
 
@@ -378,6 +413,7 @@ void PassesWith<S, T>::map_bricks(F work) {
 #include "core/step/brick_operations.hpp"
 #include "core/step/contact_operations.hpp"
 #include "core/step/correct_velocities.hpp"
+#include "core/step/solve_mass.hpp"
 
 namespace mpm::core {
 
@@ -414,6 +450,7 @@ void PassesWith<S, T>::update_stress_and_move() {
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t k) {
       recall_motion(shared_.nodes(), motion(s, k), at.nodes.data());
+      if constexpr (solves) return take_solved_strain(s, at);
       sum<NodeArray::second>(momentum_shared_, s, component, at.sums.data());
       second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
     };
@@ -440,6 +477,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
       sum<NodeArray::second>(momentum_shared_, s, component, at.nodes.data());
       second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
                         at.nodes.data());
+      take_solved_strain(s, at);
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
       at.field.take_strain(frame(s), at.nodes.data());

@@ -45,14 +45,6 @@ struct Corrected : Flip {
     const typename S::Interpolation v(place, corrected.velocity());
     for (int a = 0; a < 3; ++a) store(block + layout.offset(next(Column::velocity_x, a)), v.value[a]);
   }
-  /// Momentum of an order: m sum S dv.
-  template <ShapePolicy S>
-  static void map_increment(const typename S::Place& place, const ColumnLayout& layout,
-                            const typename S::Field& corrected, const double* block, MappedRows& rows) {
-    const typename S::Interpolation dv(place, corrected.increment());
-    const auto m = load<Lanes<8>>(block + layout.offset(Column::mass));
-    for (int a = 0; a < 3; ++a) store(rows.momentum[a], m * dv.value[a]);
-  }
 
   bool of_end;  ///< FMPM
   std::int64_t interval;

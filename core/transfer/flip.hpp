@@ -23,6 +23,17 @@ namespace mpm::core {
   }
 }
 
+/// m sum S dv of a block: momentum of velocity increments at the nodes.
+template <ShapePolicy S>
+[[gnu::always_inline]] inline void increment_momentum(const typename S::Place& place,
+                                                      const ColumnLayout& layout,
+                                                      const typename S::Field& field, const double* block,
+                                                      MappedRows& rows) {
+  const typename S::Interpolation dv(place, field.increment());
+  const auto m = load<Lanes<8>>(block + layout.offset(Column::mass));
+  for (int a = 0; a < 3; ++a) store(rows.momentum[a], m * dv.value[a]);
+}
+
 struct Flip {
   static constexpr std::string_view name = "FLIP";
   static ColumnSet columns() { return {}; }

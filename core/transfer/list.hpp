@@ -6,6 +6,7 @@
 
 #include "core/shape/list.hpp"
 #include "core/transfer/affine.hpp"
+#include "core/transfer/consistent.hpp"
 #include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
@@ -25,8 +26,13 @@ auto with_transfer(const SolutionInput& solution, F f) {
     if constexpr (affine_with<S>) return f(of);
     throw std::logic_error("an affine transfer with shape functions that it does not go with");
   };
+  const auto correction = [&]<class T>(std::type_identity<T> of) -> decltype(f(std::type_identity<Flip>())) {
+    if constexpr (built_corrections) return f(of);
+    throw std::logic_error("a transfer that this build does not have");
+  };
   switch (solution.transfer) {
     case Transfer::flip:
+      if (solution.mass == MassMatrix::consistent) return correction(std::type_identity<Consistent>());
       if (solution.flip_fraction == 1) return f(std::type_identity<Flip>());
       return f(std::type_identity<FlipPic>());
     case Transfer::pic: return f(std::type_identity<FlipPic>());
@@ -34,7 +40,7 @@ auto with_transfer(const SolutionInput& solution, F f) {
     case Transfer::tpic: return affine(std::type_identity<Tpic>());
     case Transfer::aflip: return affine(std::type_identity<Aflip>());
     case Transfer::xpic:
-    case Transfer::fmpm: return f(std::type_identity<Corrected>());
+    case Transfer::fmpm: return correction(std::type_identity<Corrected>());
   }
   throw std::logic_error("a transfer without a policy");
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/built.hpp"
 #include "core/step/passes.hpp"
 #include "io/input/build.hpp"
 
@@ -134,6 +135,24 @@ core::FemInput build_fem(const Node& node, const BuildContext& context) {
   return fem;
 }
 
+/// What the consistent mass matrix does not go with.
+void check_mass(const Node& node, const core::Scene& scene, const BuildContext& context) {
+  const core::SolutionInput& solution = scene.solution;
+  if (solution.mass != core::MassMatrix::consistent) return;
+  const auto refuse = [&](std::string why) { node.report(context.diagnostics, "mass", std::move(why)); };
+  if (solution.transfer != core::Transfer::flip)
+    refuse(fmt::format("is available only with transfer FLIP, not with {}: expected lumped, or transfer FLIP",
+                       node.word("transfer")));
+  else if (solution.flip_fraction != 1)
+    refuse("is available only with the whole of FLIP: expected lumped, or flip_fraction 1");
+  if (solution.integration == core::Integration::implicit)
+    refuse("is not available with implicit steps, which have lumped masses: expected lumped");
+  if (scene.contact.enable)
+    refuse(
+        "is not available with Contact, whose impulses act between lumped masses: expected lumped, or "
+        "Contact enable 0");
+}
+
 }  // namespace
 
 void check_method(const Node& root, const core::Scene& scene, const BuildContext& context) {
@@ -146,6 +165,7 @@ void check_method(const Node& root, const core::Scene& scene, const BuildContext
                      "is not available with this shape function: expected shape QuadraticBSpline, "
                      "CubicBSpline, uGIMP or cpGIMP");
   }
+  if (solution) check_mass(*solution, scene, context);
   if (!grid || (shape != contiguous_particle_gimp && shape != cpdi && shape != cpdi2)) return;
   for (const core::ComponentInput& component : scene.components) {
     for (const core::BodyInput& body : component.bodies) {
@@ -172,6 +192,19 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
   if (solution.flip_fraction != 1 && solution.transfer != core::Transfer::flip)
     node->report(context.diagnostics, "flip_fraction",
                  fmt::format("is available only with transfer FLIP, not with {}", node->word("transfer")));
+  if (node->word("mass") == "consistent") solution.mass = core::MassMatrix::consistent;
+  if (!core::built_corrections) {
+    const auto require = [&](std::string_view attribute, std::string_view value, std::string_view other) {
+      node->report(
+          context.diagnostics, attribute,
+          fmt::format("this program was built without {}: expected {}, or a program built with the CMake "
+                      "option -DMPM_CORRECTIONS=ON",
+                      value, other));
+    };
+    if (core::is_corrected(solution.transfer))
+      require("transfer", node->word("transfer"), "another transfer");
+    if (solution.mass != core::MassMatrix::lumped) require("mass", "the consistent mass matrix", "lumped");
+  }
   solution.xpic_order = node->small_integer("xpic_order");
   solution.xpic_interval = node->small_integer("xpic_interval");
   const auto value_of = [&](std::string_view child, std::string_view attribute) -> std::optional<double> {

@@ -203,6 +203,7 @@ void echo_solution(XmlWriter& w, const core::SolutionInput& solution) {
   w.number("flip_fraction", solution.flip_fraction);
   w.integer("xpic_order", solution.xpic_order);
   w.integer("xpic_interval", solution.xpic_interval);
+  w.text("mass", solution.mass == core::MassMatrix::consistent ? "consistent" : "lumped");
   const auto value = [&](std::string_view name, std::string_view attribute, double number) {
     const auto element = w.element(name);
     w.number(attribute, number);

@@ -321,6 +321,12 @@ const std::vector<Rule>& rules() {
        {"xpic_order", "xpic_interval"},
        [](const Place& at) { return !core::is_corrected(at.scene.solution.transfer); },
        "used only with transfer XPIC and FMPM"},
+      {"Solution",
+       {"mass"},
+       [](const Place& at) {
+         return at.scene.solution.mass == core::MassMatrix::consistent && all_rigid(at);
+       },
+       "it does not apply to rigid bodies"},
       {"Solution/TimeStep",
        {"factor", "const", "NotConsiderVisForCp"},
        [](const Place& at) { return at.scene.solution.time_step.specified > 0; },

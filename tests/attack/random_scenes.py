@@ -19,7 +19,7 @@ CELL = bits_laws.CELL
 SHAPES = ["linear", "SGMP", "DDMP", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline"]
 AFFINE_SHAPES = ["uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline"]
 TRANSFERS = ['transfer="FLIP"', 'transfer="FLIP" flip_fraction="0.95"', 'transfer="PIC"', 'transfer="XPIC" xpic_order="3"',
-             'transfer="FMPM" xpic_order="2" xpic_interval="3"']
+             'transfer="FMPM" xpic_order="2" xpic_interval="3"', 'transfer="FLIP" mass="consistent"']
 AFFINE = ['transfer="APIC"', 'transfer="TPIC"', 'transfer="AFLIP"']
 OUTPUT = '<Console print_time="1e-12"/><PostProcessing time_interval="1e-6" h5part="1" var="seqv|epef|pres|density|fail"/>'
 

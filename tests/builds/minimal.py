@@ -32,6 +32,11 @@ class Minimal(Case):
                                                                   "expected linear", "MPM_SHAPES"])
         self.refused("<Grid>", '<Grid gimp="1">', ["case.xmp:", "built without uGIMP", "MPM_SHAPES"])
 
+    def test_refuses_corrections(self):
+        for transfer in ("XPIC", "FMPM"):
+            self.refused("<Solution ", f'<Solution transfer="{transfer}" ', ["case.xmp:", f"built without {transfer}", "MPM_CORRECTIONS"])
+        self.refused("<Solution ", '<Solution mass="consistent" ', ["case.xmp:", "built without the consistent mass", "MPM_CORRECTIONS"])
+
     def test_refuses_implicit_steps(self):
         self.refused("<Solution ", '<Solution Integration="impl" ', ["case.xmp:", "MPM_WITH_PETSC"])
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Dense>
+
 namespace mpm::tests {
 namespace {
 
@@ -81,13 +83,24 @@ void ReferenceStepper::step_with() {
   particles_to_grid<Support>();
   if (usf) {
     initial_velocities();
+    if (case_.consistent) {
+      solve_mass<Support>(&Node::w, &Node::w);
+      stop_at_walls(&Node::w);
+      for (Node& node : grid_) node.u = node.w;
+    }
     update_stresses<Support>(dt);
   }
   integrate_momentum(dt);
   if (corrects()) add_orders<Support>();
+  if (case_.consistent) solve_motion<Support>(dt);
   grid_to_particles<Support>(dt);
   if (!usf) {
     final_velocities();
+    if (moves_last()) {
+      solve_mass<Support>(&Node::w, &Node::w);
+      stop_at_walls(&Node::w);
+      move_particles<Support>(dt);
+    }
     update_stresses<Support>(dt);
   }
   for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].x = next_x_[n];
@@ -245,6 +258,7 @@ void ReferenceStepper::integrate_momentum(double dt) {
         if (case_.boundary[2 * a + side] != 0 && index[a] == (side == 0 ? layer_ : nodes_[a] - 1 - layer_))
           full /= 2;
     const double left_out = node.m < full * floor ? 1 - node.m / (full * floor) : 0.0;
+    node.left_out = left_out;
     for (std::size_t a = 0; a < 3; ++a) {
       const double p_old = node.p[a];
       node.start[a] = p_old / node.m;
@@ -303,21 +317,108 @@ void ReferenceStepper::add_orders() {
   }
 }
 
+template <class Support>
+void ReferenceStepper::solve_mass(Vector Node::*of, Vector Node::*stopped) {
+  std::vector<Eigen::Index> number(grid_.size(), -1);
+  std::vector<std::pair<Index, Node*>> nodes;
+  for_active_nodes([&](const Index& index, Node& node) {
+    number[static_cast<std::size_t>(&node - grid_.data())] = static_cast<Eigen::Index>(nodes.size());
+    nodes.emplace_back(index, &node);
+  });
+  const auto count = static_cast<Eigen::Index>(nodes.size());
+  const double b = case_.mass_blend;
+  for (std::size_t a = 0; a < 3; ++a) {
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
+    for (const auto& particle : case_.particles) {
+      const Support at = support<Support>(particle);
+      for (std::size_t i = 0; i < at.count; ++i)
+        for (std::size_t j = 0; j < at.count; ++j)
+          if (number[at.node[i]] >= 0 && number[at.node[j]] >= 0)
+            matrix(number[at.node[i]], number[at.node[j]]) +=
+                (1 - b) * particle.m * at.value(i, a) * at.value(j, a);
+    }
+    Eigen::VectorXd right(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Node& node = *nodes[static_cast<std::size_t>(i)].second;
+      matrix(i, i) += b * node.m;
+      right(i) = node.m * (node.*of)[a];
+    }
+    // Rows and columns of what walls hold: u_i is given.
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& [index, node] = nodes[static_cast<std::size_t>(i)];
+      const bool rests = at_rigid_wall(index, a) && (node->*stopped)[a] == 0;
+      if (!rests && stop(index, a, 0) != Stop::held) continue;
+      const double given = (node->*of)[a];
+      right -= given * matrix.col(i);
+      matrix.row(i).setZero();
+      matrix.col(i).setZero();
+      matrix(i, i) = 1;
+      right(i) = given;
+    }
+    const Eigen::VectorXd solution = matrix.partialPivLu().solve(right);
+    for (Eigen::Index i = 0; i < count; ++i)
+      (nodes[static_cast<std::size_t>(i)].second->*of)[a] = solution(i);
+  }
+}
+
+void ReferenceStepper::stop_at_walls(Vector Node::*of) {
+  for_active_nodes([&](const Index& index, Node& node) {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (stop(index, a, (node.*of)[a]) == Stop::wall) (node.*of)[a] = 0;
+  });
+}
+
+/// Consistent mass: the increments; the velocities at the end, but for MUSL.
+template <class Support>
+void ReferenceStepper::solve_motion(double dt) {
+  for_active_nodes([&](const Index&, Node& node) {
+    for (std::size_t a = 0; a < 3; ++a) node.du[a] = dt * node.a[a];
+    if (case_.scheme == ReferenceScheme::usl) node.u = node.v;
+  });
+  solve_mass<Support>(&Node::du, &Node::v);
+  if (case_.scheme == ReferenceScheme::usl) solve_mass<Support>(&Node::u, &Node::v);
+  for_active_nodes([&](const Index& index, Node& node) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      node.a[a] = node.du[a] / dt;
+      if (case_.scheme != ReferenceScheme::usf) continue;
+      node.u[a] += node.du[a];
+      if (at_rigid_wall(index, a) && node.v[a] == 0) node.u[a] = 0;
+    }
+  });
+  stop_at_walls(&Node::u);
+  if (case_.scheme != ReferenceScheme::usl) return;
+  for_active_nodes([&](const Index&, Node& node) {
+    for (std::size_t a = 0; a < 3; ++a)
+      node.w[a] = node.u[a] - node.left_out * (node.du[a] - dt * case_.gravity[a]);
+  });
+}
+
+template <class Support>
+void ReferenceStepper::move_particles(double dt) {
+  for (std::size_t index = 0; index < case_.particles.size(); ++index) {
+    const Support at = support<Support>(case_.particles[index]);
+    next_x_[index] = case_.particles[index].x;
+    for (std::size_t n = 0; n < at.count; ++n) {
+      const Node& node = grid_[at.node[n]];
+      if (!node.active) continue;
+      for (std::size_t a = 0; a < 3; ++a) next_x_[index][a] += dt * at.value(n, a) * moving(node)[a];
+    }
+    if (case_.shape == ReferenceShape::cpdi2) move_corners(index, dt);
+  }
+}
+
 /// 2-42, 2-43, and the sum of 2-45.
 template <class Support>
 void ReferenceStepper::grid_to_particles(double dt) {
-  for (std::size_t index = 0; index < case_.particles.size(); ++index) {
-    auto& particle = case_.particles[index];
+  if (!moves_last()) move_particles<Support>(dt);
+  for (auto& particle : case_.particles) {
     const Support at = support<Support>(particle);
-    next_x_[index] = particle.x;
     if (corrects()) particle.v = {};
     for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
       if (!node.active) continue;
-      for (std::size_t a = 0; a < 3; ++a) {
-        next_x_[index][a] += dt * at.value(n, a) * moving(node)[a];
+      for (std::size_t a = 0; a < 3; ++a)
         particle.v[a] += at.value(n, a) * (corrects() ? node.u[a] : dt * node.a[a]);
-      }
     }
     if (case_.scheme == ReferenceScheme::usf) {
       Matrix L{};
@@ -327,7 +428,6 @@ void ReferenceStepper::grid_to_particles(double dt) {
             if (grid_[at.node[n]].active) L[a][b] += moving(grid_[at.node[n]])[a] * at.slope(n, a)[b];
       deform_domain(case_.shape, dt, L, particle);
     }
-    if (case_.shape == ReferenceShape::cpdi2) move_corners(index, dt);
     if (case_.scheme != ReferenceScheme::musl) continue;
     for (std::size_t n = 0; n < at.count; ++n)
       for (std::size_t a = 0; a < 3; ++a)
@@ -366,7 +466,9 @@ void ReferenceStepper::final_velocities() {
     for (std::size_t a = 0; a < 3; ++a) {
       if (case_.scheme == ReferenceScheme::musl) node.w[a] /= node.m;
       // MUSL's stress update knows the nodes by the velocity with which they move.
-      const Vector& known = case_.scheme == ReferenceScheme::musl ? moving(node) : node.v;
+      const Vector& known = case_.consistent                        ? (moves_last() ? node.v : node.u)
+                            : case_.scheme == ReferenceScheme::musl ? moving(node)
+                                                                    : node.v;
       const bool held = case_.wall_reaction && known[a] == 0 &&
                         (stop(index, a, 1) == Stop::wall || stop(index, a, -1) == Stop::wall);
       if (held || stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;

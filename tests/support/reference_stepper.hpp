@@ -1,8 +1,9 @@
 // The oracle: a naive, textbook material point method, one struct per particle and one dense grid, in plain
-// double. Steps of thesis 2.2.2 (USF, USL, MUSL), transfers FLIP, XPIC and FMPM, trilinear shape functions
-// (2-17) or those of reference_shape.hpp, stress update 2.4.1, J2 return 2.4.3, Mie-Grueneisen 2-130, bulk
-// viscosity 2-69. It shares no code with the production kernels. Limits: one material, one rank, uniform
-// grid, no contact, no failure. Shown by tests/core/reference.
+// double. Steps of thesis 2.2.2 (USF, USL, MUSL), transfers FLIP, XPIC and FMPM, lumped and consistent mass
+// (a dense matrix, factorised), trilinear shape functions (2-17) or those of reference_shape.hpp, stress
+// update 2.4.1, J2 return 2.4.3, Mie-Grueneisen 2-130, bulk viscosity 2-69. It shares no code with the
+// production kernels. Limits: one material, one rank, uniform grid, no contact, no failure. Shown by
+// tests/core/reference.
 //
 // Symbols: S_ip, G_ip shape function and gradient; m_i, p_i, f_i mass, momentum, force of a node; index p a
 // particle. Units are the user's; the Taylor bar uses mm, g, ms, hence MPa.
@@ -42,6 +43,10 @@ struct ReferenceCase {
   ReferenceTransfer transfer = ReferenceTransfer::flip;
   int order = 2;     ///< of XPIC and FMPM; 1 is PIC
   int interval = 1;  ///< steps; FLIP in between
+  /// With FLIP: nodes have the mass matrix (1 - mass_blend) M + mass_blend diag(m_i), M_ij = sum_p m_p S_i
+  /// S_j. With MUSL particles then move with the velocity of the strain rate.
+  bool consistent = false;
+  double mass_blend = 0.1;
   /// The critical step, in units of a wave's crossing time of a cell.
   double wave_limit = 1;
   bool average = false;    ///< volume changes and pressures over the particles of a site
@@ -81,11 +86,14 @@ class ReferenceStepper {
   enum class Stop { none, held, wall };
   struct Node {
     double m = 0;
-    Vector p{}, f{};             ///< momentum and force
-    Vector v{}, a{};             ///< p^{k+1}/m and f/m
-    Vector w{};                  ///< velocity of the strain rate
-    Vector start{};              ///< velocity at the start of the step
-    Vector u{}, du{};            ///< XPIC, FMPM: sum of the orders so far, and the latest of them
+    Vector p{}, f{};      ///< momentum and force
+    Vector v{}, a{};      ///< p^{k+1}/m and f/m
+    Vector w{};           ///< velocity of the strain rate
+    double left_out = 0;  ///< share of the increment that it leaves out
+    Vector start{};       ///< velocity at the start of the step
+    /// XPIC, FMPM: sum of the orders so far, and the latest of them. Consistent mass: velocity at the start
+    /// (USF), then at the end (USF, USL), and increment.
+    Vector u{}, du{};
     Vector q{};                  ///< momentum of the particles' share of du
     std::array<bool, 3> held{};  ///< by a wall
     bool active = false;         ///< heavier than the cutoff
@@ -136,12 +144,27 @@ class ReferenceStepper {
   }
   template <class Support>
   void add_orders();
+  /// Solves for the velocities `of` the nodes, which hold those of lumped mass, with the consistent mass.
+  /// `stopped`: what a rigid wall has stopped is zero there.
+  template <class Support>
+  void solve_mass(Vector Node::*of, Vector Node::*stopped);
+  bool at_rigid_wall(const Index& node, std::size_t axis) const {
+    return stop(node, axis, 1) == Stop::wall || stop(node, axis, -1) == Stop::wall;
+  }
+  /// No velocity `of` a node leads through a rigid wall.
+  void stop_at_walls(Vector Node::*of);
+  template <class Support>
+  void solve_motion(double dt);
   /// The velocity with which particles move.
   const Vector& moving(const Node& node) const {
+    if (case_.consistent) return case_.scheme == ReferenceScheme::musl ? node.w : node.u;
     return corrects() && case_.transfer == ReferenceTransfer::fmpm ? node.u : node.v;
   }
   template <class Support>
   void grid_to_particles(double dt);
+  template <class Support>
+  void move_particles(double dt);
+  bool moves_last() const { return case_.consistent && case_.scheme == ReferenceScheme::musl; }
   void move_corners(std::size_t index, double dt);
   void final_velocities();
   template <class Support>

@@ -9,7 +9,8 @@ from _mpm import INPUT_ERROR, Case
 
 # Those that affine transfers do not go with, and the others.
 PLAIN_SHAPES, AFFINE_SHAPES = ("linear", "SGMP", "DDMP", "CPDI", "CPDI2"), ("uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline")
-PLAIN = ("FLIP", "PIC", 'FLIP flip_fraction="0.95"', 'XPIC xpic_order="3" xpic_interval="3"', 'FMPM xpic_order="4"')
+PLAIN = ("FLIP", "PIC", 'FLIP flip_fraction="0.95"', 'XPIC xpic_order="3" xpic_interval="3"', 'FMPM xpic_order="4"',
+         'FLIP mass="consistent"')
 AFFINE = ("APIC", "TPIC", "AFLIP")
 SCHEMES = ("MUSL", "USF", "USL")
 SHAPES = PLAIN_SHAPES + AFFINE_SHAPES

@@ -224,6 +224,7 @@ struct SmallRun {
     scene->components.resize(2);
     scene->solution.scheme = scheme_of(c.scheme);
     scene->solution.transfer = transfer_of(c.transfer);
+    if (c.consistent) scene->solution.mass = core::MassMatrix::consistent;
     scene->solution.xpic_order = c.order;
     scene->solution.xpic_interval = c.interval;
     if (c.average) scene->solution.averaging = core::VolumeAveraging::cell;

@@ -212,7 +212,7 @@ std::string make_all_keywords() {
          "distance_type='2' min_distance='0.01' contact_time_step='1' contact_type='2' "
          "record_contact_force='1' contact_normal='regression'/>\n"
          "<Solution algorithm='USF' near_boundary_stop='1' Integration='expl' transfer='XPIC' "
-         "flip_fraction='1' xpic_order='3' xpic_interval='2'>"
+         "flip_fraction='1' xpic_order='3' xpic_interval='2' mass='lumped'>"
          "<EndTime value='1'/><TimeStep factor='0.6' const='0' specified='0.0' "
          "NotConsiderVisForCp='1'/><LimitVelocity max='1'/>"
          "<Volume update_type='4' erode='0.1' min='0.1' max='10'/><Volumetric averaging='cell'/><Warn "

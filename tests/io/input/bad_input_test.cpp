@@ -53,7 +53,7 @@ TEST_CASE("names and occurrences") {
       {"<Solution>",
        "<Solution colour=\"red\">",
        {"line 25: <Solution colour=\"red\">: no such attribute; expected algorithm, near_boundary_stop, "
-        "Integration, transfer, flip_fraction, xpic_order, xpic_interval"}},
+        "Integration, transfer, flip_fraction, xpic_order, xpic_interval, mass"}},
       {"dp=\"0.38\"",
        "Dp=\"0.38\"",
        {"line 13: <Geometry Dp=\"0.38\">: no such attribute; expected dp, x0, y0, z0, lx, ly, lz; did you "
@@ -501,6 +501,30 @@ TEST_CASE("what implicit steps cannot do") {
   });
 }
 
+TEST_CASE("what the consistent mass matrix cannot do") {
+  const auto with = [](const std::string& attributes) {
+    return "<Solution" + attributes + " mass=\"consistent\">";
+  };
+  const std::string fault = "line 25: <Solution mass=\"consistent\">: ";
+  check_table({
+      {"<Solution>", with(""), {"ok"}},
+      {"<Solution>", with(" transfer=\"FLIP\" flip_fraction=\"1\" algorithm=\"USF\""), {"ok"}},
+      {"<Solution>", "<Solution transfer=\"PIC\" mass=\"lumped\">", {"ok"}},
+      {"<Solution>",
+       "<Solution mass=\"full\">",
+       {"line 25: <Solution mass=\"full\">: expected lumped or consistent"}},
+      {"<Solution>",
+       with(" transfer=\"FMPM\""),
+       {fault + "is available only with transfer FLIP, not with FMPM: expected lumped, or transfer FLIP"}},
+      {"<Solution>",
+       with(" flip_fraction=\"0.9\""),
+       {fault + "is available only with the whole of FLIP: expected lumped, or flip_fraction 1"}},
+      {"<Solution>",
+       with(" Integration=\"impl\""),
+       {fault + "is not available with implicit steps, which have lumped masses: expected lumped"}},
+  });
+}
+
 TEST_CASE("all faults come at once, in the order of the lines") {
   std::string text = test::replaced(test::bar, "dz=\"0.76\"", "dz=\"-1\"");
   text = test::replaced(text, "value=\"8.93e-3\"", "value=\"0\"");
@@ -512,7 +536,7 @@ TEST_CASE("all faults come at once, in the order of the lines") {
             "line 12: <Body material=\"ag\">: there is no material of this name",
             "line 22: <DCell dz=\"-1\">: expected a number greater than 0",
             "line 25: <Solution speed=\"high\">: no such attribute; expected algorithm, near_boundary_stop, "
-            "Integration, transfer, flip_fraction, xpic_order, xpic_interval"});
+            "Integration, transfer, flip_fraction, xpic_order, xpic_interval, mass"});
 }
 
 TEST_CASE("the text of a fault") {

@@ -235,6 +235,9 @@ TEST_CASE("rigid bodies by themselves") {
           "line 6: <StrengthModel limiter=\"shock\">: no effect: a rigid body has neither stress nor heat"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<LimitVelocity max='1'/><EndTime")) ==
         std::vector<std::string>{"line 25: <LimitVelocity>: no effect: it does not apply to rigid bodies"});
+  CHECK(notes_of(replaced(rigid_bar(), "<Solution>", "<Solution mass='consistent'>")) ==
+        std::vector<std::string>{
+            "line 25: <Solution mass=\"consistent\">: no effect: it does not apply to rigid bodies"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<DynamicRelax damping='1'/><EndTime")) ==
         std::vector<std::string>{"line 25: <DynamicRelax>: no effect: it does not apply to rigid bodies"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<Volumetric averaging='cell'/><EndTime")) ==

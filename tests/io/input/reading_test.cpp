@@ -55,6 +55,7 @@ TEST_CASE("defaults") {
   const core::SolutionInput& solution = scene.solution;
   CHECK(solution.scheme == core::Scheme::musl);
   CHECK(solution.transfer == core::Transfer::flip);
+  CHECK(solution.mass == core::MassMatrix::lumped);
   CHECK(solution.integration == core::Integration::explicit_dynamics);
   CHECK_FALSE(solution.near_boundary_stop);
   CHECK(solution.end_time == 0.08);
