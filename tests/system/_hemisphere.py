@@ -48,13 +48,15 @@ def inelastic_depth(speed, time, steps=20000):
     return depth
 
 
-def measure(folder, speed):
+def measure(folder):
     """At the end: depth of the crater on the axis, where the soil's first surface is by its two upper layers, and of the shell's pole, mm;
     velocity. When the shell comes to rest and its depth then, or nan; its least kinetic energy over the first; the soil's greatest
     density over the first."""
     states, status, summary = _cases.States(folder, JOB), _cases.status(folder, JOB), _mpm.summary(folder, JOB)
     first, now = (np.column_stack([states.column(axis, which) for axis in "xyz"]) for which in (0, -1))
-    soil = states.column("density", 0) < 1.1 * DENSITY
+    left = np.isin(states.column("id", 0), states.column("id"))  # some soil may have passed a non-reflecting face
+    first = first[left]
+    soil = states.column("density", 0)[left] < 1.1 * DENSITY
     spacing = np.diff(np.unique(np.round(first[soil, 2], 3)))[-1]
     pole = ~soil & (first[:, 2] < first[~soil, 2].min() + 0.1 * spacing)
     axis = soil & (np.hypot(first[:, 0], first[:, 1]) < spacing)
