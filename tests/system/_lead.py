@@ -11,9 +11,9 @@ JOB = "lead_on_lead"
 END = 30.6e-3  # ms
 
 
-def text(cell, spacing=0.53, shape="linear", full=False, end=END, factor=0.9, width=140, changes=None):
-    """`full`: without symmetry planes; `width`: of the plate."""
-    layers, half = round(6.36 / spacing), round(width / 2 / spacing)
+def text(cell, spacing=0.53, shape="SGMP", full=False, end=END, factor=0.5, plate=140, changes=None):
+    """`full`: without symmetry planes; `plate`: its width."""
+    layers, half = round(6.36 / spacing), round(plate / 2 / spacing)
     thick, side = layers * spacing, half * spacing
     far, low, high = (math.ceil(x / cell) * cell for x in (212, 318, 212))
     every = {".//Geometry": {"dp": spacing}, ".//DCell": dict.fromkeys(("dx", "dy", "dz"), cell), ".//Grid": {"shape": shape},
@@ -30,19 +30,19 @@ def text(cell, spacing=0.53, shape="linear", full=False, end=END, factor=0.9, wi
 
 
 def measure(folder, spacing=0.53):
-    """Of the cloud that has left the plate's rear by 20 mm: `front`, distance from the rear, and `width`, of its shadow on a film
-    along a wall of the grid: of all particles, and without the farthest thousandth and hundredth of its mass."""
-    states, status, summary = _cases.States(folder, JOB), _cases.status(folder, JOB), _mpm.summary(folder, JOB)
+    """Of the cloud that has left the plate's rear by 20 mm: `front`, distance from the rear face, `struck`, from the struck one, and `width`, of
+    its shadow along an axis of the grid, without the farthest thousandth of its mass; `farthest` and `widest`: of all particles. The
+    cloud's mass, and how much of it is the sphere's and failed, in percent."""
+    states, summary = _cases.States(folder, JOB), _mpm.summary(folder, JOB)
+    stayed = np.isin(states.column("id", 0), states.column("id"))  # some may have left the grid
     first, now = (np.column_stack([states.column(axis, which) for axis in "xyz"]) for which in (0, -1))
-    first = first[np.isin(states.column("id", 0), states.column("id"))]  # some may have left the grid
-    rear = first[:, 2].min() - spacing / 2
+    rear, sphere = first[:, 2].min() - spacing / 2, first[stayed, 2] > 0
     cloud = now[:, 2] < rear - 20
     ahead, aside = rear - now[cloud, 2], np.abs(now[cloud, :2]).ravel()
-    found = {"particles": summary["particles"], "steps": summary["steps"]}
-    for name, part in (("", 1), ("_999", 0.999), ("_99", 0.99)):
-        found |= {f"front{name}": float(np.quantile(ahead, part)), f"width{name}": 2 * float(np.quantile(aside, part))}
-    sphere = first[:, 2] > 0
-    return found | {"cloud": float(cloud.mean() * len(now) / len(sphere)), "sphere_in": 100 * float(cloud[sphere].mean()),
-                    "failed": 100 * float((states.column("fail")[cloud] > 0).mean()),
-                    "fastest": float(np.sqrt(sum(states.column(f"velocity_{axis}") ** 2 for axis in range(3))).max()),
-                    "drift": 100 * summary["energy"]["relative_drift"]}
+    front = float(np.quantile(ahead, 0.999))
+    # of all four quarters
+    mass = 4 * 11.35e-3 * spacing**3 * cloud.sum() if first[:, 0].min() > 0 else 11.35e-3 * spacing**3 * cloud.sum()
+    return {"particles": summary["particles"], "steps": summary["steps"], "front": front, "struck": front - rear,
+            "width": 2 * float(np.quantile(aside, 0.999)), "farthest": float(ahead.max()), "widest": 2 * float(aside.max()), "cloud": float(mass),
+            "of_sphere": 100 * float(sphere[cloud].mean()), "failed": 100 * float((states.column("fail")[cloud] > 0).mean()),
+            "drift": 100 * summary["energy"]["relative_drift"]}

@@ -1,5 +1,6 @@
 """The scenes of apps/scenes that have known answers, with coarse cells; finer ones: elastic_balls.py,
-taylor_bar_on_a_plate.py, symmetric_taylor_impact.py, ball_through_a_plate.py, hemisphere_into_soil.py and granular.py of tests/validation.
+taylor_bar_on_a_plate.py, symmetric_taylor_impact.py, ball_through_a_plate.py, hemisphere_into_soil.py,
+lead_on_lead.py and granular.py of tests/validation.
 
 Prints what it measures."""
 
@@ -8,6 +9,7 @@ import _bar_on_plate
 import _gallery
 import _granular
 import _hemisphere
+import _lead
 import _mpm
 import _symmetric_impact
 
@@ -103,6 +105,18 @@ class Gallery(_mpm.Case):
         self.assertAlmostEqual(rigid["pole"], _hemisphere.inelastic_depth(200, 0.62), delta=3)
         slow = self.measured(_hemisphere.JOB, _hemisphere.text(24, speed=45, end=24, shell="rigid"), _hemisphere.measure)
         self.assertAlmostEqual(slow["rest"], 20, delta=2)
+
+    def test_lead_on_lead(self):
+        """Thesis 3.5.2, with an eighth of its particles and a plate just wider than what becomes debris: a cloud that ends 198 mm from the
+        plate and is 142 mm wide. All of it has failed and bears no tension, yet the energy is kept."""
+        for shape in ("SGMP", "linear"):
+            with self.subTest(shape=shape):
+                found = self.measured(_lead.JOB, _lead.text(2.12, spacing=1.06, shape=shape, factor=0.4, plate=50), _lead.measure, 1.06)
+                self.assertAlmostEqual(found["struck"] / 198, 1, delta=0.1)
+                self.assertAlmostEqual(found["width"] / 142, 1, delta=0.1)
+                self.assertAlmostEqual(found["cloud"], 50, delta=5)
+                self.assertEqual(found["failed"], 100)
+                self.assertLess(abs(found["drift"]), 2)
 
     def test_sand_column(self):
         """Lube's run-out; with these cells, a tenth of the foot, it is 17 % too far. The sand stops and keeps its density."""
