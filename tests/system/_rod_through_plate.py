@@ -15,8 +15,8 @@ KNOWN = {340: (91, 83.8), 400: (217, 207.8), 446: (288, 280.0), 575: (455, 442.8
 
 
 def text(cells=13, speed=400, half_width=61, shape="linear", normal="regression", kind=1, distance=2, gap=0.05, contact=True,
-         nose=0.3, failure=1.6, friction=0, path=80, factor=0.5):
-    """`cells`: through the plate; `half_width`: of the plate, mm; `nose`: spacing of the particles at the tip, in cells; `failure`: plastic
+         nose=0.3, failure=1.6, friction=0, path=80, factor=0.5, rings=0):
+    """`cells`: through the plate; `half_width`: of the plate, mm; `nose`: spacing of the particles in the rod's nose, in cells, half a cell at its rear; `failure`: plastic
     strain; `path`: of the rod until the end, mm, at the mean of the experiment's velocities."""
     cell = THICKNESS / cells
     wide = round(half_width / cell) * cell
@@ -30,8 +30,8 @@ def text(cells=13, speed=400, half_width=61, shape="linear", normal="regression"
     del changes[".//Geometry"]
     changes |= {".//WorkPlane": {"r0x": rear[0], "r0z": rear[2]}, ".//Body[@name='shank']/InitialVelocity": velocity,
                 ".//Body[@name='nose']/InitialVelocity": velocity,
-                ".//Body[@name='shank']/Geometry": {"dp_bottom": cell / 2, "dp_top": cell / 2},
-                ".//Body[@name='nose']/Geometry": {"dp_bottom": cell / 2, "dp_top": nose * cell},
+                ".//Body[@name='shank']/Geometry": {"dp_bottom": cell / 2, "dp_top": nose * cell, "discretization": rings},
+                ".//Body[@name='nose']/Geometry": {"dp_bottom": nose * cell, "dp_top": nose * cell, "discretization": rings},
                 ".//Body[@name='plate']/Geometry": {"x0": -wide, "lx": 2 * wide, "ly": wide, "dp": cell / 2},
                 ".//XMin": {"value": -math.ceil(80 / cell) * cell}, ".//XMax": {"value": math.ceil(80 / cell) * cell},
                 ".//YMax": {"value": math.ceil(75 / cell) * cell}, ".//ZMin": {"value": -math.ceil(110 / cell) * cell},
