@@ -15,9 +15,10 @@ KNOWN = {340: (91, 83.8), 400: (217, 207.8), 446: (288, 280.0), 575: (455, 442.8
 
 
 def text(cells=13, speed=400, half_width=61, shape="linear", normal="regression", kind=1, distance=2, gap=0.05, contact=True,
-         nose=0.3, failure=1.6, friction=0, path=80, factor=0.5, rings=0):
-    """`cells`: through the plate; `half_width`: of the plate, mm; `nose`: spacing of the particles in the rod's nose, in cells, half a cell at its rear; `failure`: plastic
-    strain; `path`: of the rod until the end, mm, at the mean of the experiment's velocities."""
+         nose=0.3, failure=1.6, heat=890, friction=0, path=140, factor=0.5, rings=0):
+    """`cells`: through the plate; `half_width`: of the plate, mm; `nose`: spacing of the particles in the rod's nose, in cells, half a
+    cell at its rear; `rings`: particles of the rod in rings, with its exact volume; `failure`: plastic strain; `heat`: specific
+    heat of the plate, mJ/(g K); `path`: of the rod until the end, mm, at the mean of the experiment's velocities."""
     cell = THICKNESS / cells
     wide = round(half_width / cell) * cell
     direction = np.array([math.sin(TILT), 0, -math.cos(TILT)])
@@ -33,9 +34,10 @@ def text(cells=13, speed=400, half_width=61, shape="linear", normal="regression"
                 ".//Body[@name='shank']/Geometry": {"dp_bottom": cell / 2, "dp_top": nose * cell, "discretization": rings},
                 ".//Body[@name='nose']/Geometry": {"dp_bottom": nose * cell, "dp_top": nose * cell, "discretization": rings},
                 ".//Body[@name='plate']/Geometry": {"x0": -wide, "lx": 2 * wide, "ly": wide, "dp": cell / 2},
-                ".//XMin": {"value": -math.ceil(80 / cell) * cell}, ".//XMax": {"value": math.ceil(80 / cell) * cell},
-                ".//YMax": {"value": math.ceil(75 / cell) * cell}, ".//ZMin": {"value": -math.ceil(110 / cell) * cell},
+                ".//XMin": {"value": -math.ceil(80 / cell) * cell}, ".//XMax": {"value": math.ceil(110 / cell) * cell},
+                ".//YMax": {"value": math.ceil(75 / cell) * cell}, ".//ZMin": {"value": -math.ceil(200 / cell) * cell},
                 ".//ZMax": {"value": math.ceil(100 / cell) * cell}, ".//FailureModel": {"epmax": failure},
+                ".//Material[@name='aluminium']/StrengthModel": {"SpecHeat": heat},
                 ".//EndTime": {"value": end}, ".//TimeStep": {"factor": factor}, ".//Console": {"print_time": end / 100},
                 ".//PostProcessing": {"time_interval": end / 4, "vtk_data": 0}}
     root = _gallery.scene(JOB)

@@ -11,10 +11,10 @@ COLUMNS = {"speed": ("striking m/s", "d"), "cells": ("cells through the plate", 
            "rings": ("particles of the rod", ""), "contact": ("contact", ""), "particles": ("particles", "d"), "steps": ("steps", "d"),
            "residual": ("residual m/s", ".1f"), "error": ("over the experiment %", "+.1f"), "turned": ("turned, degrees", "+.1f"),
            "failed": ("failed of the plate %", ".2f"), "drift": ("energy drift %", "+.2f"), "cpu_seconds": ("processor s", ".0f")}
-DEFAULT = {"speed": 400, "cells": 13, "half_width": 61, "kind": 1, "normal": "regression", "contact": True, "failure": 1.6, "rings": 0}
+DEFAULT = {"speed": 400, "cells": 13, "half_width": 46, "kind": 1, "normal": "regression", "contact": True, "failure": 1.6, "rings": 0}
 SPEEDS = [{"speed": speed} for speed in rod.KNOWN]
 SMALL = {"half_width": 36}
-CASES = [*SPEEDS, {"cells": 9}, SMALL, SMALL | {"cells": 18}, SMALL | {"rings": 1}, SMALL | {"contact": False}, SMALL | {"kind": 0},
+CASES = [*SPEEDS, {"half_width": 61}, SMALL, SMALL | {"cells": 18}, SMALL | {"rings": 1}, SMALL | {"contact": False}, SMALL | {"kind": 0},
          SMALL | {"normal": "mass_gradient"}]
 
 
