@@ -1,6 +1,6 @@
 """A picture of a scene's particles in the plane of its middle, x and z, at a few times, in colours of one variable:
 
-    picture.py FOLDER [--times 0 0.05 0.1 0.2] [--variable seqv] [--window X0 X1 Z0 Z1] [--quarter] [--out PICTURE.png]
+    picture.py FOLDER [--times 0 0.05 0.1 0.2] [--variable seqv] [--window X0 X1 Z0 Z1] [--half | --quarter] [--out PICTURE.png]
 
 FOLDER: of a run of mpm_run with h5part="1" and the variable among its outputs. The default is four times of those that
 the run wrote, from the first to the last."""
@@ -22,6 +22,7 @@ def main():
     parser.add_argument("--times", nargs="+", type=float)
     parser.add_argument("--variable", default="seqv")
     parser.add_argument("--window", nargs=4, type=float, metavar=("X0", "X1", "Z0", "Z1"), help="what is shown; default: all")
+    parser.add_argument("--half", action="store_true", help="the scene has a symmetry plane at y = 0: the layer next to it")
     parser.add_argument("--quarter", action="store_true", help="the scene is a quarter between symmetry planes at x = 0 and y = 0: the layer next to y = 0, and its image")
     parser.add_argument("--out", type=pathlib.Path, help="default: JOB.png in the folder")
     options = parser.parse_args()
@@ -35,15 +36,15 @@ def main():
         shown = [steps[np.abs(written - time).argmin()] for time in times]
         if options.variable not in shown[0]:
             raise SystemExit(f"{files[0]}: no variable {options.variable}; it has {', '.join(shown[0])}")
-        slices = [middle(step, options.variable, options.quarter) for step in shown]
+        slices = [middle(step, options.variable, options.half, options.quarter) for step in shown]
         titles = [f"t = {float(step.attrs['TimeValue']):g}" for step in shown]
     draw(slices, titles, options.variable, options.window, options.out or files[0].with_suffix(".png"))
 
 
-def middle(step, variable, quarter):
+def middle(step, variable, half, quarter):
     """x, z and the variable of the layer of particles next to the middle along y, drawn from the rear to the front."""
     x, y, z, value = (step[name][:].astype(float) for name in ("x", "y", "z", variable))
-    centre = 0 if quarter else (y.min() + y.max()) / 2
+    centre = 0 if half or quarter else (y.min() + y.max()) / 2
     thick = 1.5 * np.cbrt(np.ptp(x) * np.ptp(y) * np.ptp(z) / len(x))
     near = np.flatnonzero(np.abs(y - centre) <= thick)
     near = near[np.argsort(-y[near])]

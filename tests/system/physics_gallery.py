@@ -1,6 +1,8 @@
 """The scenes of apps/scenes that have known answers, with coarse cells; finer ones: elastic_balls.py,
 taylor_bar_on_a_plate.py, symmetric_taylor_impact.py, ball_through_a_plate.py, hemisphere_into_soil.py,
 lead_on_lead.py and granular.py of tests/validation.
+taylor_bar_on_a_plate.py, symmetric_taylor_impact.py, ball_through_a_plate.py, rod_through_a_plate.py,
+projectile_through_concrete.py and granular.py of tests/validation.
 
 Prints what it measures."""
 
@@ -11,6 +13,8 @@ import _granular
 import _hemisphere
 import _lead
 import _mpm
+import _projectile_through_concrete
+import _rod_through_plate
 import _symmetric_impact
 import _water_drop
 
