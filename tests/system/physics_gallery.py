@@ -1,8 +1,5 @@
-"""The scenes of apps/scenes that have known answers, with coarse cells; finer ones: elastic_balls.py,
-taylor_bar_on_a_plate.py, symmetric_taylor_impact.py, ball_through_a_plate.py, hemisphere_into_soil.py,
-lead_on_lead.py and granular.py of tests/validation.
-taylor_bar_on_a_plate.py, symmetric_taylor_impact.py, ball_through_a_plate.py, rod_through_a_plate.py,
-projectile_through_concrete.py and granular.py of tests/validation.
+"""The scenes of apps/scenes that have known answers, with coarse cells; finer ones: the scripts of the same names, elastic_balls.py and
+granular.py of tests/validation.
 
 Prints what it measures."""
 
