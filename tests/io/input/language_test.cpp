@@ -83,7 +83,7 @@ TEST_CASE("the Specification itself says nothing about a law") {
     CHECK(spec.together.empty());
     for (const io::AttributeSpec& a : spec.attributes) {
       INFO(a.name);
-      const bool of_the_element = a.name == "type" || a.name == "Erosion";
+      const bool of_the_element = a.name == "type" || a.name == "Erosion" || a.name == "limiter";
       CHECK((of_the_element && a.for_types.empty()));
     }
   }
