@@ -211,8 +211,7 @@ def table(rows):
     columns = {"case": (lambda r: f"{r['case']}, {r['cells']} cells", ""), "shape": (lambda r: f"`{r['shape']}`", ""),
                "viscosity in": (lambda r: r["viscosity"], "")}
     for name, heading, how in (("density", "L1 error of density, %", ".2f"), ("velocity", "L1 error of velocity, %", ".2f"),
-                               ("overshoot", "overshoot, %", "+.1f"), ("heat", "heat too much, %", "+.2f"),
-                               ("cost", "time of a step, %", "+.1f")):
+                               ("overshoot", "overshoot, %", "+.1f"), ("heat", "heat too much, %", "+.2f")):
         columns[heading] = (lambda r, name=name: 100 * r[name], how)
     return results.markdown(rows, columns)
 
