@@ -512,7 +512,7 @@ TEST_CASE("what the consistent mass matrix cannot do") {
       {"<Solution>", "<Solution transfer=\"PIC\" mass=\"lumped\">", {"ok"}},
       {"<Solution>",
        "<Solution mass=\"full\">",
-       {"line 25: <Solution mass=\"full\">: expected lumped or consistent"}},
+       {"line 25: <Solution mass=\"full\">: expected one of lumped, consistent"}},
       {"<Solution>",
        with(" transfer=\"FMPM\""),
        {fault + "is available only with transfer FLIP, not with FMPM: expected lumped, or transfer FLIP"}},
