@@ -2,6 +2,7 @@
 #include "core/step/explicit_integrator.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -82,11 +83,10 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       then("velocities and motion", [&] { pass.update_velocities_and_move(); });
       break;
     case Scheme::usl:
+      if (solves) throw std::logic_error("USL with the consistent mass matrix");
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
       correct_velocities();
-      solve("velocities", Passes::MassSystem::velocity_at_end);
-      solve("increments", Passes::MassSystem::increment);
       then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
   }

@@ -136,7 +136,7 @@ void PassesWith<S, T>::take_solved_motion([[maybe_unused]] Slot s, [[maybe_unuse
   if constexpr (solves) {
     const int nodes = shared_.nodes();
     take_solution(nodes, solution(s), Motion::increment_at, Motion::increment_at, at.nodes.data());
-    if (scheme_ != Scheme::musl || loads_.any())
+    if (scheme_ == Scheme::usf || loads_.any())
       take_solution(nodes, solution(s), Motion::velocity_at, Motion::velocity_at, at.nodes.data());
   }
 }

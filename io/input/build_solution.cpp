@@ -145,6 +145,15 @@ void check_mass(const Node& node, const core::Scene& scene, const BuildContext& 
                        node.word("transfer")));
   else if (solution.flip_fraction != 1)
     refuse("is available only with the whole of FLIP: expected lumped, or flip_fraction 1");
+  const core::ShapeFunction shape = scene.grid.shape;
+  if (shape == core::ShapeFunction::cpdi || shape == core::ShapeFunction::cpdi2)
+    refuse(
+        "is not available with CPDI and CPDI2, whose domains tangle at the surface of a fluid: expected "
+        "lumped, or another shape function");
+  if (solution.scheme == core::Scheme::usl)
+    refuse(
+        "is not available with algorithm USL, whose strains would gain energy at light nodes: expected "
+        "lumped, or algorithm MUSL or USF");
   if (solution.integration == core::Integration::implicit)
     refuse("is not available with implicit steps, which have lumped masses: expected lumped");
   if (scene.contact.enable)

@@ -46,6 +46,9 @@ def scene(number, seed):
     shape = rng.choice(SHAPES)
     transfer = rng.choice(TRANSFERS + (AFFINE if shape in AFFINE_SHAPES else []))
     scheme = rng.choice(("MUSL", "USF", "USL"))
+    if "consistent" in transfer:
+        scheme = "USF" if scheme == "USL" else scheme
+        shape = "CubicBSpline" if "CPDI" in shape else shape
     faces = "".join(rng.choice("01234") if rng.random() < 0.5 else rng.choice("02") for _ in range(6))
     faces = faces.replace("3", "2")
     more = "".join(text for text in ('<Gravity ax="0" ay="0" az="-9.81"/>', f'<Volume update_type="{rng.randrange(5)}"/>',

@@ -258,7 +258,6 @@ void ReferenceStepper::integrate_momentum(double dt) {
         if (case_.boundary[2 * a + side] != 0 && index[a] == (side == 0 ? layer_ : nodes_[a] - 1 - layer_))
           full /= 2;
     const double left_out = node.m < full * floor ? 1 - node.m / (full * floor) : 0.0;
-    node.left_out = left_out;
     for (std::size_t a = 0; a < 3; ++a) {
       const double p_old = node.p[a];
       node.start[a] = p_old / node.m;
@@ -368,15 +367,13 @@ void ReferenceStepper::stop_at_walls(Vector Node::*of) {
   });
 }
 
-/// Consistent mass: the increments; the velocities at the end, but for MUSL.
+/// Consistent mass: the increments; USF: the velocities at the end.
 template <class Support>
 void ReferenceStepper::solve_motion(double dt) {
   for_active_nodes([&](const Index&, Node& node) {
     for (std::size_t a = 0; a < 3; ++a) node.du[a] = dt * node.a[a];
-    if (case_.scheme == ReferenceScheme::usl) node.u = node.v;
   });
   solve_mass<Support>(&Node::du, &Node::v);
-  if (case_.scheme == ReferenceScheme::usl) solve_mass<Support>(&Node::u, &Node::v);
   for_active_nodes([&](const Index& index, Node& node) {
     for (std::size_t a = 0; a < 3; ++a) {
       node.a[a] = node.du[a] / dt;
@@ -386,11 +383,6 @@ void ReferenceStepper::solve_motion(double dt) {
     }
   });
   stop_at_walls(&Node::u);
-  if (case_.scheme != ReferenceScheme::usl) return;
-  for_active_nodes([&](const Index&, Node& node) {
-    for (std::size_t a = 0; a < 3; ++a)
-      node.w[a] = node.u[a] - node.left_out * (node.du[a] - dt * case_.gravity[a]);
-  });
 }
 
 template <class Support>
@@ -466,9 +458,8 @@ void ReferenceStepper::final_velocities() {
     for (std::size_t a = 0; a < 3; ++a) {
       if (case_.scheme == ReferenceScheme::musl) node.w[a] /= node.m;
       // MUSL's stress update knows the nodes by the velocity with which they move.
-      const Vector& known = case_.consistent                        ? (moves_last() ? node.v : node.u)
-                            : case_.scheme == ReferenceScheme::musl ? moving(node)
-                                                                    : node.v;
+      const bool by_motion = case_.scheme == ReferenceScheme::musl && !case_.consistent;
+      const Vector& known = by_motion ? moving(node) : node.v;
       const bool held = case_.wall_reaction && known[a] == 0 &&
                         (stop(index, a, 1) == Stop::wall || stop(index, a, -1) == Stop::wall);
       if (held || stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;

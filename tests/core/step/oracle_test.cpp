@@ -177,7 +177,7 @@ TEST_CASE("XPIC and FMPM: a block flies, hits walls and leaves them as the naive
 TEST_CASE("Consistent mass: a small block flies, hits walls and leaves them as the naive stepper lets it",
           "[oracle]") {
   for (const ReferenceShape shape : reference_shapes) {
-    for (const ReferenceScheme scheme : schemes) {
+    for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::musl}) {
       for (const int boundary : {0, 1, 2, 4}) {
         INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", boundary "
                       << boundary);

@@ -520,9 +520,32 @@ TEST_CASE("what the consistent mass matrix cannot do") {
        with(" flip_fraction=\"0.9\""),
        {fault + "is available only with the whole of FLIP: expected lumped, or flip_fraction 1"}},
       {"<Solution>",
+       with(" algorithm=\"USL\""),
+       {fault +
+        "is not available with algorithm USL, whose strains would gain energy at light nodes: expected "
+        "lumped, or algorithm MUSL or USF"}},
+      {"<Solution>",
        with(" Integration=\"impl\""),
        {fault + "is not available with implicit steps, which have lumped masses: expected lumped"}},
   });
+}
+
+TEST_CASE("what the consistent mass matrix does not go with elsewhere") {
+  const auto faults = [](std::string_view from, std::string_view to) {
+    return test::faults(
+        test::replaced(test::replaced(test::bar, from, to), "<Solution>", "<Solution mass=\"consistent\">"));
+  };
+  for (const std::string shape : {"CPDI", "CPDI2"}) {
+    CHECK(faults("<Grid>", "<Grid shape=\"" + shape + "\">") ==
+          std::vector<std::string>{
+              "line 25: <Solution mass=\"consistent\">: is not available with CPDI and CPDI2, whose domains "
+              "tangle at the surface of a fluid: expected lumped, or another shape function"});
+  }
+  const std::vector<std::string> contact = faults("</PeneBlast>", "<Contact enable=\"1\"/></PeneBlast>");
+  REQUIRE(contact.size() == 2);
+  CHECK(contact[0] ==
+        "line 25: <Solution mass=\"consistent\">: is not available with Contact, whose impulses act between "
+        "lumped masses: expected lumped, or Contact enable 0");
 }
 
 TEST_CASE("all faults come at once, in the order of the lines") {
