@@ -24,7 +24,7 @@ def particles(apart):
     return 4 * sum(int((squares <= radius**2).sum()) for radius in outline if radius > 0)
 
 
-def text(cells=44, speed=749, radius=120, shape="linear", normal="regression", kind=1, distance=2, gap=0.05, contact=True, split=2,
+def text(cells=32, speed=749, radius=200, shape="linear", normal="regression", kind=1, distance=2, gap=0.05, contact=True, split=2,
          path=250, factor=0.5, strength=None):
     """`cells`: through the slab; `radius`: of the slab, mm; `split`: particles of the projectile along half a cell; `path`: of
     the projectile until the end, mm, at the mean of the experiment's velocities; `strength`: attributes of the concrete's."""

@@ -18,7 +18,8 @@ def text(cells=13, speed=400, half_width=61, shape="linear", normal="regression"
          nose=0.3, failure=1.6, heat=890, friction=0, path=140, factor=0.5, rings=0):
     """`cells`: through the plate; `half_width`: of the plate, mm; `nose`: spacing of the particles in the rod's nose, in cells, half a
     cell at its rear; `rings`: particles of the rod in rings, with its exact volume; `failure`: plastic strain; `heat`: specific
-    heat of the plate, mJ/(g K); `path`: of the rod until the end, mm, at the mean of the experiment's velocities."""
+    heat of the plate, mJ/(g K); `path`: of the rod until the end, mm, at the mean of the experiment's velocities; slow rods need
+    more, since they are slower than that while they leave the plate."""
     cell = THICKNESS / cells
     wide = round(half_width / cell) * cell
     direction = np.array([math.sin(TILT), 0, -math.cos(TILT)])
