@@ -2,7 +2,7 @@
 
   viscosity.py              two shocks and a smooth wave, with linear functions and a quadratic spline; some minutes
   viscosity.py --quick      coarse, with the spline only; seconds
-  viscosity.py --docs       also writes the table into docs/methods.md
+  viscosity.py --docs       also writes the tables into docs/methods.md; the times need an otherwise idle machine
 
 Sod's tube and the plane shock in copper are those of accuracy.py and tests/validation; the wave is the first mode of a copper
 bar between two walls, without a shock, against a Lagrangian solution in finite differences. Heat: the energy of the
@@ -246,14 +246,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="coarse, with the spline only")
     parser.add_argument("--docs", action="store_true", help="write the table into docs/methods.md")
-    parser.add_argument("--repeats", type=int, default=5, help="runs of each for the time of a step; default 5")
+    parser.add_argument("--repeats", type=int, default=15, help="runs of each for the time of a step; default 15")
     parser.add_argument("--out", type=pathlib.Path, default=results.ROOT / "build/accuracy", help="folder of viscosity.csv and viscosity_cost.csv")
     options = parser.parse_args()
     if options.quick and options.docs:
         parser.error("--docs needs the whole benchmark, without --quick")
     cases = [Sod(50), Copper(50), Wave(25)] if options.quick else [Sod(200), Copper(100), Wave(100)]
     shapes = [methods.Method(shape) for shape in (("QuadraticBSpline",) if options.quick else ("linear", "QuadraticBSpline"))]
-    across, repeats = (1, 1) if options.quick else (5, options.repeats)
+    across, repeats = (1, 1) if options.quick else (3, options.repeats)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name) / "run"
         rows = [row for case in cases for shape in shapes for row in measure(case, shape, folder)]
