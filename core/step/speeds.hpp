@@ -58,7 +58,7 @@ inline double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) 
   }
 }
 /// With the consistent mass matrix, which does not smooth the nodes' forces; MUSL and USF. The least of the
-/// measured, block and fluid: linear 0.3 (not 0.45), DDMP 0.37, GIMP 0.56, quadratic 0.57, cubic 0.65, SGMP
+/// measured, block and fluid: linear 0.3 (not 0.45), DDMP 0.37, GIMP 0.52, quadratic 0.57, cubic 0.65, SGMP
 /// 0.77.
 inline double consistent_wave_limit(ShapeFunction shape) {
   switch (shape) {
