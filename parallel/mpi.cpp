@@ -4,8 +4,10 @@
 #include <cstdlib>
 #include <exception>
 #include <limits>
+#include <new>
 #include <utility>
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace mpm::parallel {
@@ -23,12 +25,23 @@ std::string text_of(const char* function, int code) {
   return std::string(function) + ": " + std::string(text, static_cast<std::size_t>(length));
 }
 
+/// Whether less is left than MPI may need at once for its buffers.
+bool memory_is_exhausted() {
+  constexpr std::size_t needed = std::size_t{16} << 20;
+  void* const room = ::mmap(nullptr, needed, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) return true;
+  ::munmap(room, needed);
+  return false;
+}
+
 }  // namespace
 
 MpiError::MpiError(const char* function, int code) : std::runtime_error(text_of(function, code)) {}
 
 void check(int code, const char* function) {
-  if (code != MPI_SUCCESS) throw MpiError(function, code);
+  if (code == MPI_SUCCESS) return;
+  if (memory_is_exhausted()) throw std::bad_alloc();
+  throw MpiError(function, code);
 }
 
 int count_of(std::size_t n) {

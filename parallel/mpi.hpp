@@ -24,7 +24,8 @@ class MpiError : public std::runtime_error {
 /// Bytes of the longest message in one piece; a multiple of the size of what is sent.
 inline constexpr std::size_t longest_piece = std::size_t{1} << 30;
 
-/// Throws MpiError unless `code` is MPI_SUCCESS.
+/// Throws MpiError unless `code` is MPI_SUCCESS; std::bad_alloc if this process has no memory left, which MPI
+/// calls an internal error.
 void check(int code, const char* function);
 /// `n` as an MPI count; throws std::length_error if it is too large.
 int count_of(std::size_t n);

@@ -114,16 +114,15 @@ def row_text(case, point, row):
 
 
 def measure(case, points, options):
-    """Rows of the points. What the program refuses once for a shape and transfer is not tried at every resolution."""
-    refused = {}
+    """Rows of the points. A method that the program refuses once is not tried at every resolution."""
+    refused = set()
 
     def one(point):
-        pair = point.method.shape, point.method.transfer
-        if pair in refused:
+        if point.method in refused:
             return None
         row = runner.run(case, point, options.plots, options.keep)
         if row["status"] == runner.REFUSED:
-            refused.setdefault(pair, row)
+            refused.add(point.method)
         print(row_text(case, point, row), file=sys.stderr, flush=True)
         return row
 

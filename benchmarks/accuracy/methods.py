@@ -23,8 +23,11 @@ def shapes():
     return choices("Grid", "shape")
 
 
+CONSISTENT = "consistent"  # FLIP with the consistent mass matrix: in the tables a transfer of its own
+
+
 def transfers():
-    return choices("Solution", "transfer")
+    return (*choices("Solution", "transfer"), CONSISTENT)
 
 
 def schemes():
@@ -72,5 +75,8 @@ def short():
 def choose(root, method):
     """Puts the method into a scene, the root of an input file."""
     root.find("Grid").set("shape", method.shape)
-    root.find("Solution").set("transfer", method.transfer)
+    if method.transfer == CONSISTENT:
+        root.find("Solution").set("mass", "consistent")
+    else:
+        root.find("Solution").set("transfer", method.transfer)
     root.find("Solution").set("algorithm", method.scheme)

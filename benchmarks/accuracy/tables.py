@@ -13,7 +13,8 @@ import methods
 import runner
 from case import order
 
-STYLES = {"FLIP": "-", "APIC": "--", "TPIC": "-.", "AFLIP": ":", "PIC": (0, (1, 4))}
+STYLES = {"FLIP": "-", "APIC": "--", "TPIC": "-.", "AFLIP": ":", "PIC": (0, (1, 4)), "XPIC": (0, (5, 1, 1, 1)),
+          "FMPM": (0, (3, 3)), methods.CONSISTENT: (0, (8, 2))}
 MARKERS = {"MUSL": "o", "USF": "s", "USL": "^"}
 
 
@@ -70,10 +71,14 @@ def series(case, rows, study):
     return found
 
 
+def is_number(found):
+    return isinstance(found, float) and math.isfinite(found)
+
+
 def value(row, error):
     """Absolute value of the error; None where there is none."""
     found = row[error]
-    return abs(found) if row["status"] == runner.DONE and isinstance(found, float) and math.isfinite(found) else None
+    return abs(found) if row["status"] == runner.DONE and is_number(found) else None
 
 
 def orders(case, rows, study, error):
@@ -132,7 +137,7 @@ def study_table(case, rows, study):
         line |= {f"at {place:g}": cell(mine, place) for place in places}
         line["orders"] = " ".join("–" if o is None else f"{o:.2f}" for o in orders(case, mine, study, main))
         done = [r for r in mine if r["status"] == runner.DONE]
-        line |= {name: done[-1][name] if done and isinstance(done[-1][name], float) else None for name in others}
+        line |= {name: done[-1][name] if done and is_number(done[-1][name]) else None for name in others}
         line["seconds"] = done[-1]["seconds"] if done else None
         lines.append(line)
     columns = {name: (lambda r, name=name: r[name], "") for name in ("shape", "transfer", "scheme")}

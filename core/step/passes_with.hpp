@@ -1,9 +1,9 @@
-// The passes (passes.hpp) with shape functions S and transfer T: what each does in which order, brick by
-// brick. Operations on a brick, a block or a batch are functions of their own (brick_operations.hpp,
-// contact_operations.hpp, correct_velocities.hpp, solve_mass.hpp); for_bricks and for_each_block define the
-// order and the prefetching. Instantiated once per pair (passes_<shape>.cpp), through make_passes_with alone:
-// the compiler inlines members of a class template that is instantiated explicitly less freely (5 % of MUSL's
-// time).
+// The passes (passes.hpp) with shape functions S and transfer T. scheme_passes.hpp has what each does in
+// which order, brick by brick; operations on a brick, a block or a batch are functions of their own
+// (brick_operations.hpp, contact_operations.hpp, correct_velocities.hpp, solve_mass.hpp); for_bricks and
+// for_each_block define the order and the prefetching. Instantiated once per pair (passes_<shape>.cpp),
+// through make_passes_with alone: the compiler inlines members of a class template that is instantiated
+// explicitly less freely (5 % of MUSL's time).
 #pragma once
 
 #include <cmath>
@@ -413,135 +413,10 @@ void PassesWith<S, T>::map_bricks(F work) {
 #include "core/step/brick_operations.hpp"
 #include "core/step/contact_operations.hpp"
 #include "core/step/correct_velocities.hpp"
+#include "core/step/scheme_passes.hpp"
 #include "core/step/solve_mass.hpp"
 
 namespace mpm::core {
-
-// --- the passes -------------------------------------------------------------------------------------------
-
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_velocities_and_map_back() {
-  motion_.resize(static_cast<std::size_t>(motion_doubles()) *
-                 (contact_ ? contact_->all_seen() : static_cast<std::size_t>(model_.grid->owned())));
-  map_bricks<mapped::momentum>([&](Slot s, Scratch& at) {
-    const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
-      take_updated_nodes(s, at);
-      keep_motion(shared_.nodes(), moving_nodes(s, at), motion(s, k));
-      auto nodes = prefetch_nodes<NodeArray::first>(s);
-      SpreadPrefetch room = prefetch_motion(s);
-      const BrickFrame frame = this->frame(s);
-      map_brick<mapped::momentum>(s, component, at,
-                                  [&](int body, const Place& place, double* block, int used) {
-                                    nodes.next();
-                                    room.next();
-                                    update_velocities(s, frame, body, place, block, used, at);
-                                  });
-    });
-    if (contact_ && contact_->meets(s)) keep_motion_of_others(s, at);
-    at.add_work_of_brick();
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_stress_and_move() {
-  const BrickGrid& grid = *model_.grid;
-  departing_.resize(static_cast<std::size_t>(grid.owned()));
-  for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    const auto update = [&](std::int32_t component, std::size_t k) {
-      recall_motion(shared_.nodes(), motion(s, k), at.nodes.data());
-      if constexpr (solves) return take_solved_strain(s, at);
-      sum<NodeArray::second>(momentum_shared_, s, component, at.sums.data());
-      second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
-    };
-    for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
-                   [&](std::int32_t component, std::size_t) {
-                     at.field.take_motion(at.nodes.data());
-                     at.field.take_strain(frame(s), at.nodes.data());
-                     auto nodes = prefetch_nodes<NodeArray::second>(s);
-                     SpreadPrefetch room = prefetch_motion(s);
-                     stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
-                       nodes.next();
-                       room.next();
-                     });
-                   });
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_stress_and_map_forces() {
-  const BrickGrid& grid = *model_.grid;
-  critical_.assign(static_cast<std::size_t>(grid.owned()), 0.0);
-  map_bricks<mapped::force>([&](Slot s, Scratch& at) {
-    const auto update = [&](std::int32_t component, std::size_t) {
-      sum<NodeArray::second>(momentum_shared_, s, component, at.nodes.data());
-      second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
-                        at.nodes.data());
-      take_solved_strain(s, at);
-    };
-    for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
-      at.field.take_strain(frame(s), at.nodes.data());
-      auto nodes = prefetch_nodes<NodeArray::second>(s);
-      stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
-      map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});
-    });
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_velocities_and_move() {
-  const BrickGrid& grid = *model_.grid;
-  departing_.resize(static_cast<std::size_t>(grid.owned()));
-  for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t) {
-      take_updated_nodes(s, at);
-      // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
-      // particles.
-      at.statistics.fastest =
-          std::max(at.statistics.fastest,
-                   critical_[static_cast<std::size_t>(s)] + velocities_and_motion_of_brick(s, component, at));
-    });
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::update_all() {
-  const BrickGrid& grid = *model_.grid;
-  departing_.resize(static_cast<std::size_t>(grid.owned()));
-  for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t) {
-      take_updated_nodes(s, at);
-      velocities_of_brick(s, component, at);
-      regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
-      at.field.take_strain(frame(s), at.nodes.data());
-      auto nodes = prefetch_nodes<NodeArray::first>(s);
-      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
-    });
-  });
-}
-
-template <ShapePolicy S, TransferPolicy T>
-StepStatistics PassesWith<S, T>::take_statistics() {
-  StepStatistics total;
-  for (Scratch& w : scratch_) {
-    total.fastest = std::max(total.fastest, w.statistics.fastest);
-    total.limited += w.statistics.limited;
-    total.domains += w.statistics.domains;
-    total.events += w.statistics.events;
-    total.vanishing.merge(w.statistics.vanishing);
-    total.negative.merge(w.statistics.negative);
-    total.work += w.statistics.work;
-    if (contact_) {
-      total.contact += w.contact.record;
-      total.fastest = std::max(total.fastest, contact_->speed_of_step(w.contact));
-      w.contact = {};
-    }
-    w.statistics = {};
-  }
-  return total;
-}
 
 template <class S, class T>
 std::unique_ptr<Passes> make_passes_with(Model& model, NodeHalo& halo, RigidBodies* rigid) {

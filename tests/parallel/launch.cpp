@@ -1,6 +1,11 @@
 #include "parallel/launch.hpp"
 
+#include <fstream>
+#include <new>
+
 #include <catch2/catch.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "core/scene/errors.hpp"
 #include "tests/parallel/world.hpp"
@@ -133,4 +138,22 @@ TEST_CASE("A failed call names itself") {
   CHECK_THROWS_WITH(check(MPI_Bcast(&value, 1, MPI_INT, world().size(), world().handle()), "MPI_Bcast"),
                     Catch::StartsWith("MPI_Bcast: ") && Catch::Contains("root"));
   CHECK_THROWS_AS(count_of(std::size_t{1} << 31), std::length_error);
+}
+
+TEST_CASE("A call that fails where no memory is left is out of memory") {
+  struct AddressSpace {
+    rlimit before{};
+    AddressSpace() {
+      std::size_t pages = 0;
+      std::ifstream("/proc/self/statm") >> pages;
+      REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
+      rlimit tight = before;
+      tight.rlim_cur = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (std::size_t{8} << 20);
+      REQUIRE(setrlimit(RLIMIT_AS, &tight) == 0);
+    }
+    ~AddressSpace() { setrlimit(RLIMIT_AS, &before); }
+  };
+  CHECK_THROWS_AS(check(MPI_ERR_INTERN, "MPI_Allreduce"), MpiError);
+  const AddressSpace limit;
+  CHECK_THROWS_AS(check(MPI_ERR_INTERN, "MPI_Allreduce"), std::bad_alloc);
 }

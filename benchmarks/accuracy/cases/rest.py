@@ -1,0 +1,92 @@
+"""Water and sand that have come to rest: how much the pressure of particles scatters inside a cell."""
+
+import numpy as np
+
+import methods
+from case import Case, Error, Study, Unmeasurable
+import _cases
+from cases import support
+from cases.dam_break import DENSITY, GRAVITY, SIDE, SOUND
+
+SAND = {"density": 1600.0, "side": 0.1}
+# As apps/scenes/sand_column.
+SAND_LAW = ('type="DruckerPrager" Young="1e6" Poisson="0.3" qfai="0.6009" kfai="0" qpsi="0" ten_f="0" closes="1" '
+            'VarSoundspeed="1"')
+FULL = 4  # particles of a cell that counts
+COVERED = 2  # cells above it
+
+
+class Rest(Case):
+    name = "rest"
+    title = "Pressure at rest"
+    about = f"""Water: a square of water (that of the dam break) falls apart in a tank twice as wide, slowed down
+(`DynamicRelax`), and comes to rest at half its height, its particles in disorder. Sand: the column of
+[sand_column](../apps/scenes/sand_column/README.md), which falls apart on a rough floor and comes to rest by friction. The
+scatter is the standard deviation of the particles' pressure inside a cell, over the mean pressure; *hydrostatic*: the root
+mean square of the deviation from rho g (depth), over its mean. Cells with {FULL} particles or more, {COVERED} cells or more
+below the surface, count. *velocity*: root mean square of what is left, over the square root of g times the height. *averaged*: with
+`Volumetric averaging="cell"`."""
+    errors = {"scatter": Error("pressure inside a cell, % of its mean", ".1f", 100, order=False),
+              "hydrostatic": Error("off the hydrostatic pressure, %", ".1f", 100, order=False),
+              "velocity": Error("velocity left", ".1e", order=False),
+              "drift": Error("energy drift, %", "+.2f", 100, order=False)}
+    studies = {"water": Study("water, cells along the square, factor 0.9.", (8, 16), 0.9, quick=True),
+               "water_averaged": Study("the same, averaged.", (8, 16), 0.9),
+               "sand": Study("sand, cells along the column's foot, factor 0.9.", (10, 20), 0.9),
+               "sand_averaged": Study("the same, averaged.", (10, 20), 0.9)}
+
+    def methods(self):
+        return list(dict.fromkeys([*methods.short(), *methods.product(("CubicBSpline", "uGIMP"), ("APIC", "AFLIP"))]))
+
+    def scene(self, point):
+        averaged = '<Volumetric averaging="cell"/>' if point.study.endswith("averaged") else ""
+        return (self.water if point.study.startswith("water") else self.sand)(point, averaged)
+
+    @staticmethod
+    def water(point, averaged):
+        h = SIDE / point.cells
+        body = support.block("water", (0, 0, 0), (SIDE, h, SIDE), h / point.split, "water")
+        equation = f'<EquationOfState type="Polynomial" c0="0" c1="{DENSITY * SOUND**2}" c2="0" c3="0" c4="0" c5="0" c6="0"/>'
+        more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/><DynamicRelax damping="25"/>{averaged}'
+        return support.scene([body], support.grid((0, 0, 0), (2 * SIDE, h, 1.5 * SIDE), "222222", h),
+                             support.solution(1.0, point.factor, more),
+                             [support.material("water", DENSITY, 'type="Null" mu="1e-3"', equation)],
+                             support.pictures(1.0, ["pres"]))
+
+    @staticmethod
+    def sand(point, averaged):
+        side = SAND["side"]
+        h = side / point.cells
+        body = support.block("sand", (0, 0, 0), (side, h, side), h / point.split, "sand")
+        more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/>{averaged}'
+        return support.scene([body], support.grid((0, 0, 0), (5 * side, h, side + 3 * h), "202210", h),
+                             support.solution(1.0, point.factor, more), [support.material("sand", SAND["density"], SAND_LAW)],
+                             support.pictures(1.0, ["pres"]))
+
+    def measure(self, point, folder):
+        states = _cases.States(folder)  # a few grains of sand fly out of the grid
+        is_water = point.study.startswith("water")
+        side = SIDE if is_water else SAND["side"]
+        h = side / point.cells
+        x, z, p = (states.column(name) for name in ("x", "z", "pres"))
+        column, layer = np.floor(x / h).astype(int), np.floor(z / h).astype(int)
+        # The surface of a column of cells: what its particles fill.
+        depth = np.bincount(column) * (h / point.split) ** 2 / (h * point.split)
+        below = layer + 1 + COVERED <= depth[column] / h
+        _, at = np.unique(column + 100000 * layer, return_inverse=True)
+        count = np.bincount(at)
+        mean = np.bincount(at, p) / count
+        inner = below & (count[at] >= FULL)
+        if not inner.any():
+            raise Unmeasurable("no cell is deep enough below the surface")
+        found = {"scatter": float(np.sqrt(((p - mean[at])[inner] ** 2).mean()) / abs(p[inner].mean())),
+                 "velocity": support.rms(support.velocities(states)) / (GRAVITY * side) ** 0.5,
+                 "hydrostatic": float("nan"), "drift": support.drift(folder)}
+        if is_water:
+            hydrostatic = DENSITY * GRAVITY * (SIDE / 2 - z)
+            off = np.sqrt(((p - hydrostatic)[inner] ** 2).mean())
+            found["hydrostatic"] = float(off / hydrostatic[inner].mean())
+        return found
+
+
+CASE = Rest()
