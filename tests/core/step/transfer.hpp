@@ -119,12 +119,14 @@ DomainCorners read_domain(const core::ColumnLayout& layout, const double* column
   return corner;
 }
 
-/// 10 x 11 x 9 oblong cells, origin negative: the last bricks are partial.
+/// 10 x 11 x 9 oblong cells, origin negative: the last bricks are partial. The edges are powers of two, so
+/// that positions on faces are exact in cells too: where a compiler fuses a multiplication with a subtraction
+/// in one place and not in another, particles would be on either side of a face, and gradients jump there.
 inline core::GridGeometry transfer_geometry(core::Site site) {
   core::GridGeometry g;
-  g.origin = {-7.3, -20, 1e-3};
-  g.cell = {0.7, 1.3, 2.1};
-  g.inverse_cell = {1 / 0.7, 1 / 1.3, 1 / 2.1};
+  g.origin = {-7.25, -20, -16.125};
+  g.cell = {0.5, 2, 4};
+  g.inverse_cell = {2, 0.5, 0.25};
   g.cells = {10, 11, 9};
   g.site = site;
   return g;
