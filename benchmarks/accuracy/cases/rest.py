@@ -30,7 +30,7 @@ below the surface, count. *velocity*: root mean square of what is left, over the
               "hydrostatic": Error("off the hydrostatic pressure, %", ".1f", 100, order=False),
               "velocity": Error("velocity left", ".1e", order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"water": Study("water, cells along the square, factor 0.9.", (8, 16), 0.9, quick=True),
+    studies = {"water": Study("water, cells along the square, factor 0.9.", (8, 16), 0.9),
                "water_averaged": Study("the same, averaged.", (8, 16), 0.9),
                "sand": Study("sand, cells along the column's foot, factor 0.9.", (10, 20), 0.9),
                "sand_averaged": Study("the same, averaged.", (10, 20), 0.9)}

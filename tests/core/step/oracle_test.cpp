@@ -144,19 +144,19 @@ TEST_CASE("A block tumbles through bricks as the naive stepper moves it", "[orac
   for (const ReferenceScheme scheme : schemes) tumble(scheme, 0);
 }
 
-TEST_CASE("USF and MUSL: a block hits walls as the naive stepper lets it", "[oracle]") {
+TEST_CASE("USF and MUSL: a block hits walls as the naive stepper lets it", "[oracle][walls]") {
   for (const int boundary : {1, 2, 4}) {
     tumble(ReferenceScheme::usf, boundary);
     tumble(ReferenceScheme::musl, boundary);
   }
 }
 
-TEST_CASE("USL: a block hits walls as the naive stepper lets it", "[oracle]") {
+TEST_CASE("USL: a block hits walls as the naive stepper lets it", "[oracle][walls]") {
   for (const int boundary : {1, 2, 4}) tumble(ReferenceScheme::usl, boundary);
 }
 
 TEST_CASE("Walls at the faces of bricks, one cell and two cells beyond them are as the naive stepper's",
-          "[oracle]") {
+          "[oracle][walls]") {
   for (const int boundary : {1, 2, 4}) {
     tumble(ReferenceScheme::musl, boundary, 2, 1);    // 16 and 12 cells
     tumble(ReferenceScheme::musl, boundary, -1, -2);  // 13 and 9
