@@ -60,6 +60,8 @@ inline std::vector<Feature> features() {
     add("volume", fmt::format("update {}", how), "update 0, rate", bar,
         {.solution = fmt::format(R"(<Volume update_type="{}"/>)", how[0])});
   add("volume", "averaged over cells", "none", bar, {.solution = R"(<Volumetric averaging="cell"/>)"});
+  add("volume", "the same, with relaxation", "none", bar,
+      {.solution = R"(<Volumetric averaging="cell" relaxation="0.5"/>)"});
   for (const char* shape : {"SGMP", "QuadraticBSpline"}) {
     const std::string with = fmt::format(R"(shape="{}")", shape);
     add("volume", fmt::format("averaged over sites, {}", shape), fmt::format("none, {}", shape),

@@ -126,6 +126,8 @@ struct SolutionInput {
   std::optional<double> limit_velocity;  ///< largest particle speed
   VolumeInput volume;
   VolumeAveraging averaging = VolumeAveraging::none;
+  /// With averages: share of the differences of pressure inside a site that goes while sound crosses a cell.
+  double pressure_relaxation = 0;
   WarnInput warn;
   std::optional<double> energy_fraction;  ///< stop when the relative error of the total energy exceeds this
   double damping = 0;                     ///< dynamic relaxation: force per mass and velocity, 1/time

@@ -320,7 +320,17 @@ template <bool moves>
     if constexpr (!moves) refer_gradient_to_old_positions(at.batch, 0, dt, false);
     at.averages.add_volume_changes(sites_of(place), block + pool.layout().offset(Column::volume),
                                    at.batch.gradient, 0, tile.used_lanes(b));
+    if (model_.scene->solution.pressure_relaxation > 0)
+      at.averages.add_old_pressures(sites_of(place), pool.layout(), block, tile.used_lanes(b));
   }
+}
+
+template <ShapePolicy S, TransferPolicy T>
+typename PassesWith<S, T>::PressureRelaxation PassesWith<S, T>::relaxation_of(const Body& body) const {
+  const double share = model_.scene->solution.pressure_relaxation, c = body.model->initial_sound_speed();
+  if (share == 0 || c <= 0) return {};
+  return {std::min(share * c / model_.grid->geometry().smallest_cell(), 1 / dt),
+          body.model->reference_density() * c * c};
 }
 
 /// Velocity gradient, with `moves` the motion, then the material update, batch by batch. prefetch_nodes() is
@@ -334,8 +344,11 @@ template <bool moves, class F>
   Batch& batch = at.batch;
   double fastest = 0;
   const bool averages = averages_volume_change();
+  PressureRelaxation relaxation;
   const auto average = [&](const ParticleTile& tile) {
-    if (averages) sum_volume_changes<moves>(frame, tile, at);
+    if (!averages) return;
+    sum_volume_changes<moves>(frame, tile, at);
+    relaxation = relaxation_of(model_.bodies[static_cast<std::size_t>(tile.body)]);
   };
   const auto kinematics = [&](int body, int b, int used) {
     prefetch_nodes();
@@ -352,7 +365,12 @@ template <bool moves, class F>
       S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
       refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
     }
-    if (averages) at.averages.average_gradients(sites_of(at.places[b]), batch.gradient, block_lanes * b);
+    if (!averages) return;
+    const int* sites = sites_of(at.places[b]);
+    at.averages.average_gradients(sites, batch.gradient, block_lanes * b);
+    if (relaxation.rate > 0)
+      at.averages.relax_pressures(sites, *batch.layout, batch.block[b], relaxation.rate, relaxation.modulus,
+                                  batch.gradient, block_lanes * b);
   };
   const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
     update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);

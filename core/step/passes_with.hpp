@@ -218,6 +218,12 @@ class PassesWith final : public Passes {
   bool updates_volume_by_cell() const {
     return model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
   }
+  /// Rate at which pressures inside a site become equal, and the modulus with which they do; rate 0: they do
+  /// not.
+  struct PressureRelaxation {
+    double rate = 0, modulus = 0;
+  };
+  PressureRelaxation relaxation_of(const Body& body) const;
   bool averages_volume_change() const { return model_.scene->solution.averaging == VolumeAveraging::cell; }
   BoundaryFaces faces(Slot s) const { return {*model_.grid, s}; }
   BrickFrame frame(Slot s) const { return {*model_.grid, s}; }

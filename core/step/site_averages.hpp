@@ -9,11 +9,21 @@
 // pressure belongs to it: sum V p_c tr L = sum V p theta_c, so that forces do the work that the particles
 // store. With the mean volume change alone a dam break doubles its energy.
 //
+// Equal volume changes leave the pressures of a site's particles as different as they were, and forces do not
+// see the differences: particles that come from different sites, and tension that has been cut off, make more
+// of them all the time. Where sound equalises pressure inside a cell, so does the relaxation (an extension),
+//   tr L_p <- tr L_p + r (c0/h) (p_p - p_c)/K,   K = rho0 c0^2 + 8 |p_c|,   r c0/h at most 1/dt:
+// p_p approaches p_c, sum V_p tr L_p stays as it is, and with it the site's volume. 8 is above dK/dp of
+// solids, liquids and gases, so that the difference does not change its sign. The forces of the step do not
+// change. The particles lose r sum V (p_p - p_c)^2/K of their energy in the time h/c0: that of the
+// differences, twice.
+//
 // A site belongs to one brick, and sums follow the order of its particles: the same bits on any ranks and
 // threads. Tested by tests/core/step/site_averages_test.cpp and against the naive stepper.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/material/batch.hpp"
@@ -49,6 +59,27 @@ class SiteAverages {
     }
   }
 
+  /// Pressures at the start of the step, without viscosity, for relax_pressures().
+  void add_old_pressures(const int* sites, const ColumnLayout& layout, const double* block, int used) {
+    const double* volume = block + layout.offset(Column::volume);
+    const double* pressure = block + layout.offset(Column::pressure);
+    for (int l = 0; l < used; ++l)
+      of_site_[static_cast<std::size_t>(sites[l])].old_pressure += volume[l] * pressure[l];
+  }
+  /// Adds to a block's gradients the volume changes that let its pressures approach those of the sites.
+  /// `rate`: r c0/h; `modulus`: rho0 c0^2.
+  void relax_pressures(const int* sites, const ColumnLayout& layout, const double* block, double rate,
+                       double modulus, Row (&gradient)[9], int at) const {
+    const double* pressure = block + layout.offset(Column::pressure);
+    for (int l = 0; l < block_lanes; ++l) {
+      const OfSite& of = of_site_[static_cast<std::size_t>(sites[l])];
+      if (of.volume <= 0) continue;
+      const double mean = of.old_pressure / of.volume;
+      const double more = rate * (pressure[l] - mean) / (3 * (modulus + 8 * std::abs(mean)));
+      for (int i = 0; i < 9; i += 4) gradient[i][at + l] += more;
+    }
+  }
+
   /// Pressures of the first `used` particles of a block.
   void add_pressures(const int* sites, const ColumnLayout& layout, const double* block, int used) {
     const double* volume = block + layout.offset(Column::volume);
@@ -67,7 +98,7 @@ class SiteAverages {
 
  private:
   struct OfSite {
-    double volume = 0, sum = 0;
+    double volume = 0, sum = 0, old_pressure = 0;
   };
   void add(int site, double volume, double value) {
     OfSite& to = of_site_[static_cast<std::size_t>(site)];

@@ -69,14 +69,17 @@ core::VolumeInput build_volume(const Node& node, const BuildContext& context) {
   return volume;
 }
 
-core::VolumeAveraging build_averaging(const Node& node, core::VolumeUpdate update,
-                                      const BuildContext& context) {
-  if (node.word("averaging") == "none") return core::VolumeAveraging::none;
-  if (update == core::VolumeUpdate::cell)
+void build_averaging(const Node& node, const BuildContext& context, core::SolutionInput& solution) {
+  if (node.word("averaging") == "none") return;
+  solution.averaging = core::VolumeAveraging::cell;
+  solution.pressure_relaxation = node.real("relaxation");
+  if (solution.pressure_relaxation > 0 && solution.integration == core::Integration::implicit)
+    node.report(context.diagnostics, "relaxation",
+                "is available only with Integration=\"expl\": expected 0, or explicit steps");
+  if (solution.volume.update == core::VolumeUpdate::cell)
     node.report(context.diagnostics, "averaging",
                 "does not go with <Volume update_type=\"1\">, which takes the volume change from the cell's "
                 "nodes: expected none, or another update_type");
-  return core::VolumeAveraging::cell;
 }
 
 core::WarnInput build_warn(const Node& node) {
@@ -224,8 +227,7 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
   if (const auto step = node->child("TimeStep")) solution.time_step = build_time_step(*step);
   solution.limit_velocity = value_of("LimitVelocity", "max");
   if (const auto volume = node->child("Volume")) solution.volume = build_volume(*volume, context);
-  if (const auto volumetric = node->child("Volumetric"))
-    solution.averaging = build_averaging(*volumetric, solution.volume.update, context);
+  if (const auto volumetric = node->child("Volumetric")) build_averaging(*volumetric, context, solution);
   if (const auto warn = node->child("Warn")) solution.warn = build_warn(*warn);
   solution.energy_fraction = value_of("EnergyFraction", "value");
   solution.damping = value_of("DynamicRelax", "damping").value_or(0);

@@ -94,6 +94,7 @@ void echo_watches(XmlWriter& w, const core::SolutionInput& solution) {
   {
     const auto volumetric = w.element("Volumetric");
     w.text("averaging", solution.averaging == core::VolumeAveraging::cell ? "cell" : "none");
+    w.number("relaxation", solution.pressure_relaxation);
   }
   const core::WarnInput& warn = solution.warn;
   std::string types = warn.negative_internal_energy ? "|ie" : "";

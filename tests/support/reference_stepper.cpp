@@ -509,6 +509,7 @@ void ReferenceStepper::update_stresses(double dt) {
   std::vector<double> changes;
   for (const Matrix& L : gradients) changes.push_back(trace(L));
   if (case_.average) average(changes);
+  if (case_.relaxation > 0) relax_pressures(dt, changes);
   for (std::size_t p = 0; p < case_.particles.size(); ++p) {
     ReferenceParticle& particle = case_.particles[p];
     Matrix L = gradients[p];
@@ -546,6 +547,17 @@ void ReferenceStepper::average(std::vector<double>& values) const {
     const auto& [volume, sum] = sums[site(case_.particles[p])];
     values[p] = sum / volume;
   }
+}
+
+void ReferenceStepper::relax_pressures(double dt, std::vector<double>& changes) const {
+  const double modulus = case_.material.young / (3 * (1 - 2 * case_.material.poisson));
+  const double sound = std::sqrt(modulus / case_.material.density);
+  const double rate = std::min(case_.relaxation * sound / *std::ranges::min_element(case_.cell), 1 / dt);
+  std::vector<double> means;
+  for (const auto& particle : case_.particles) means.push_back(particle.p);
+  average(means);
+  for (std::size_t p = 0; p < means.size(); ++p)
+    changes[p] += rate * (case_.particles[p].p - means[p]) / (modulus + 8 * std::abs(means[p]));
 }
 
 std::vector<double> ReferenceStepper::acting_pressures() const {

@@ -50,6 +50,7 @@ struct ReferenceCase {
   /// The critical step, in units of a wave's crossing time of a cell.
   double wave_limit = 1;
   bool average = false;    ///< volume changes and pressures over the particles of a site
+  double relaxation = 0;   ///< with averages: of the pressures' differences, per crossing time of sound
   double dt_factor = 0.5;  ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
   /// USL only: for the strain rate a node's internal force is divided by at least this times rho_0 * cell
@@ -170,6 +171,8 @@ class ReferenceStepper {
   void update_stresses(double dt);
   /// Replaces values of the particles by their means over sites, weighted by volume.
   void average(std::vector<double>& values) const;
+  /// Adds to the particles' rates of volume change what lets pressures inside a site become equal.
+  void relax_pressures(double dt, std::vector<double>& changes) const;
 
   ReferenceCase case_;
   Index nodes_{};          ///< along each axis

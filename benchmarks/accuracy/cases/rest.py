@@ -12,6 +12,7 @@ SAND = {"density": 1600.0, "side": 0.1}
 # As apps/scenes/sand_column.
 SAND_LAW = ('type="DruckerPrager" Young="1e6" Poisson="0.3" qfai="0.6009" kfai="0" qpsi="0" ten_f="0" closes="1" '
             'VarSoundspeed="1"')
+RELAXATION = 0.5
 FULL = 4  # particles of a cell that counts
 COVERED = 2  # cells above it
 
@@ -25,21 +26,24 @@ class Rest(Case):
 scatter is the standard deviation of the particles' pressure inside a cell, over the mean pressure; *hydrostatic*: the root
 mean square of the deviation from rho g (depth), over its mean. Cells with {FULL} particles or more, {COVERED} cells or more
 below the surface, count. *velocity*: root mean square of what is left, over the square root of g times the height. *averaged*: with
-`Volumetric averaging="cell"`."""
+`Volumetric averaging="cell"`; *relaxed*: with `relaxation="{RELAXATION}"` besides."""
     errors = {"scatter": Error("pressure inside a cell, % of its mean", ".1f", 100, order=False),
               "hydrostatic": Error("off the hydrostatic pressure, %", ".1f", 100, order=False),
               "velocity": Error("velocity left", ".1e", order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {"water": Study("water, cells along the square, factor 0.9.", (8, 16), 0.9),
                "water_averaged": Study("the same, averaged.", (8, 16), 0.9),
+               "water_relaxed": Study("averaged and relaxed.", (8, 16), 0.9),
                "sand": Study("sand, cells along the column's foot, factor 0.9.", (10, 20), 0.9),
-               "sand_averaged": Study("the same, averaged.", (10, 20), 0.9)}
+               "sand_averaged": Study("the same, averaged.", (10, 20), 0.9),
+               "sand_relaxed": Study("averaged and relaxed.", (10, 20), 0.9)}
 
     def methods(self):
         return list(dict.fromkeys([*methods.short(), *methods.product(("CubicBSpline", "uGIMP"), ("APIC", "AFLIP"))]))
 
     def scene(self, point):
-        averaged = '<Volumetric averaging="cell"/>' if point.study.endswith("averaged") else ""
+        relaxation = f' relaxation="{RELAXATION}"' if point.study.endswith("relaxed") else ""
+        averaged = f'<Volumetric averaging="cell"{relaxation}/>' if "_" in point.study else ""
         return (self.water if point.study.startswith("water") else self.sand)(point, averaged)
 
     @staticmethod

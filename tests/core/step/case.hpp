@@ -51,7 +51,9 @@ class OracleLaw final : public core::ConstitutiveModel {
       : material_(material), fails_(std::move(fails)) {}
 
   const std::string& name() const override { return name_; }
-  double initial_sound_speed() const override { return 0; }
+  double initial_sound_speed() const override {
+    return std::sqrt(material_.young / (3 * (1 - 2 * material_.poisson) * material_.density));
+  }
   double initial_shear_speed() const override {
     return std::sqrt(material_.young / (2 * (1 + material_.poisson)) / material_.density);
   }
@@ -228,6 +230,7 @@ struct SmallRun {
     scene->solution.xpic_order = c.order;
     scene->solution.xpic_interval = c.interval;
     if (c.average) scene->solution.averaging = core::VolumeAveraging::cell;
+    scene->solution.pressure_relaxation = c.relaxation;
     scene->solution.end_time = 1e30;
     scene->solution.time_step.factor = c.dt_factor;
     scene->solution.gravity = {c.gravity[0], c.gravity[1], c.gravity[2]};

@@ -217,6 +217,18 @@ TEST_CASE("Volume changes are averaged as the naive stepper averages them", "[or
   }
 }
 
+TEST_CASE("Pressures of a site become equal as the naive stepper makes them", "[oracle]") {
+  for (const ReferenceShape shape : reference_shapes) {
+    for (const ReferenceScheme scheme : schemes) {
+      INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
+      ReferenceCase c = small_block(shape, scheme, 2);
+      c.average = true;
+      c.relaxation = 0.3;
+      run_both(c, 30, 1e-9);
+    }
+  }
+}
+
 TEST_CASE("A plate one cell thick between two walls moves as the naive stepper moves it", "[oracle]") {
   for (const ReferenceShape shape : reference_shapes) {
     for (const ReferenceScheme scheme : schemes) {

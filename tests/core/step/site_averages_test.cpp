@@ -80,6 +80,46 @@ TEST_CASE("Averages make volume changes of a site equal, keep their sum and the 
   for (int l = some.used; l < block_lanes; ++l) CHECK(std::isfinite(some.trace(l)));
 }
 
+TEST_CASE("Relaxation lets pressures of a site approach their mean, and keeps the site's volume") {
+  using mpm::core::Column;
+  const mpm::core::ColumnLayout layout(mpm::core::ColumnSet::mechanics());
+  std::vector<double> block(static_cast<std::size_t>(layout.block_doubles()));
+  SomeBlock some;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> between(-1, 1);
+  double* const pressure = block.data() + layout.offset(Column::pressure);
+  std::copy_n(some.volume, block_lanes, block.data() + layout.offset(Column::volume));
+  for (int l = 0; l < block_lanes; ++l) pressure[l] = between(random);
+  some.fill([&](int, int) { return between(random); });
+  const SomeBlock before = some;
+  SiteAverages averages;
+  averages.resize(125);
+  averages.clear();
+  averages.add_volume_changes(some.sites, some.volume, some.batch.gradient, 0, some.used);
+  averages.add_old_pressures(some.sites, layout, block.data(), some.used);
+  constexpr double rate = 0.4, modulus = 1e3, dt = 0.5;
+  averages.relax_pressures(some.sites, layout, block.data(), rate, modulus, some.batch.gradient, 0);
+  for (const int site : {3, 5, 6}) {
+    double volume = 0, mean = 0, growth = 0;
+    for (int l = 0; l < some.used; ++l) {
+      if (some.sites[l] != site) continue;
+      volume += some.volume[l];
+      mean += some.volume[l] * pressure[l];
+      growth += some.volume[l] * (some.trace(l) - before.trace(l));
+    }
+    mean /= volume;
+    CHECK(std::abs(growth) < 1e-15 * volume);
+    for (int l = 0; l < some.used; ++l) {
+      if (some.sites[l] != site) continue;
+      // p <- p - K dV/V: the share rate dt of the difference goes where K is the modulus.
+      const double after = pressure[l] - modulus * dt * (some.trace(l) - before.trace(l));
+      CHECK(std::abs((after - mean) - (1 - rate * dt) * (pressure[l] - mean)) < 2e-3);
+    }
+  }
+  for (const int i : {1, 2, 3, 5, 6, 7})
+    for (int l = 0; l < block_lanes; ++l) CHECK(some.batch.gradient[i][l] == before.batch.gradient[i][l]);
+}
+
 TEST_CASE("Mean pressures do the work that particles with mean volume changes store") {
   using mpm::core::Column;
   const mpm::core::ColumnLayout layout(mpm::core::ColumnSet::mechanics());

@@ -445,6 +445,9 @@ TEST_CASE("solution and output") {
        "<Volumetric averaging=\"brick\"/><EndTime",
        {"line 25: <Volumetric averaging=\"brick\">: expected one of none, cell"}},
       {"<EndTime",
+       "<Volumetric averaging=\"cell\" relaxation=\"2\"/><EndTime",
+       {"line 25: <Volumetric relaxation=\"2\">: expected a number in [0, 1]"}},
+      {"<EndTime",
        "<Volumetric averaging=\"cell\"/><Volume update_type=\"1\"/><EndTime",
        {"line 25: <Volumetric averaging=\"cell\">: does not go with <Volume update_type=\"1\">, which takes "
         "the volume change from the cell's nodes: expected none, or another update_type"}},

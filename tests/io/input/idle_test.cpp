@@ -243,6 +243,9 @@ TEST_CASE("rigid bodies by themselves") {
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<Volumetric averaging='cell'/><EndTime")) ==
         std::vector<std::string>{
             "line 25: <Volumetric averaging=\"cell\">: no effect: rigid bodies keep their volume"});
+  CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<Volumetric relaxation='0.5'/><EndTime")) ==
+        std::vector<std::string>{
+            "line 25: <Volumetric relaxation=\"0.5\">: no effect: used only with averaging=\"cell\""});
 }
 
 TEST_CASE("parameters of another rule of implicit steps") {

@@ -110,7 +110,7 @@ TEST_CASE("settings") {
   std::string text = replaced(bar, "<Solution><EndTime value=\"0.08\"/>",
                               R"(<Solution algorithm="USL" near_boundary_stop="1">
     <EndTime value="1"/><TimeStep factor="0.5" const="1" specified="1e-4" NotConsiderVisForCp="1"/>
-    <LimitVelocity max="1e4"/><Volume update_type="3" erode="0.1" min="0.2" max="5"/><Volumetric averaging="cell"/><Warn type=" ie | grid " level="2"/>
+    <LimitVelocity max="1e4"/><Volume update_type="3" erode="0.1" min="0.2" max="5"/><Volumetric averaging="cell" relaxation="0.25"/><Warn type=" ie | grid " level="2"/>
     <EnergyFraction value="0.01"/><DynamicRelax damping="3"/><Gravity ax="0" ay="0" az="-9.81"/>
     <OpenMPSetting nthread="4" directionofdecomposition="2"/>)");
   text = replaced(text, "</PeneBlast>", R"(<Output><Console print_time="0.1" print_momentum="1"/>
@@ -129,6 +129,7 @@ TEST_CASE("settings") {
   CHECK((s.volume.update == core::VolumeUpdate::deformation_gradient && s.volume.erode == 0.1 &&
          s.volume.min == 0.2 && s.volume.max == 5));
   CHECK(s.averaging == core::VolumeAveraging::cell);
+  CHECK(s.pressure_relaxation == 0.25);
   CHECK((s.warn.negative_internal_energy && !s.warn.negative_volume && s.warn.outside_grid));
   CHECK(s.warn.level == core::WarnInput::Level::stop);
   CHECK(s.energy_fraction == 0.01);
