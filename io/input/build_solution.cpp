@@ -74,8 +74,7 @@ void build_averaging(const Node& node, const BuildContext& context, core::Soluti
   solution.averaging = core::VolumeAveraging::cell;
   solution.pressure_relaxation = node.real("relaxation");
   if (solution.pressure_relaxation > 0 && solution.integration == core::Integration::implicit)
-    node.report(context.diagnostics, "relaxation",
-                "is available only with Integration=\"expl\": expected 0, or explicit steps");
+    node.report(context.diagnostics, "relaxation", "is not available with implicit steps: expected 0");
   if (solution.volume.update == core::VolumeUpdate::cell)
     node.report(context.diagnostics, "averaging",
                 "does not go with <Volume update_type=\"1\">, which takes the volume change from the cell's "

@@ -56,7 +56,7 @@ def scene(number, seed):
     factor = rng.choice((0.3, 0.6, 0.9, 0.9, 1.0))
     grid = _mpm.grid((0, 0, 0), [rng.choice((10, 11, 13)) * CELL for _ in range(3)], faces, CELL)
     if 'update_type="1"' not in more and number % 3 == 0:
-        more += '<Volumetric averaging="cell"/>'
+        more += f'<Volumetric averaging="cell" relaxation="{number % 2}"/>'
     lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-1"/></Detonation>' if "TNT" in laws else ""
     solution = _mpm.solution(1.0, scheme, factor, transfer, more)
     materials = [bits_laws.material(name) for name in laws]

@@ -29,8 +29,9 @@ GRID = _mpm.grid((0, 0, 0), (12, 9, 8), "200140")
 def scene(shape, transfer, algorithm, end=END, bodies=BODIES, gravity=-9.8, grid=GRID, averaging="none"):
     word, _, more = transfer.partition(" ")
     attributes = f'transfer="{word}" {more}'
+    volumetric = f'<Volumetric averaging="{averaging}" relaxation="{0.5 if averaging == "cell" else 0}"/>'
     return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'),
-                      _mpm.solution(end, algorithm, 0.4, attributes, f'<Gravity ax="0" ay="0" az="{gravity}"/><Volumetric averaging="{averaging}"/>'), MATERIALS,
+                      _mpm.solution(end, algorithm, 0.4, attributes, f'<Gravity ax="0" ay="0" az="{gravity}"/>{volumetric}'), MATERIALS,
                       f'<Console print_time="{END / 2}"/><Restart time_interval="{END / 2}"/>')
 
 

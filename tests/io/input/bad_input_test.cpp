@@ -484,6 +484,9 @@ TEST_CASE("what implicit steps cannot do") {
        with("", "<LimitVelocity max='1'/>"),
        {"line 25: <LimitVelocity max=\"1\">: is not available with implicit steps; remove it"}},
       {"<Solution>",
+       with("", "<Volumetric averaging='cell' relaxation='0.5'/>"),
+       {"line 25: <Volumetric relaxation=\"0.5\">: is not available with implicit steps: expected 0"}},
+      {"<Solution>",
        with("", "<Volume update_type='3'/>"),
        {"line 25: <Volume update_type=\"3\">: implicit steps take the volume from the deformation gradient; "
         "remove it"}},
