@@ -13,6 +13,7 @@ SAND = {"density": 1600.0, "side": 0.1}
 SAND_LAW = ('type="DruckerPrager" Young="1e6" Poisson="0.3" qfai="0.6009" kfai="0" qpsi="0" ten_f="0" closes="1" '
             'VarSoundspeed="1"')
 RELAXATION = 0.5
+PRECISION = 1e-7  # of the numbers in pictures
 FULL = 4  # particles of a cell that counts
 COVERED = 2  # cells above it
 
@@ -83,7 +84,8 @@ below the surface, count. *velocity*: root mean square of what is left, over the
         inner = below & (count[at] >= FULL)
         if not inner.any():
             raise Unmeasurable("no cell is deep enough below the surface")
-        found = {"scatter": float(np.sqrt(((p - mean[at])[inner] ** 2).mean()) / abs(p[inner].mean())),
+        scatter = np.sqrt(((p - mean[at])[inner] ** 2).mean()) / abs(p[inner].mean())
+        found = {"scatter": max(float(scatter), PRECISION),
                  "velocity": support.rms(support.velocities(states)) / (GRAVITY * side) ** 0.5,
                  "hydrostatic": float("nan"), "drift": support.drift(folder)}
         if is_water:
