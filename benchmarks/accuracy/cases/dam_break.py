@@ -15,6 +15,9 @@ FRONT = 0.995  # part of the mass that has not passed the front: drops that fly 
 # T = n t sqrt(g/a), and Z, the place of the front over a.
 TIMES = np.array([0.41, 0.84, 1.19, 1.43, 1.63, 1.83, 1.98, 2.20, 2.32, 2.51, 2.65, 2.83, 2.98, 3.11, 3.33])
 PLACES = np.array([1.11, 1.22, 1.44, 1.67, 1.89, 2.11, 2.33, 2.56, 2.78, 3.00, 3.22, 3.44, 3.67, 3.89, 4.11])
+WATER = support.material(
+    "water", DENSITY, 'type="Null" mu="1e-3"',
+    f'<EquationOfState type="Polynomial" c0="0" c1="{DENSITY * SOUND**2}" c2="0" c3="0" c4="0" c5="0" c6="0"/>')
 UNIT = (SIDE / (2 * GRAVITY)) ** 0.5
 
 
@@ -38,11 +41,10 @@ faster, and the error does not go to zero."""
     def scene(self, point):
         h = SIDE / point.cells
         water = support.block("water", (0, 0, 0), (SIDE, h, 2 * SIDE), h / point.split, "water")
-        equation = f'<EquationOfState type="Polynomial" c0="0" c1="{DENSITY * SOUND**2}" c2="0" c3="0" c4="0" c5="0" c6="0"/>'
         more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/>'
         return support.scene([water], support.grid((0, 0, 0), (8 * SIDE, h, 3 * SIDE), "202220", h),
                              support.solution(TIMES[-1] * UNIT, point.factor, more),
-                             [support.material("water", DENSITY, 'type="Null" mu="1e-3"', equation)],
+                             [WATER],
                              support.pictures(float(TIMES[-1] * UNIT / 90), ["pres"]))
 
     def measure(self, point, folder):
@@ -57,12 +59,8 @@ faster, and the error does not go to zero."""
         """Standard deviation of the pressure inside a cell, over the cells with four particles or more."""
         half = len(states.times) // 2
         cell = np.floor(support.places(states, half)[:, [0, 2]] / h).astype(int) @ [1, 100000]
-        _, at = np.unique(cell, return_inverse=True)
-        p, count = states.column("pres", half), np.bincount(at)
-        mean = np.bincount(at, p) / count
-        variance = np.bincount(at, (p - mean[at]) ** 2) / count
-        full = count >= 4
-        return float(np.sqrt((variance * count)[full].sum() / count[full].sum())) / (DENSITY * GRAVITY * SIDE)
+        off, count = support.off_mean_of_cell(states.column("pres", half), cell)
+        return support.rms(off[count >= 4, None]) / (DENSITY * GRAVITY * SIDE)
 
 
 CASE = DamBreak()

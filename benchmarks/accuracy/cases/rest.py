@@ -3,10 +3,11 @@
 import numpy as np
 
 import methods
-from case import Case, Error, Study, Unmeasurable
+from case import Case, Error, Study, Unmeasurable  # first: it says where the next ones are
+
 import _cases
 from cases import support
-from cases.dam_break import DENSITY, GRAVITY, SIDE, SOUND
+from cases.dam_break import DENSITY, GRAVITY, SIDE, WATER
 
 SAND = {"density": 1600.0, "side": 0.1}
 # As apps/scenes/sand_column.
@@ -51,11 +52,10 @@ below the surface, count. *velocity*: root mean square of what is left, over the
     def water(point, averaged):
         h = SIDE / point.cells
         body = support.block("water", (0, 0, 0), (SIDE, h, SIDE), h / point.split, "water")
-        equation = f'<EquationOfState type="Polynomial" c0="0" c1="{DENSITY * SOUND**2}" c2="0" c3="0" c4="0" c5="0" c6="0"/>'
         more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/><DynamicRelax damping="25"/>{averaged}'
         return support.scene([body], support.grid((0, 0, 0), (2 * SIDE, h, 1.5 * SIDE), "222222", h),
                              support.solution(1.0, point.factor, more),
-                             [support.material("water", DENSITY, 'type="Null" mu="1e-3"', equation)],
+                             [WATER],
                              support.pictures(1.0, ["pres"]))
 
     @staticmethod
@@ -78,20 +78,17 @@ below the surface, count. *velocity*: root mean square of what is left, over the
         # The surface of a column of cells: what its particles fill.
         depth = np.bincount(column) * (h / point.split) ** 2 / (h * point.split)
         below = layer + 1 + COVERED <= depth[column] / h
-        _, at = np.unique(column + 100000 * layer, return_inverse=True)
-        count = np.bincount(at)
-        mean = np.bincount(at, p) / count
-        inner = below & (count[at] >= FULL)
+        off_mean, count = support.off_mean_of_cell(p, column + 100000 * layer)
+        inner = below & (count >= FULL)
         if not inner.any():
             raise Unmeasurable("no cell is deep enough below the surface")
-        scatter = np.sqrt(((p - mean[at])[inner] ** 2).mean()) / abs(p[inner].mean())
-        found = {"scatter": max(float(scatter), PRECISION),
+        scatter = support.rms(off_mean[inner, None]) / abs(p[inner].mean())
+        found = {"scatter": max(scatter, PRECISION),
                  "velocity": support.rms(support.velocities(states)) / (GRAVITY * side) ** 0.5,
                  "hydrostatic": float("nan"), "drift": support.drift(folder)}
         if is_water:
             hydrostatic = DENSITY * GRAVITY * (SIDE / 2 - z)
-            off = np.sqrt(((p - hydrostatic)[inner] ** 2).mean())
-            found["hydrostatic"] = float(off / hydrostatic[inner].mean())
+            found["hydrostatic"] = support.rms((p - hydrostatic)[inner, None]) / float(hydrostatic[inner].mean())
         return found
 
 

@@ -71,6 +71,13 @@ def rms(values):
     return float(np.sqrt((np.asarray(values) ** 2).reshape(len(values), -1).sum(axis=1).mean()))
 
 
+def off_mean_of_cell(values, cells):
+    """Deviation of each particle's value from the mean in its cell (`cells`: a number each), and the cell's particles."""
+    _, at = np.unique(cells, return_inverse=True)
+    count = np.bincount(at)
+    return values - (np.bincount(at, values) / count)[at], count[at]
+
+
 def summary(folder):
     return _mpm.summary(folder)
 

@@ -109,6 +109,13 @@ ReferenceCase shrinking_block(ReferenceShape shape, ReferenceScheme scheme, int 
   return c;
 }
 
+/// Moves the block into the corner of the lower y and the upper x and z, on a grid with so many cells more
+/// along x and z.
+void move_to_corner(ReferenceCase& c, int more_x = 0, int more_z = 0) {
+  for (ReferenceParticle& p : c.particles)
+    p.x = {p.x[0] + 5.7 + more_x * c.cell[0], p.x[1] - 5.4, p.x[2] + 4.7 + more_z * c.cell[2]};
+}
+
 /// A part of the block, which still reaches over two bricks, in free space (boundary 0) or in the corner of
 /// the lower y and the upper x and z.
 ReferenceCase small_block(ReferenceShape shape, ReferenceScheme scheme, int boundary) {
@@ -116,8 +123,7 @@ ReferenceCase small_block(ReferenceShape shape, ReferenceScheme scheme, int boun
   std::erase_if(c.particles, [](const ReferenceParticle& p) {
     return p.x[0] < 2.4 || p.x[1] > 0.75 || p.x[1] < -1 || p.x[2] < 1.1;
   });
-  if (boundary != 0)
-    for (ReferenceParticle& p : c.particles) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
+  if (boundary != 0) move_to_corner(c);
   return c;
 }
 
@@ -130,10 +136,7 @@ void tumble(ReferenceScheme scheme, int boundary, int more_x = 0, int more_z = 0
     ReferenceCase c = shrinking_block(shape, scheme, boundary);
     c.cells[0] += more_x;
     c.cells[2] += more_z;
-    for (ReferenceParticle& p : c.particles) {
-      if (boundary != 0)
-        p.x = {p.x[0] + 5.7 + more_x * c.cell[0], p.x[1] - 5.4, p.x[2] + 4.7 + more_z * c.cell[2]};
-    }
+    if (boundary != 0) move_to_corner(c, more_x, more_z);
     run_both(c, 30, 1e-9);
   }
 }
@@ -206,7 +209,7 @@ TEST_CASE("Volume changes are averaged as the naive stepper averages them", "[or
       INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
       ReferenceCase c = shrinking_block(shape, scheme, 2);
       c.average = true;
-      for (ReferenceParticle& p : c.particles) p.x = {p.x[0] + 5.7, p.x[1] - 5.4, p.x[2] + 4.7};
+      move_to_corner(c);
       run_both(c, 30, 1e-9);
       ReferenceCase bar = taylor_bar(1.27);
       bar.shape = shape;
