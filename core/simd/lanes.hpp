@@ -245,13 +245,21 @@ inline Lanes<L> lanewise(Lanes<L> a, F f) {
 }
 }  // namespace detail
 
+// g++ compiles these loops over eight lanes to two halves, which it stores and reads back as one vector. The
+// load waits until both stores have completed: 40 % of the time to locate a block's particles.
 template <int L>
 inline Lanes<L> sqrt(Lanes<L> a) {
-  // The loop compiles to one vector square root (errno is off); intrinsics would not be portable.
+#if defined(__AVX512F__) && !defined(__clang__)
+  if constexpr (L == 8) return __builtin_ia32_sqrtpd512_mask(a.v, a.v, -1, 4);
+#endif
   return detail::lanewise(a, [](double x) { return std::sqrt(x); });
 }
 template <int L>
 inline Lanes<L> floor(Lanes<L> a) {
+#if defined(__AVX512F__) && !defined(__clang__)
+  constexpr int downward = 9;  // and without exceptions
+  if constexpr (L == 8) return __builtin_ia32_rndscalepd_mask(a.v, downward, a.v, -1, 4);
+#endif
   return detail::lanewise(a, [](double x) { return std::floor(x); });
 }
 

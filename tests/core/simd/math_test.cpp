@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -100,6 +101,31 @@ TEMPLATE_TEST_CASE_SIG("vector exp, log and pow keep their bounds", "[core][simd
 
 TEMPLATE_TEST_CASE_SIG("vector exp, log and pow at special values", "[core][simd]", ((int L), L), 2, 4, 8) {
   check_special_values<L>();
+}
+
+TEMPLATE_TEST_CASE_SIG("vector floor and square root round as the scalar ones", "[core][simd]", ((int L), L),
+                       2, 4, 8) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> values{0.0,  -0.0,  1.0,    -1.0,    0.5,   -0.5,   inf,     -inf,       nan,
+                             1e15, -1e15, 0x1p52, -0x1p52, 1e300, 5e-324, -5e-324, 1 - 0x1p-53};
+  for (int i = 0; i < 4000; ++i) values.push_back(std::ldexp(unit(random), i % 120 - 60));
+  // The same number, or both not a number.
+  const auto same = [](double a, double b) {
+    return (std::isnan(a) && std::isnan(b)) || (a == b && std::signbit(a) == std::signbit(b));
+  };
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Lanes<L> x;
+    for (int lane = 0; lane < L; ++lane)
+      x.set(lane, values[(i + static_cast<std::size_t>(lane)) % values.size()]);
+    const Lanes<L> below = floor(x), root = sqrt(x);
+    for (int lane = 0; lane < L; ++lane) {
+      CAPTURE(x[lane], lane);
+      CHECK(same(below[lane], std::floor(x[lane])));
+      CHECK(same(root[lane], std::sqrt(x[lane])));
+    }
+  }
 }
 
 TEST_CASE("a lane's result does not depend on the other lanes", "[core][simd]") {
