@@ -27,6 +27,11 @@ class Study:
         return (*self.labels, *run_one.COMMON, *self.measured, "note")
 
 
+def smooth_growth(length):
+    """Of a load from 0 to 1 in this time, as an expression of an input file."""
+    return f"if(t&lt;{length!r},(t/{length!r})^2*(3-2*t/{length!r}),1)"
+
+
 def order(coarse, fine, ratio):
     """Observed order between two errors whose sizes have this ratio; None where there is none."""
     if not all(isinstance(v, float) and math.isfinite(v) and v != 0 for v in (coarse, fine)):
@@ -51,7 +56,8 @@ def shown(row, name, how, factor=1.0):
     """The value of a row as a text; why there is none."""
     if not done(row):
         return row["status"]
-    return format(factor * row[name], how) if isinstance(row[name], float) else "–"
+    measured = isinstance(row[name], float) and math.isfinite(row[name])
+    return format(factor * row[name], how) if measured else "–"
 
 
 def orders(rows, name, axis):

@@ -79,7 +79,7 @@ for linear functions."""
             solution = scenes.implicit(end, end / (few if "few" in by else LOAD_STEPS[body]))
         else:
             end = PERIODS[by.split()[1]] * period(young)
-            load = f"-{GRAVITY}*if(t&lt;{end / 2!r},(t/{end / 2!r})^2*(3-2*t/{end / 2!r}),1)"
+            load = f"-{GRAVITY}*{study.smooth_growth(end / 2)}"
             solution = scenes.explicit(end, damping=4 * np.pi / period(young))
         column = scenes.block("column", (0, 0, 0), (h, h, HEIGHT), h / 2, more=f'<BodyForce bz="{load}"/>')
         text = scenes.scene([column], scenes.grid(shape, (0, 0, 0), (h, h, HEIGHT), "222220", h), solution,
