@@ -7,9 +7,10 @@ import _mpm
 SHAPES = ("linear", "uGIMP", "QuadraticBSpline", "SGMP", "CPDI2")
 
 
-def neo_hookean(young, poisson, density, name="solid"):
-    """Without artificial viscosity."""
-    return material(name, density, f'type="NeoHookean" Young="{young!r}" Poisson="{poisson!r}" bq1="0" bq2="0"')
+def neo_hookean(young, poisson, density, name="solid", viscous=False):
+    """`viscous`: with the default artificial viscosity, else without."""
+    viscosity = "" if viscous else ' bq1="0" bq2="0"'
+    return material(name, density, f'type="NeoHookean" Young="{young!r}" Poisson="{poisson!r}"{viscosity}')
 
 
 def material(name, density, strength, more=""):
@@ -47,9 +48,9 @@ def implicit(end, step, kind="quasistatic", more="", children=""):
                          more=f'<Implicit type="{kind}" time_step="{float(step)!r}" {more}/>{children}')
 
 
-def explicit(end, factor=0.8, damping=None, more=""):
+def explicit(end, factor=0.8, damping=None, more="", transfer="FLIP"):
     relax = f'<DynamicRelax damping="{damping!r}"/>' if damping else ""
-    return _mpm.solution(repr(float(end)), factor=repr(factor), more=relax + more)
+    return _mpm.solution(repr(float(end)), factor=repr(factor), attributes=f'transfer="{transfer}"', more=relax + more)
 
 
 STRESSES = ("SigmaX", "SigmaY", "SigmaZ", "SigmaXY", "SigmaYZ", "SigmaXZ")

@@ -73,8 +73,9 @@ speed of waves, {WAVE:.1f}."""
                 return -(volume * result.column("SigmaZ", which)[mine]).sum() / (DEPTH * h * HALF)
 
             loads = np.array([load(i) for i in range(len(result.states.steps))])
+            wide = loads[-1] / PRANDTL / (1 + 0.5 * h / HALF) - 1 if is_implicit else float("nan")
             return {"load": loads.max() / PRANDTL - 1, "last": loads[-1] / PRANDTL - 1,
-                    "growth": loads[-1] / loads[-6] - 1, "wide": loads[-1] / PRANDTL / (1 + 0.5 * h / HALF) - 1}
+                    "growth": loads[-1] / loads[-6] - 1, "wide": wide}
 
         return Run({"steps by": by, "law": law, "shape": shape, "cells": cells}, text, measure, quick)
 
