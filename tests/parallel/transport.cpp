@@ -34,13 +34,13 @@ std::vector<double> make_columns(BrickCoord to, int body, std::uint64_t identity
 }
 
 /// Number of particles, and a sum over all that two different sets will not share.
-struct Census {
+struct ParticleSums {
   std::int64_t particles = 0, identities = 0;
-  bool operator==(const Census&) const = default;
+  bool operator==(const ParticleSums&) const = default;
 };
 
 /// Over all ranks; every particle must be as it was made. With `arrived`, every brick must be ours.
-Census census(MpiCommunication& exchange, const MigrationBuffer& particles, bool arrived) {
+ParticleSums sums_over(MpiCommunication& exchange, const MigrationBuffer& particles, bool arrived) {
   std::vector<std::int64_t> sums(3);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto& [to, body, unused] = particles.heads[i];
@@ -93,9 +93,9 @@ TEST_CASE("Particles to neighbouring bricks arrive whole, many times") {
   exchange.bricks.partition(grid, all_of(random_bricks(random, {4, 4, 5}, share)), {});
   for (std::uint64_t round = 0; round < 100; ++round) {
     MigrationBuffer particles = leave_home(exchange, grid, round % 7 == 0 ? 0 : 20 * round, round);
-    const Census before = census(exchange, particles, false);
+    const ParticleSums before = sums_over(exchange, particles, false);
     exchange.particles.migrate(grid, particles, columns_of);
-    REQUIRE(census(exchange, particles, true) == before);
+    REQUIRE(sums_over(exchange, particles, true) == before);
   }
 }
 
@@ -120,10 +120,10 @@ TEST_CASE("Particles in messages of more than ten megabytes") {
         particles.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
       }
     }
-    const Census before = census(exchange, particles, false);
+    const ParticleSums before = sums_over(exchange, particles, false);
     CHECK(before.particles == 60000 * world().size());
     exchange.particles.migrate(grid, particles, columns_of);
-    CHECK(census(exchange, particles, true) == before);
+    CHECK(sums_over(exchange, particles, true) == before);
   }
 }
 
@@ -143,9 +143,9 @@ TEST_CASE("Particles from any rank to any other") {
       const auto columns = make_columns(to, body, (static_cast<std::uint64_t>(world().rank()) << 24) + i);
       particles.add(to, body, columns.data(), columns_of[static_cast<std::size_t>(body)]);
     }
-    const Census before = census(exchange, particles, false);
+    const ParticleSums before = sums_over(exchange, particles, false);
     exchange.particles.scatter(particles, columns_of);
-    CHECK(census(exchange, particles, true) == before);
+    CHECK(sums_over(exchange, particles, true) == before);
   }
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("MigrationBuffer pass through bricks claimed a moment ago") {
     exchange.particles.migrate(grid, leaving, columns_of);
     exchange.bricks.deactivate(grid, empty);
     particles = std::move(leaving);
-    REQUIRE(census(exchange, particles, true).particles == 100);
+    REQUIRE(sums_over(exchange, particles, true).particles == 100);
     REQUIRE(exchange.directory().table().size() == 1);
   }
 }

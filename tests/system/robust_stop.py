@@ -261,7 +261,7 @@ class Restart(Case):
         self.assertFalse((self.folder / "over").exists())
 
     def test_a_body_that_is_taken_out(self):
-        """-rt with Deactive="1": the body is gone, and the ledger say what it took along."""
+        """-rt with Deactive="1": the body is gone, and the ledger says what it took along."""
         left, right = _mpm.BOUNCING
         bodies = [left, right.replace('type="Block"', 'type="Block" Deactive="1"')]
         other = self.write(bounce(end=END / 8, bodies=bodies), "other.xmp")
