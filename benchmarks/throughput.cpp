@@ -24,6 +24,14 @@
 namespace mpm::benchmarks {
 namespace {
 
+std::vector<std::string> shape_names() {
+  std::vector<std::string> list;
+  [&]<class... S>(std::type_identity<std::tuple<S...>>) {
+    (list.emplace_back(S::name), ...);
+  }(std::type_identity<core::Shapes>());
+  return list;
+}
+
 struct Options {
   std::vector<double> sizes{20e3, 200e3, 1.3e6, 10e6};
   std::vector<std::string> schemes{"MUSL", "USF", "USL"};
@@ -33,8 +41,9 @@ struct Options {
   double seconds = 3;            ///< minimum time of all repeats
   double reference_limit = 2e6;  ///< particles; the reference is slow
   double shapes = 200e3;         ///< particles of the comparison of shape functions; 0: none
-  int rounds = 5;                ///< of that comparison
-  double empty_space = 200e3;    ///< particles of that comparison; 0: none
+  std::vector<std::string> names = shape_names();  ///< of that comparison
+  int rounds = 5;                                  ///< of that comparison
+  double empty_space = 200e3;                      ///< particles of that comparison; 0: none
   std::string csv, phases_csv, shapes_csv;
 };
 
@@ -252,15 +261,29 @@ void write_phases_csv(const std::string& path, const Facts& facts, const std::ve
   }
 }
 
-/// Every family of shape functions in turns, so that a drift of the machine affects all; each scheme alone.
+/// The phases of each family's best repeat, side by side.
+void print_phases(const std::string& scheme, const std::vector<std::string>& names,
+                  const std::vector<Json>& best) {
+  fmt::print("{:<5} {:<28}", scheme, "ns by phase");
+  for (const std::string& name : names) fmt::print(" {:>8.8}", name);
+  fmt::print("\n");
+  for (const Json& row : best.front()["phases"]) {
+    fmt::print("{:<5} {:<28}", "", row["phase"].get<std::string>());
+    for (const Json& r : best) {
+      double ns = 0;
+      for (const Json& p : r["phases"])
+        if (p["phase"] == row["phase"]) ns = p["ns"];
+      fmt::print(" {:>8.2f}", ns);
+    }
+    fmt::print("\n");
+  }
+}
+
+/// The families of shape functions in turns, so that a drift of the machine affects all; each scheme alone.
 void compare_shapes(const Options& o, const Facts& facts) {
-  const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    [&]<class... S>(std::type_identity<std::tuple<S...>>) {
-      (list.emplace_back(S::name), ...);
-    }(std::type_identity<core::Shapes>());
-    return list;
-  }();
+  std::vector<std::string> names = o.names;
+  std::erase(names, "linear");
+  names.insert(names.begin(), "linear");  // the others are compared with it
   std::optional<TableFile> file;
   if (!o.shapes_csv.empty()) {
     file.emplace(o.shapes_csv, facts);
@@ -271,7 +294,7 @@ void compare_shapes(const Options& o, const Facts& facts) {
              "x linear", "state B");
   for (const std::string& scheme : o.schemes) {
     std::vector<Series> ns(names.size()), ratio(names.size());
-    std::vector<double> particles(names.size()), bytes(names.size());
+    std::vector<Json> fastest(names.size());
     double linear = 0;
     for (int round = 0; round < o.rounds; ++round) {
       for (std::size_t i = 0; i < names.size(); ++i) {
@@ -283,17 +306,18 @@ void compare_shapes(const Options& o, const Facts& facts) {
         if (i == 0) linear = best;
         ns[i].add(best);
         ratio[i].add(best / linear);
-        particles[i] = r["particles"];
-        bytes[i] = r["state_bytes"];
+        if (ns[i].index_of_best() + 1 == ns[i].size()) fastest[i] = r;
       }
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
-      fmt::print("{:<5} {:<18} {:>9.0f} {:>8.2f} {:>8.2f} {:>9.2f} {:>8.0f}\n", scheme, names[i],
-                 particles[i], ns[i].best(), ns[i].median(), ratio[i].median(), bytes[i]);
+      const double particles = fastest[i]["particles"], bytes = fastest[i]["state_bytes"];
+      fmt::print("{:<5} {:<18} {:>9.0f} {:>8.2f} {:>8.2f} {:>9.2f} {:>8.0f}\n", scheme, names[i], particles,
+                 ns[i].best(), ns[i].median(), ratio[i].median(), bytes);
       if (file)
-        fmt::print(file->handle, "{},{},{:.0f},{},{:.4g},{:.4g},{:.4g},{:.0f}\n", scheme, names[i],
-                   particles[i], o.rounds, ns[i].best(), ns[i].median(), ratio[i].median(), bytes[i]);
+        fmt::print(file->handle, "{},{},{:.0f},{},{:.4g},{:.4g},{:.4g},{:.0f}\n", scheme, names[i], particles,
+                   o.rounds, ns[i].best(), ns[i].median(), ratio[i].median(), bytes);
     }
+    print_phases(scheme, names, fastest);
   }
 }
 
@@ -335,6 +359,9 @@ Options parse(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--shapes", o.shapes, "particles of the comparison of shape functions; 0: none")
       ->capture_default_str();
+  app.add_option("--shape-names", o.names, "of that comparison, beside linear")
+      ->delimiter(',')
+      ->check(CLI::IsMember(o.names));
   app.add_option("--rounds", o.rounds, "of that comparison")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
