@@ -42,25 +42,25 @@ INVISCID = 'bq1="0" bq2="0"'
 SCENES = {"small": (0.001, INVISCID), "large": (0.03, INVISCID), "viscous": (0.03, "")}
 
 
-def scene(name, method, steps):
+def scene(name, method, steps, factor):
     lower, size = (3.1, 3.2, 3.3), 4
     share, viscosity = SCENES[name]
     speed = [f"{share * WAVE!r}*cos(pi*({axis}-{low})/{size})" for axis, low in zip("xyz", lower)]
     end = steps * FACTOR / WAVE
     law = f'type="IsoElastic" Young="{YOUNG!r}" Poisson="{POISSON!r}" {viscosity}'
     text = _mpm.scene([_mpm.block("block", lower, (size,) * 3, speed, 0.5, "soft")], _mpm.grid((0, 0, 0), (10, 10, 10)),
-                      _mpm.solution(repr(end), method.scheme, FACTOR), [_mpm.material("soft", 1.0, law)],
+                      _mpm.solution(repr(end), method.scheme, factor), [_mpm.material("soft", 1.0, law)],
                       '<TimeHistory var="pres"><Particle x="5" y="5" z="5"/></TimeHistory>')
     root = methods.ElementTree.fromstring(text.encode())
     methods.choose(root, method)
     return methods.ElementTree.tostring(root, encoding="unicode")
 
 
-def measure(name, method, steps=STEPS):
+def measure(name, method, steps=STEPS, factor=FACTOR):
     """A row of the table, or none for a method that the program refuses."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        (folder / "case.xmp").write_text(scene(name, method, steps))
+        (folder / "case.xmp").write_text(scene(name, method, steps, factor))
         done = _mpm.run([folder / "case.xmp", "--output-dir", folder], timeout=6000)
         if done.code == 2:
             return None
@@ -106,13 +106,14 @@ def main():
     parser.add_argument("--scheme", nargs="+", choices=methods.schemes())
     parser.add_argument("--transfer", nargs="+", choices=methods.transfers())
     parser.add_argument("--steps", type=int, default=STEPS)
+    parser.add_argument("--factor", type=float, default=FACTOR, help="of the critical step; the time stays the same")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--docs", action="store_true", help="write docs/stability/long_runs.csv and the table of docs/stability.md")
     options = parser.parse_args()
     points = [(name, method) for method in wanted(options) for name in options.scene]
     rows = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for row in pool.map(lambda point: measure(*point, options.steps), points):
+        for row in pool.map(lambda point: measure(*point, options.steps, options.factor), points):
             if row is None:
                 continue
             rows.append(row)
