@@ -132,9 +132,8 @@ TEST_CASE("A stress-free body in uniform motion flies on as it is, across bricks
     const Vector v{6, -5, 4};
     for (ReferenceParticle& p : c.particles) p.v = v;
     SmallRun run(c);
-    run.step(40);
+    while (run.model.clock.time * v[0] < 1.6) run.step();  // cells
     const double t = run.model.clock.time;
-    CHECK(t * v[0] > 1.5);  // cells
     double worst_x = 0, worst_v = 0, worst_stress = 0;
     for (const auto& [identity, p] : run.particles()) {
       for (std::size_t a = 0; a < 3; ++a) {
@@ -145,7 +144,7 @@ TEST_CASE("A stress-free body in uniform motion flies on as it is, across bricks
           worst_stress = std::max(worst_stress, std::abs(p.s[a][b]) + std::abs(p.p));
       }
     }
-    // Nodal velocities are p/m, rounded at 1e-16 of 6; some 40 steps of that.
+    // Nodal velocities are p/m, rounded at 1e-16 of 6; 40 to 80 steps of that.
     CHECK(worst_x < 1e-13);
     CHECK(worst_v < 1e-13);
     CHECK(worst_stress < 1e-12 * c.material.young);
