@@ -25,9 +25,11 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+from accuracy import methods  # noqa: E402: found by the line above
+
 BIN = pathlib.Path(os.environ.get("MPM_BIN", ROOT / "build/release/bin"))
-SHAPES = ["linear", "SGMP", "DDMP", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline"]
-SCHEMES = ["MUSL", "USF", "USL"]
 GROWTH = 0.05
 
 
@@ -144,26 +146,26 @@ def limit(name, method, low=0.2, high=3.2, within=0.05):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--shape", action="append", choices=SHAPES)
-    parser.add_argument("--scheme", action="append", choices=SCHEMES)
-    parser.add_argument("--transfer", action="append", default=None)
+    parser.add_argument("--shape", nargs="+", choices=methods.shapes(), default=methods.shapes())
+    parser.add_argument("--scheme", nargs="+", choices=methods.schemes(), default=methods.schemes())
+    parser.add_argument("--transfer", nargs="+", choices=methods.choices("Solution", "transfer"), default=["FLIP"])
     parser.add_argument("--mass", choices=["lumped", "consistent"], default="lumped")
-    parser.add_argument("--scene", action="append", choices=SCENES)
+    parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--csv", type=pathlib.Path)
     parser.add_argument("--factor", type=float, help="report the energy growth at this factor instead")
     options = parser.parse_args()
     rows = []
-    for shape in options.shape or SHAPES:
-        for transfer in options.transfer or ["FLIP"]:
-            for scheme in options.scheme or SCHEMES:
+    for shape in options.shape:
+        for transfer in options.transfer:
+            for scheme in options.scheme:
                 method = shape, transfer, scheme, options.mass
                 found = {n: growth(n, method, options.factor) if options.factor else limit(n, method)
-                         for n in options.scene or SCENES}
+                         for n in options.scene}
                 rows.append([*method, *(f"{v:.4g}" for v in found.values())])
                 print(*rows[-1], flush=True)
     if options.csv:
         with options.csv.open("w", newline="") as file:
-            csv.writer(file).writerows([["shape", "transfer", "scheme", "mass", *(options.scene or SCENES)], *rows])
+            csv.writer(file).writerows([["shape", "transfer", "scheme", "mass", *options.scene], *rows])
 
 
 if __name__ == "__main__":
