@@ -64,7 +64,7 @@ constexpr BrickCoord brick_of_key(BrickKey k) {
 
 /// The 27 offsets of a brick's neighbourhood, in the order in which contributions are summed; 13 is itself.
 inline constexpr int neighbourhood = 27;
-inline constexpr int self_index = 13;
+inline constexpr int self_index = 13, lower_x_index = 12;
 constexpr BrickCoord neighbour_offset(int n) { return {n % 3 - 1, (n / 3) % 3 - 1, n / 9 - 1}; }
 
 /// The regular background grid: position of the nodes and boundary conditions on its faces.

@@ -137,8 +137,10 @@ class BrickGrid {
   std::uint64_t revision() const { return revision_; }
 
  private:
+  /// Whole cache lines, so that no record crosses one.
   std::size_t stride(NodeArray of) const {
-    return static_cast<std::size_t>(shape_.nodes() * record_doubles(of));
+    constexpr int line = 8;
+    return static_cast<std::size_t>((shape_.nodes() * record_doubles(of) + line - 1) / line * line);
   }
   /// Node blocks of further fields are stored after the first-field blocks of all slots.
   Slot extra_block(Slot s, int field) const {

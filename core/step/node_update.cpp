@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <tuple>
+#include <utility>
 
 namespace mpm::core {
 
@@ -18,6 +20,7 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reac
   const auto within = [&](int i) { return reached.lowest() <= i && i <= reached.highest(); };
   std::array<std::vector<Share>, 9> by_count;
   std::array<std::vector<int>, 9> nodes;
+  std::vector<std::pair<Share, bool>> read;  // and whether the lower neighbour along x has the node too
   for (int k = low; k <= high; ++k) {
     for (int j = low; j <= high; ++j) {
       for (int i = low; i <= high; ++i) {
@@ -28,6 +31,7 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reac
           const int a = i - brick_cells * d.x, b = j - brick_cells * d.y, c = k - brick_cells * d.z;
           if (within(a) && within(b) && within(c)) shares.push_back({n, shape.index(a, b, c)});
         }
+        for (const Share& share : shares) read.push_back({share, i <= high - brick_cells});
         std::vector<Share>& alike = by_count.at(shares.size());
         alike.insert(alike.end(), shares.begin(), shares.end());
         nodes[shares.size()].push_back(shape.index(i, j, k));
@@ -39,6 +43,27 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reac
     order_.insert(order_.end(), nodes[n].begin(), nodes[n].end());
     count_[n] = static_cast<int>(nodes[n].size());
   }
+  lines_[0] = find_lines(read, false);
+  lines_[1] = find_lines(std::move(read), true);
+}
+
+SharedNodes::Lines SharedNodes::find_lines(std::vector<std::pair<Share, bool>> shares, bool half_records) {
+  std::sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.second, a.first.neighbour, a.first.node) <
+           std::tuple(b.second, b.first.neighbour, b.first.node);
+  });
+  Lines found;
+  Share last{-1, -1};
+  for (const auto& [share, known] : shares) {
+    // Records begin at cache lines: two half records share one.
+    const bool same_line =
+        half_records && share.neighbour == last.neighbour && share.node / 2 == last.node / 2;
+    last = share;
+    if (same_line) continue;
+    found.shares.push_back(share);
+    if (!known) found.new_after_lower_x = found.shares.size();
+  }
+  return found;
 }
 
 namespace {

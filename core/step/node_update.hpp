@@ -6,6 +6,9 @@
 #pragma once
 
 #include <functional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/grid/brick_grid.hpp"
 
@@ -24,9 +27,15 @@ class SharedNodes {
     int node;       ///< its number in that brick
   };
   int nodes() const { return nodes_; }
-  /// Node by node: those of one brick first, then those shared by two, four and eight.
-  std::span<const Share> all() const { return shares_; }
-  /// f(node, shares), nodes in the same order; the number of shares is a compile-time constant in f.
+  /// What to prefetch for a brick's sums, for records of `width` doubles: a record in each of their cache
+  /// lines, brick by brick. `after_lower_x`: without those that the sums of its lower neighbour along x have
+  /// read.
+  std::span<const Share> lines(int width, bool after_lower_x) const {
+    const Lines& of = lines_[width < node_doubles ? 1 : 0];
+    const std::span<const Share> all = of.shares;
+    return after_lower_x ? all.first(of.new_after_lower_x) : all;
+  }
+  /// f(node, shares), nodes in the order of their numbers of shares, which are compile-time constants in f.
   template <class F>
   void for_each_node(F f) const {
     const Share* s = shares_.data();
@@ -41,8 +50,16 @@ class SharedNodes {
   }
 
  private:
+  struct Lines {
+    std::vector<Share> shares;  ///< those that the lower neighbour along x has not read come first
+    std::size_t new_after_lower_x = 0;
+  };
+  static Lines find_lines(std::vector<std::pair<Share, bool>> shares, bool half_records);
+
   int nodes_ = 0;
+  /// By node: those of one brick first, then those shared by two, four and eight.
   std::vector<Share> shares_;
+  Lines lines_[2];  ///< of whole and of half records
   std::vector<int> order_;
   std::array<int, 9> count_{};  ///< nodes by the number of their shares
 };

@@ -104,14 +104,12 @@ template <NodeArray of>
 class ContributionPrefetch {
  public:
   /// `slot` may be past the last brick. `calls`: how often next() will be called.
-  ContributionPrefetch(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::size_t calls)
-      : shares_(shared.all()) {
-    if (slot >= grid.owned()) {
-      next_ = shares_.size();
-      return;
-    }
-    step_ = shares_.size() / std::max<std::size_t>(calls, 1) + 1;
+  ContributionPrefetch(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::size_t calls) {
+    if (slot >= grid.owned()) return;
     const Brick& brick = grid.brick(slot);
+    const bool after_lower_x = brick.neighbour[lower_x_index] == slot - 1;
+    shares_ = shared.lines(record_doubles(of), after_lower_x);
+    step_ = shares_.size() / std::max<std::size_t>(calls, 1) + 1;
     for (std::size_t n = 0; n < neighbourhood; ++n) {
       from_[n] = grid.contributions(of, brick.neighbour[n] == no_slot ? slot : brick.neighbour[n]);
     }

@@ -260,3 +260,37 @@ TEST_CASE("A node block that a neighbourhood of 27 bricks cannot serve is refuse
     }
   }
 }
+
+TEST_CASE("What is prefetched for a brick's sums are the cache lines that they read, each once") {
+  // Cache lines of 8 doubles, from the first brick's point of view: its neighbour's offset, line.
+  using Line = std::tuple<std::int64_t, std::int64_t, std::int64_t, int>;
+  const auto line = [](const SharedNodes::Share& s, int width) {
+    const BrickCoord d = neighbour_offset(s.neighbour);
+    return Line{d.x, d.y, d.z, s.node * width / 8};
+  };
+  for (const NodeBlockShape shape : shapes) {
+    for (const NodeBlockShape reached : {NodeBlockShape{}, shape}) {
+      const SharedNodes shared(shape, reached);
+      for (const int width : {4, 8}) {
+        std::set<Line> read, read_before;  // by the brick's sums, and by its lower neighbour's
+        shared.for_each_node([&](int, auto shares) {
+          for (const SharedNodes::Share& s : shares) {
+            read.insert(line(s, width));
+            const auto [x, y, z, number] = line(s, width);
+            read_before.insert({x - 1, y, z, number});
+          }
+        });
+        const auto prefetched = [&](bool after_lower_x) {
+          std::set<Line> found;
+          for (const SharedNodes::Share& s : shared.lines(width, after_lower_x)) found.insert(line(s, width));
+          return found;
+        };
+        CHECK(prefetched(false) == read);
+        if (width == 8) CHECK(shared.lines(width, false).size() == read.size());
+        const std::set<Line> fresh = prefetched(true);
+        CHECK(fresh.size() < read.size());
+        for (const Line& l : read) CHECK((fresh.contains(l) || read_before.contains(l)));
+      }
+    }
+  }
+}
