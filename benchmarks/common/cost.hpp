@@ -52,9 +52,15 @@ struct Filling {
     first = sizeof(double) * core::record_doubles(core::NodeArray::first) * nodes * bricks / particles;
     second = sizeof(double) * core::record_doubles(core::NodeArray::second) * nodes * bricks / particles;
     motion = sizeof(double) * core::motion_width * nodes * bricks / particles;
-    // Along an axis each of the inner nodes has one owner, each of the two outer ones two.
+    // Along an axis each of the inner nodes has one owner, each of the two outer ones two. The sums of the
+    // lowest plane along x come from the brick before, where that is the lower neighbour.
     const double along = core::brick_cells + 3;
-    node_visits = along * along * along * bricks / particles;
+    double known = 0;
+    for (core::Slot s = 0; s < model.grid->owned(); ++s) {
+      const core::Slot lower = model.grid->brick(s).neighbour[core::lower_x_index];
+      known += lower != core::no_slot && lower + 1 == s ? 2 : 0;
+    }
+    node_visits = along * along * (along * bricks - known) / particles;
   }
 };
 

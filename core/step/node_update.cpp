@@ -18,9 +18,12 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reac
   require_few_layers(shape);
   const int low = shape.lowest(), high = shape.highest();
   const auto within = [&](int i) { return reached.lowest() <= i && i <= reached.highest(); };
-  std::array<std::vector<Share>, 9> by_count;
-  std::array<std::vector<int>, 9> nodes;
-  std::vector<std::pair<Share, bool>> read;  // and whether the lower neighbour along x has the node too
+  struct Group {
+    std::vector<Share> shares;
+    std::vector<int> nodes;
+  };
+  std::array<Group, 9> by_count[2];  // of nodes that the lower neighbour along x does not have, and has
+  std::vector<std::pair<Share, bool>> read;  // and whether it has the node
   for (int k = low; k <= high; ++k) {
     for (int j = low; j <= high; ++j) {
       for (int i = low; i <= high; ++i) {
@@ -31,17 +34,23 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reac
           const int a = i - brick_cells * d.x, b = j - brick_cells * d.y, c = k - brick_cells * d.z;
           if (within(a) && within(b) && within(c)) shares.push_back({n, shape.index(a, b, c)});
         }
-        for (const Share& share : shares) read.push_back({share, i <= high - brick_cells});
-        std::vector<Share>& alike = by_count.at(shares.size());
-        alike.insert(alike.end(), shares.begin(), shares.end());
-        nodes[shares.size()].push_back(shape.index(i, j, k));
+        const int node = shape.index(i, j, k);
+        const bool known = i <= high - brick_cells;
+        if (known) common_.push_back({node, shape.index(i + brick_cells, j, k)});
+        for (const Share& share : shares) read.push_back({share, known});
+        Group& alike = by_count[known].at(shares.size());
+        alike.shares.insert(alike.shares.end(), shares.begin(), shares.end());
+        alike.nodes.push_back(node);
       }
     }
   }
-  for (std::size_t n = 0; n < by_count.size(); ++n) {
-    shares_.insert(shares_.end(), by_count[n].begin(), by_count[n].end());
-    order_.insert(order_.end(), nodes[n].begin(), nodes[n].end());
-    count_[n] = static_cast<int>(nodes[n].size());
+  for (std::size_t known = 0; known < 2; ++known) {
+    for (std::size_t n = 0; n < by_count[known].size(); ++n) {
+      const Group& group = by_count[known][n];
+      shares_.insert(shares_.end(), group.shares.begin(), group.shares.end());
+      order_.insert(order_.end(), group.nodes.begin(), group.nodes.end());
+      count_[known][n] = static_cast<int>(group.nodes.size());
+    }
   }
   lines_[0] = find_lines(read, false);
   lines_[1] = find_lines(std::move(read), true);
@@ -68,10 +77,12 @@ SharedNodes::Lines SharedNodes::find_lines(std::vector<std::pair<Share, bool>> s
 
 namespace {
 
-/// `contributions_of(slot)`: those of a neighbour, null if it has none.
+/// `contributions_of(slot)`: those of a neighbour, null if it has none. `new_only`: of the nodes that the
+/// lower neighbour along x does not have.
 template <NodeArray of, class F>
 [[gnu::always_inline]] inline void sum_over_neighbours(const BrickGrid& grid, const SharedNodes& shared,
-                                                       Slot slot, F contributions_of, double* sums) {
+                                                       Slot slot, F contributions_of, bool new_only,
+                                                       double* sums) {
   constexpr int width = record_doubles(of);
   using Part = Lanes<width>;
   static const std::vector<double> nothing(
@@ -82,21 +93,56 @@ template <NodeArray of, class F>
     const double* there = brick.neighbour[n] == no_slot ? nullptr : contributions_of(brick.neighbour[n]);
     from[n] = there == nullptr ? nothing.data() : there;
   }
-  shared.for_each_node([&](int node, auto shares) {
-    Part sum(0.0);
-    for (const SharedNodes::Share& s : shares) {
-      sum += load<Part>(from[static_cast<std::size_t>(s.neighbour)] + width * s.node);
-    }
-    store(sums + node_doubles * node, sum);
-  });
+  shared.for_each_node(
+      [&](int node, auto shares) {
+        Part sum(0.0);
+        for (const SharedNodes::Share& s : shares) {
+          sum += load<Part>(from[static_cast<std::size_t>(s.neighbour)] + width * s.node);
+        }
+        store(sums + node_doubles * node, sum);
+      },
+      new_only);
 }
 
 }  // namespace
 
 template <NodeArray of>
+bool CarriedSums<of>::give(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums) const {
+  if (from_ == no_slot || grid.brick(slot).neighbour[lower_x_index] != from_) return false;
+  const double* record = records_.data();
+  for (const SharedNodes::Common& node : shared.common()) {
+    store(sums + node_doubles * node.here, load<Lanes<width>>(record));
+    record += width;
+  }
+  return true;
+}
+
+template <NodeArray of>
+void CarriedSums<of>::keep(const SharedNodes& shared, Slot slot, const double* sums) {
+  records_.resize(shared.common().size() * std::size_t{width});
+  double* record = records_.data();
+  for (const SharedNodes::Common& node : shared.common()) {
+    store(record, load<Lanes<width>>(sums + node_doubles * node.there));
+    record += width;
+  }
+  from_ = slot;
+}
+
+template class CarriedSums<NodeArray::first>;
+template class CarriedSums<NodeArray::second>;
+
+template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums) {
   sum_over_neighbours<of>(
-      grid, shared, slot, [&](Slot s) { return grid.contributions(of, s); }, sums);
+      grid, shared, slot, [&](Slot s) { return grid.contributions(of, s); }, false, sums);
+}
+template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, CarriedSums<of>& carried,
+                       double* sums) {
+  const bool known = carried.give(grid, shared, slot, sums);
+  sum_over_neighbours<of>(
+      grid, shared, slot, [&](Slot s) { return grid.contributions(of, s); }, known, sums);
+  carried.keep(shared, slot, sums);
 }
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::int32_t component,
@@ -105,8 +151,12 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
     const int field = grid.field_of(s, component);
     return field < 0 ? nullptr : grid.contributions(of, s, field);
   };
-  sum_over_neighbours<of>(grid, shared, slot, of_component, sums);
+  sum_over_neighbours<of>(grid, shared, slot, of_component, false, sums);
 }
+template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot,
+                                                  CarriedSums<NodeArray::first>&, double*);
+template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot,
+                                                   CarriedSums<NodeArray::second>&, double*);
 template void sum_contributions<NodeArray::first>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::second>(const BrickGrid&, const SharedNodes&, Slot, double*);
 template void sum_contributions<NodeArray::third>(const BrickGrid&, const SharedNodes&, Slot, double*);

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <omp.h>
 
@@ -85,6 +86,7 @@ class PassesWith final : public Passes {
     RegressionScratch regression;
     ContactSums contact;
     SiteAverages averages;  ///< of the current tile; empty where volume changes are not averaged
+    std::tuple<CarriedSums<NodeArray::first>, CarriedSums<NodeArray::second>> carried;  ///< of this pass
     [[no_unique_address]] std::conditional_t<corrects || solves, typename S::Field, Nothing> corrected;
   };
 
@@ -115,9 +117,9 @@ class PassesWith final : public Passes {
   void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
   void keep_motion_of_others(Slot s, const Scratch& at);
   template <NodeArray of>
-  void sum(const SharedNodes& shared, Slot s, std::int32_t component, double* sums) const {
+  void sum(const SharedNodes& shared, Slot s, std::int32_t component, Scratch& at, double* sums) const {
     if (component == all_components)
-      sum_contributions<of>(*model_.grid, shared, s, sums);
+      sum_contributions(*model_.grid, shared, s, std::get<CarriedSums<of>>(at.carried), sums);
     else
       sum_contributions<of>(*model_.grid, shared, s, component, sums);
   }
@@ -332,6 +334,7 @@ void PassesWith<S, T>::for_bricks(int first, int last, F f) {
   // Long runs of neighbours per thread: most prefetched data and sums then stay in that thread's cache. Four
   // runs per thread balance differences between bricks.
   const auto threads = static_cast<int>(scratch_.size());
+  for (Scratch& w : scratch_) std::apply([](auto&... sums) { (sums.forget(), ...); }, w.carried);
   for_each_by_threads(
       first, last, std::max((last - first) / (4 * threads), 1),
       [&](int s) {

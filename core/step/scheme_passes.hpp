@@ -38,7 +38,7 @@ void PassesWith<S, T>::update_stress_and_move() {
     const auto update = [&](std::int32_t component, std::size_t k) {
       recall_motion(shared_.nodes(), motion(s, k), at.nodes.data());
       if constexpr (solves) return take_solved_strain(s, at);
-      sum<NodeArray::second>(momentum_shared_, s, component, at.sums.data());
+      sum<NodeArray::second>(momentum_shared_, s, component, at, at.sums.data());
       second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
     };
     for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
@@ -61,7 +61,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
   critical_.assign(static_cast<std::size_t>(grid.owned()), 0.0);
   map_bricks<mapped::force>([&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) {
-      sum<NodeArray::second>(momentum_shared_, s, component, at.nodes.data());
+      sum<NodeArray::second>(momentum_shared_, s, component, at, at.nodes.data());
       second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
                         at.nodes.data());
       take_solved_strain(s, at);

@@ -27,7 +27,7 @@ void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] 
     MotionVector from = Motion::velocity_at, stopped = Motion::velocity_at, u = Motion::velocity_at;
     switch (system) {
       case MassSystem::velocity_at_start:
-        sum<NodeArray::second>(momentum_shared_, s, all_components, at.nodes.data());
+        sum<NodeArray::second>(momentum_shared_, s, all_components, at, at.nodes.data());
         second_velocities(cutoff, at.nodes.data(), faces(s), nodes, at.nodes.data());
         from = stopped = Motion::strain_velocity_at;
         break;
@@ -38,7 +38,7 @@ void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] 
         break;
       case MassSystem::new_velocity:
         recall_motion(nodes, motion(s), at.nodes.data());
-        sum<NodeArray::second>(momentum_shared_, s, all_components, at.sums.data());
+        sum<NodeArray::second>(momentum_shared_, s, all_components, at, at.sums.data());
         second_velocities(0, at.sums.data(), faces(s), nodes, at.nodes.data());
         from = stopped = Motion::strain_velocity_at;
         break;

@@ -9,6 +9,7 @@ from case import Case, Error, Study
 from cases import support
 from derive import BEND, GAIN, RADIUS, SLOPE, SPIN, T, X, Y
 
+RINGS = "rings, fine steps"
 INNER, OUTER, TURN, END, PICTURES, HALF = 0.75, 1.25, sp.Rational(3, 20), 1.0, 4, 2
 ROOM = 1.5  # half of the grid
 SOLID = derive.Solid(1.0, 0.3, 1.0)
@@ -74,7 +75,7 @@ by 0.15 (1 - 4 (R^2 - 17/16)^2)^2 2.6 t (1 - t^2), to t = 1: shears of up to 1.2
 free of stress. After R. M. Brannon, K. Kamojjala and A. Sadeghirad, *Establishing credibility of particle methods through
 verification testing* (2011), with another profile, which needs no square root. The body force is derived with SymPy. Error:
 the largest over four times of the root mean square over the particles of the displacement's error, over the largest
-displacement. The lattice of particles cuts the ring's edges into stairs."""
+displacement. A lattice of particles cuts the ring's edges into stairs; particles in rings (`discretization="1"`) follow them."""
     errors = {"displacement": Error("error of displacement"), "stress": Error("error of stress"),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {
@@ -82,6 +83,8 @@ displacement. The lattice of particles cuts the ring's edges into stairs."""
                                 0.4),
         "fine steps": Study("time step proportional to the cells squared (factor 3.2/cells).", (4, 8, 16), lambda n: 3.2 / n,
                             methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline", "CubicBSpline"), ("APIC",))]),
+        RINGS: Study("the same with the particles in rings, which follow the edges.", (8, 16), lambda n: 3.2 / n,
+                     methods=lambda: methods.product(("QuadraticBSpline", "CubicBSpline", "CPDI2", "SGMP"))),
     }
 
     def methods(self):
@@ -92,7 +95,7 @@ displacement. The lattice of particles cuts the ring's edges into stairs."""
         dp = h / point.split
         ring = (f'<Body name="ring" material="solid" type="Cylinder"><Geometry x0="0" y0="0" z0="0" dp_bottom="{dp!r}" '
                 f'dp_top="{dp!r}" Bottom_Inner_Radius="{INNER}" Top_Inner_Radius="{INNER}" Bottom_Outer_Radius="{OUTER}" '
-                f'Top_Outer_Radius="{OUTER}" height="{h!r}"/>{loads()}</Body>')
+                f'Top_Outer_Radius="{OUTER}" height="{h!r}" discretization="{int(point.study == RINGS)}"/>{loads()}</Body>')
         return support.scene([ring], support.grid((-ROOM, -ROOM, 0), (ROOM, ROOM, h), "000022", h),
                              support.solution(END, point.factor), [support.material("solid", SOLID.density, SOLID.law)],
                              support.pictures(END / PICTURES, support.STRESSES))

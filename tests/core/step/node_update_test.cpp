@@ -151,6 +151,34 @@ TEST_CASE("A node's sum is that of all bricks which hold it") {
   }
 }
 
+TEST_CASE("Sums that are carried from a brick to the next along x have the same bits") {
+  std::mt19937 random(23);
+  for (const NodeBlockShape shape : shapes) {
+    for (unsigned density = 1; density <= 8; ++density) {
+      BrickGrid grid(geometry_of({16, 16, 16}), shape);
+      grid.reset(random_bricks(random, density), {});
+      const SharedNodes whole(shape), momenta(shape, NodeBlockShape{});
+      const auto check = [&]<NodeArray of>(const SharedNodes& shared) {
+        fill(grid, of, random);
+        CarriedSums<of> carried;
+        std::vector<double> plain(static_cast<std::size_t>(node_doubles * shape.nodes())), given = plain;
+        int different = 0;
+        for (Slot s = 0; s < grid.owned(); ++s) {
+          if (random() % 16 == 0) continue;  // another thread's
+          sum_contributions<of>(grid, shared, s, plain.data());
+          sum_contributions(grid, shared, s, carried, given.data());
+          different += std::memcmp(plain.data(), given.data(), sizeof(double) * plain.size()) != 0;
+        }
+        CHECK(different == 0);
+        carried.forget();
+        CHECK_FALSE(carried.give(grid, shared, 1, given.data()));
+      };
+      check.operator()<NodeArray::first>(whole);
+      check.operator()<NodeArray::second>(momenta);
+    }
+  }
+}
+
 TEST_CASE("A free node moves by (f/m + g - c v) dt; one at the cutoff or below does not exist") {
   NodeForces forces;
   forces.gravity = {1, 2, -8};
