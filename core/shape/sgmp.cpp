@@ -16,8 +16,14 @@ constexpr int node_index(int i, int j, int k) { return i + nodes * (j + nodes * 
 inline Half lower_half(const Record& r) { return half_of(r, 0); }
 inline Half upper_half(const Record& r) { return half_of(r, 1); }
 
+template <Onto onto, class Part>
+[[gnu::always_inline]] inline void put(double* at, const Part& sum) {
+  store(at, onto == Onto::nothing ? sum : load<Part>(at) + sum);
+}
+
 }  // namespace
 
+template <Onto onto>
 void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, double* node) {
   const Half mean(0.125), x(0.25 * inverse_cell.x), y(0.25 * inverse_cell.y), z(0.25 * inverse_cell.z);
   const Record first_scale = join(mean, x), second_scale = join(y, z);
@@ -60,13 +66,14 @@ void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, do
         force_below = next;
         const Half momentum = lower_half(means), xx = upper_half(means);
         double* at = node + node_doubles * node_index(i, j, k);
-        store(at, load<Record>(at) + join(momentum, yz + xx) + below[k][j]);
+        put<onto>(at, join(momentum, yz + xx) + below[k][j]);
         below[k][j] = join(momentum, yz - xx);
       }
     }
   }
 }
 
+template <Onto onto>
 void centres_to_nodes(const double* centre, double* node) {
   Half below[nodes][nodes];
   for (auto& row : below) {
@@ -92,12 +99,17 @@ void centres_to_nodes(const double* centre, double* node) {
         const Half sum = here + last;
         last = here;
         double* at = node + 4 * node_index(i, j, k);
-        store(at, load<Half>(at) + sum + below[k][j]);
+        put<onto>(at, sum + below[k][j]);
         below[k][j] = sum;
       }
     }
   }
 }
+
+template void centres_to_nodes<Onto::nothing>(const Vec3<double>&, const double*, double*);
+template void centres_to_nodes<Onto::contributions>(const Vec3<double>&, const double*, double*);
+template void centres_to_nodes<Onto::nothing>(const double*, double*);
+template void centres_to_nodes<Onto::contributions>(const double*, double*);
 
 void nodes_to_centres(const double* node, double* centre) {
   Record planes[2][centres][centres];  // of sums along z and y: of this plane of nodes and the last one

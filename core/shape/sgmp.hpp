@@ -43,10 +43,14 @@ struct CentreStore {
   }
 };
 
-/// Adds to the nodes m_i = sum_c m_c / 8, p_i = sum_c p_c / 8 and
-/// f_i = -sum_c G_ci (V sigma)_c. `centre`: records of sum_doubles; `node`: contributions to the first array.
+/// Whether sums replace the nodes' contributions or are added to them.
+enum class Onto { nothing, contributions };
+/// To the nodes m_i = sum_c m_c / 8, p_i = sum_c p_c / 8 and f_i = -sum_c G_ci (V sigma)_c. `centre`: records
+/// of sum_doubles; `node`: contributions to the first array.
+template <Onto onto>
 void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, double* node);
 /// Momentum and mass only: records of four doubles.
+template <Onto onto>
 void centres_to_nodes(const double* centre, double* node);
 /// Means of the nodes' records.
 void nodes_to_centres(const double* node, double* centre);
@@ -71,15 +75,19 @@ struct Sgmp {
   class Sums {
    public:
     explicit Sums(double* contributions) : records(centre_), contributions_(contributions) {}
-    void finish(const BrickFrame& frame) {
-      if constexpr (maps_force(what))
-        sgmp::centres_to_nodes(frame.inverse_cell, centre_, contributions_);
-      else
-        sgmp::centres_to_nodes(centre_, contributions_);
-    }
+    void finish(const BrickFrame& frame) { to_nodes<sgmp::Onto::contributions>(frame); }
+    void replace(const BrickFrame& frame) { to_nodes<sgmp::Onto::nothing>(frame); }
     double* records;
 
    private:
+    template <sgmp::Onto onto>
+    void to_nodes(const BrickFrame& frame) {
+      if constexpr (maps_force(what))
+        sgmp::centres_to_nodes<onto>(frame.inverse_cell, centre_, contributions_);
+      else
+        sgmp::centres_to_nodes<onto>(centre_, contributions_);
+    }
+
     alignas(64) double centre_[sgmp::CentreStore<what>::width * lattice_points.nodes()] = {};
     double* contributions_;
   };

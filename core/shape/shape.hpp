@@ -4,7 +4,8 @@
 //   site, node_block    how bricks take particles, and the nodes that a brick keeps for them
 //   Place               location of a block of eight particles: found once per pass
 //   Scatter<fields>     adds m S, m v S and V sigma grad S of particles to a brick's Sums<fields>
-//   Sums<fields>        sums over a brick's particles; finish() adds them to its nodes' contributions
+//   Sums<fields>        sums over a brick's particles; finish() adds them to its nodes' contributions;
+//                       optional: replace() puts them in their place
 //   Field               the nodal motion of a brick as its particles read it: take_motion() for the velocity
 //                       and its increment, take_strain() for the strain velocity
 //   Interpolation       sum_i S_i u_i of the velocity or its increment at a block's particles

@@ -2,6 +2,8 @@
 // particles to grid, the nodes' equation of motion, velocities and motion of particles, strain and stress.
 #pragma once
 
+#include <algorithm>
+
 #include "core/step/passes_with.hpp"
 
 namespace mpm::core {
@@ -55,10 +57,17 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   constexpr int width = record_doubles(what.array);
   const int field = field_of(s, component);
   double* contributions = grid.contributions(what.array, s, field);
-  std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  using Sums = typename S::template Sums<what>;
+  constexpr bool can_replace = requires(Sums sums) { sums.replace(frame); };
+  // Loads add to the nodes themselves.
+  const bool replaces =
+      can_replace && !(maps_force(what) && std::ranges::any_of(brick.tiles, [&](const ParticleTile& tile) {
+                         return loads_.act(grid, s, tile.body);
+                       }));
+  if (!replaces) std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
   SpreadPrefetch room(s + 1 < grid.owned() ? grid.contributions(what.array, s + 1) : nullptr,
                       width * grid.shape().nodes(), block_count(brick));
-  typename S::template Sums<what> sums(contributions);
+  Sums sums(contributions);
   typename S::template Scatter<what> cell;
   cell.clear();
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
@@ -66,7 +75,10 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
       map_tile<what>(s, c, frame, at, contributions, room, cell, sums.records, before);
   }
   cell.flush(frame, sums.records);
-  sums.finish(frame);
+  if constexpr (can_replace) {
+    if (replaces) sums.replace(frame);
+  }
+  if (!replaces) sums.finish(frame);
   if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, field, contributions);
 }
 
