@@ -152,16 +152,25 @@ const RigidState& RigidBodies::state(int number) const {
 }
 
 void RigidBodies::begin_step(const Loads& loads, const Vec3<double>& gravity, double dt) {
+  for (Rigid& rigid : bodies_) {
+    const RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
+    rigid.energy_before = kinetic_energy(state);
+    rigid.velocity_before = state.velocity;
+    rigid.spin_before = state.spin;
+  }
+  move_without_contact(loads, gravity, dt);
+}
+
+void RigidBodies::move_without_contact(const Loads& loads, const Vec3<double>& gravity, double dt) {
   dt_ = dt;
   for (std::size_t r = 0; r < bodies_.size(); ++r) {
-    Rigid& rigid = bodies_[r];
+    const Rigid& rigid = bodies_[r];
     RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
-    rigid.energy_before = kinetic_energy(state);
     const BodyMotion& motion = loads.motion(rigid.body);
     state.velocity = motion.kind == BodyMotion::Kind::prescribed
                          ? motion.velocity.common
-                         : state.velocity + dt * (gravity + loads.acceleration(rigid.body));
-    state.spin = state.spin + dt * loads.angular_acceleration(rigid.body);
+                         : rigid.velocity_before + dt * (gravity + loads.acceleration(rigid.body));
+    state.spin = rigid.spin_before + dt * loads.angular_acceleration(rigid.body);
     if (!rigid.driven) keep_symmetry(state);
     node_mass_[r] =
         rigid.driven ? std::numeric_limits<double>::infinity() : state.mass / std::max(state.contacts, 1.0);

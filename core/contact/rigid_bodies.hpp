@@ -45,6 +45,10 @@ class RigidBodies {
 
   /// The motion that the bodies would have without contact.
   void begin_step(const Loads& loads, const Vec3<double>& gravity, double dt);
+  /// The same for a shorter step than begun.
+  void shorten_step(const Loads& loads, const Vec3<double>& gravity, double dt) {
+    move_without_contact(loads, gravity, dt);
+  }
   /// Moves a block of a rigid body's particles.
   void move(int number, const ColumnLayout& layout, double* block) const;
   /// With the impulses of all threads, per body: the motion at the end of the step. The work of loads and
@@ -57,8 +61,10 @@ class RigidBodies {
     int body = 0;
     bool driven = false;
     double energy_before = 0;  ///< kinetic, at the start of the step
+    Vec3<double> velocity_before{}, spin_before{};
   };
   void find_states(Reductions& ranks);
+  void move_without_contact(const Loads& loads, const Vec3<double>& gravity, double dt);
   /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
   Vec3<double> symmetry_planes_at(int number);
 

@@ -9,6 +9,7 @@
 #include "core/built.hpp"
 #include "core/implicit/implicit_integrator.hpp"
 #include "core/step/speeds.hpp"
+#include "core/step/strain_limit.hpp"
 #include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
@@ -33,6 +34,10 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   const bool solves = model_.scene->solution.mass == MassMatrix::consistent;
   const auto solve = [&](std::string name, Passes::MassSystem system) {
     if (solves) then("consistent mass, " + std::move(name), [&, system] { pass.solve_mass(system); });
+  };
+
+  const auto limit = [&] {
+    if (strain_may_jump(model_)) then("limit strain", [&] { limit_strain(); });
   };
 
   if (cells_) {
@@ -64,6 +69,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      limit();
       correct_velocities();
       if (pass.loads().any()) solve("velocities", Passes::MassSystem::velocity_at_end);
       solve("increments", Passes::MassSystem::increment);
@@ -75,6 +81,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     case Scheme::usf:
       then("particles to grid", [&] { pass.map_momentum_mass(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      limit();
       solve("velocities", Passes::MassSystem::velocity_at_start);
       then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
       then("exchange again", [&] { pass.finish_exchange(); });
@@ -86,6 +93,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       if (solves) throw std::logic_error("USL with the consistent mass matrix");
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      limit();
       correct_velocities();
       then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
@@ -101,6 +109,15 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
       heat_(make_conduction(model, communication.halo)),
       rigid_(make_rigid_bodies(model, communication)),
       passes_(make_passes(model, communication.halo, rigid_.get())) {}
+
+/// Conduction has taken the step as it was chosen: it moves heat between particles alone.
+void ExplicitIntegrator::limit_strain() {
+  double& dt = model_.clock.dt;
+  const double limited = limited_step(dt, ranks_.largest(passes_->largest_strain_rate()));
+  if (limited == dt) return;
+  dt = limited;
+  passes_->shorten_step(dt);
+}
 
 double ExplicitIntegrator::next_step(const Clock& clock) const {
   const TimeStepInput& how = model_.scene->solution.time_step;

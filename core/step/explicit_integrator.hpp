@@ -25,6 +25,8 @@ class ExplicitIntegrator final : public Integrator {
   std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
 
  private:
+  void limit_strain();
+
   Model& model_;
   Reductions& ranks_;
   std::unique_ptr<CellsInUse> cells_;  ///< null for shape functions without them

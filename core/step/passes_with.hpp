@@ -24,6 +24,7 @@
 #include "core/step/prefetch.hpp"
 #include "core/step/site_averages.hpp"
 #include "core/step/speeds.hpp"
+#include "core/step/strain_limit.hpp"
 #include "core/threads.hpp"
 #include "core/transfer/consistent.hpp"
 #include "core/transfer/corrected.hpp"
@@ -37,13 +38,16 @@ class PassesWith final : public Passes {
 
   const Loads& loads() const override { return loads_; }
   void begin_step(double length) override {
-    dt = length;
-    transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
-    loads_.begin_step(model_.clock.time, dt);
+    set_step(length);
     if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, dt);
     follows_grid_ = follow_grid();
     begin_corrections();
     begin_mass();
+  }
+  double largest_strain_rate() override;
+  void shorten_step(double length) override {
+    set_step(length);
+    if (rigid_ != nullptr) rigid_->shorten_step(loads_, forces_.gravity, dt);
   }
 
   void find_fields(Reductions& ranks) override { contact_->find_fields(*model_.grid, halo_, ranks); }
@@ -85,10 +89,17 @@ class PassesWith final : public Passes {
     std::vector<FieldNodes> fields;  ///< where components meet
     RegressionScratch regression;
     ContactSums contact;
-    SiteAverages averages;  ///< of the current tile; empty where volume changes are not averaged
+    SiteAverages averages;   ///< of the current tile; empty where volume changes are not averaged
+    double strain_rate = 0;  ///< largest of the thread's bricks
     std::tuple<CarriedSums<NodeArray::first>, CarriedSums<NodeArray::second>> carried;  ///< of this pass
     [[no_unique_address]] std::conditional_t<corrects || solves, typename S::Field, Nothing> corrected;
   };
+
+  void set_step(double length) {
+    dt = length;
+    transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
+    loads_.begin_step(model_.clock.time, dt);
+  }
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
   static constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
@@ -138,6 +149,8 @@ class PassesWith final : public Passes {
   void map_reach(Slot s, std::int32_t component);
   template <NodeFields what>
   void fold_at_walls(Slot s, int field, double* contributions);
+  template <NodeArray of>
+  void sum_fields(Slot s, Scratch& at);
   void sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at);
   void take_updated_nodes(Slot s, Scratch& at);
   void velocities_of_brick(Slot s, std::int32_t component, Scratch& at);

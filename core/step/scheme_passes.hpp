@@ -6,6 +6,46 @@
 
 namespace mpm::core {
 
+/// Sums of all velocity fields, as if the bodies stuck to each other, into at.nodes.
+template <ShapePolicy S, TransferPolicy T>
+template <NodeArray of>
+void PassesWith<S, T>::sum_fields(Slot s, Scratch& at) {
+  const SharedNodes& shared = this->shared<of>();
+  if (!contact_ || !contact_->meets(s)) return sum<of>(shared, s, all_components, at, at.nodes.data());
+  std::fill_n(at.nodes.data(), at.nodes.size(), 0.0);
+  for (const std::int32_t component : contact_->seen(s)) {
+    sum<of>(shared, s, component, at, at.sums.data());
+    for (std::size_t i = 0; i < at.nodes.size(); ++i) {
+      const bool mapped = static_cast<int>(i % node_doubles) < record_doubles(of);
+      if (mapped) at.nodes.data()[i] += at.sums.data()[i];
+    }
+  }
+}
+
+template <ShapePolicy S, TransferPolicy T>
+double PassesWith<S, T>::largest_strain_rate() {
+  const BrickGrid& grid = *model_.grid;
+  for (Scratch& w : scratch_) w.strain_rate = 0;
+  for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
+    const auto sum = [&]<NodeArray of>() {
+      ContributionPrefetch<of>(grid, shared<of>(), s + 1, 1).next();
+      sum_fields<of>(s, at);
+    };
+    if (scheme_ == Scheme::usf)
+      sum.template operator()<NodeArray::second>();
+    else
+      sum.template operator()<NodeArray::first>();
+    double* nodes = at.nodes.data();
+    const double cutoff = grid.geometry().mass_cutoff;
+    second_velocities(cutoff, nodes, faces(s), shared_.nodes(), nodes);
+    at.strain_rate = std::max(at.strain_rate, mpm::core::largest_strain_rate(
+                                                  grid.shape(), grid.geometry().inverse_cell, cutoff, nodes));
+  });
+  double largest = 0;
+  for (const Scratch& w : scratch_) largest = std::max(largest, w.strain_rate);
+  return largest;
+}
+
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities_and_map_back() {
   motion_.resize(static_cast<std::size_t>(motion_doubles()) *

@@ -18,8 +18,6 @@ SOFT = _mpm.material(
     '<FailureModel type="PlaStrain" epmax="0.8" Erosion="1"/>')
 HARD = _mpm.material("steel", 7.85e-3, 'type="ElaPlastic" Young="210e3" Poisson="0.3" Yield0="400"',
                      '<EquationOfState type="Polynomial" c0="0" c1="175e3" c2="0" c3="0" c4="0" c5="0" c6="0"/>')
-BODIES = [_mpm.block("projectile", (1.1, 3.3, 4.2), (4, 4, 4), (900, 150, 0), of="copper"),
-          _mpm.block("target", (19.3, 7.7, 3.4), (4, 5, 4), (-700, -180, 60), of="steel")]
 END = 0.011
 DIMENSIONS = {1: (1, 1, 1), 2: (2, 1, 1), 3: (3, 1, 1), 4: (2, 2, 1), 8: (4, 2, 1)}
 PRINT = f'<Console print_time="{END / 10}"/>'
@@ -33,9 +31,11 @@ def uniform(ranks):
     return '<DomainDecomposition dimension0="{}" dimension1="{}" dimension2="{}"/>'.format(*DIMENSIONS[ranks])
 
 
-def collision(decomposition="", algorithm="MUSL", output=PRINT, end=END):
+def collision(decomposition="", algorithm="MUSL", output=PRINT, end=END, faster=1):
+    bodies = [_mpm.block("projectile", (1.1, 3.3, 4.2), (4, 4, 4), (900 * faster, 150 * faster, 0), of="copper"),
+              _mpm.block("target", (19.3, 7.7, 3.4), (4, 5, 4), (-700 * faster, -180 * faster, 60 * faster), of="steel")]
     gravity = '<Gravity ax="0" ay="0" az="-2e4"/>'
-    return _mpm.scene(BODIES, _mpm.grid((0, 0, 0), (26, 16, 12)), _mpm.solution(end, algorithm, 0.5, more=gravity),
+    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), (26, 16, 12)), _mpm.solution(end, algorithm, 0.5, more=gravity),
                       [SOFT, HARD], output, decomposition)
 
 
@@ -84,6 +84,18 @@ class Collision(Case):
                 expected = self.state(collision("", algorithm), "alone")
                 text = collision(uniform(ranks), algorithm)
                 self.assertEqual(self.state(text, "other", ranks=ranks, threads=threads), expected)
+
+    def test_where_the_strain_limits_the_steps(self):
+        """At 10 km/s (core/step/strain_limit.hpp)."""
+        for algorithm in ("MUSL", "USF", "USL"):
+            with self.subTest(algorithm):
+                output = PRINT + f'<Restart time_interval="{END / 12}"/>'
+                text = collision("", algorithm, output, END / 4, faster=6)
+                alone = self.run_in("alone", [self.write(text)])
+                self.assertIn("| limit strain |", alone.out)
+                self.assertEqual(self.state(text, "other", ranks=4, threads=2), alone.state)
+                first = _mpm.restarts(self.folder / "other")[0]
+                self.assertEqual(self.run_in("again", [first], ranks=2).state, alone.state)
 
     def test_outputs_do_not_change_the_run(self):
         """Output variables add columns to the particles, hence to the hash; the totals have to agree all the same."""

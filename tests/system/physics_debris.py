@@ -46,6 +46,20 @@ class Debris(_mpm.Case):
                 speed = np.sqrt(sum(states.column(f"velocity_{a}") ** 2 for a in range(3)))
                 self.assertLess(speed.max(), 2 * SPEED)
 
+    def test_bodies_that_meet_at_20_km_per_s(self):
+        """At the default factor. Unless the strain limits the step in which they meet, the energy grows by 77 % in this step
+        with linear functions, by 5 % with the others."""
+        copper = _mpm.material("copper", 8.93e-3, 'type="IsoHarden" Young="117e3" Poisson="0.35" Yield0="157" TangMod="423"',
+                               '<EquationOfState type="Gruneisen" C0="3940" S1="1.49" gamma0="1.96"/>')
+        ball = ('<Body name="ball" material="copper" type="Sphere"><Geometry x0="10" y0="10" z0="11.6" Outer_Radius="2" dp="0.5"/>'
+                '<InitialVelocity vx="0" vy="0" vz="-20000"/></Body>')
+        plate = _mpm.block("plate", (4, 4, 7), (12, 12, 2), dp=0.5, of="copper")
+        for shape, most in (("linear", 0.01), ("SGMP", 0.02), ("QuadraticBSpline", 0.01)):
+            with self.subTest(shape):
+                box = _mpm.grid((0, 0, 0), (20, 20, 20)).replace("<Grid>", f'<Grid shape="{shape}">')
+                self.run_in(shape, [self.write(_mpm.scene([ball, plate], box, _mpm.solution(8e-4, factor=0.9), [copper]))])
+                self.assertLess(abs(_mpm.summary(self.folder / shape)["energy"]["relative_drift"]), most)
+
     def test_a_drift_is_said(self):
         """USL loses energy in a fluid that falls and splashes, not while it falls."""
         water = _mpm.material("water", 1000, 'type="Null" mu="1e-3"',
