@@ -50,6 +50,14 @@ class Heap:
         self.thickness = count * self.spacing**2 / (SPACINGS * self.width)
         self.middle = self.width * (np.arange(len(count)) + 0.5)
 
+    def repose(self, low, high, foot=0.0):
+        """Slope of the surface between the heights `low` and `high`, in degrees, and where it would reach the height `foot`."""
+        strips = [self.z[(self.x >= x) & (self.x < x + self.width)] for x in self.middle - self.width / 2]
+        top = np.array([strip.max(initial=0.0) for strip in strips])
+        slope = (top > low) & (top < high)
+        fall, start = np.polyfit(self.middle[slope], top[slope], 1)
+        return float(np.degrees(np.arctan(-fall))), float((foot - start) / fall)
+
     def kinetic(self, front):
         """Of the soil up to `front`."""
         return 0.5 * (self.mass * self.speed**2)[self.x < front].sum()
@@ -98,13 +106,9 @@ def measure_aluminium_rods(folder):
     """Angle of repose: the slope of the surface between a tenth and nine tenths of the first height; its foot; when the
     kinetic energy has fallen to a twentieth of its largest; how much of what gravity released is left of it."""
     heap, summary = Heap(folder, "aluminium_rods", 2650), _mpm.summary(folder, "aluminium_rods")
-    strips = [heap.z[(heap.x >= x) & (heap.x < x + heap.width)] for x in heap.middle - heap.width / 2]
-    top = np.array([strip.max(initial=0.0) for strip in strips])
-    slope = (top > 0.01) & (top < 0.09)
-    fall, foot = np.polyfit(heap.middle[slope], top[slope], 1)
+    repose, foot = heap.repose(0.01, 0.09)
     status = _cases.status(folder, "aluminium_rods")
     kinetic = status["kinetic"]
     moving = np.flatnonzero(kinetic > kinetic.max() / 20)[-1]
-    return {"particles": summary["particles"], "steps": summary["steps"], "repose": float(np.degrees(np.arctan(-fall))),
-            "foot": float(-foot / fall), "flow": float(status["time"][moving]), "kinetic": kinetic[-1] / summary["energy"]["external_work"],
+    return {"particles": summary["particles"], "steps": summary["steps"], "repose": repose, "foot": foot, "flow": float(status["time"][moving]), "kinetic": kinetic[-1] / summary["energy"]["external_work"],
             "density": heap.density.mean(), "drift": 100 * summary["energy"]["relative_drift"]}

@@ -12,6 +12,7 @@ import _lead
 import _mpm
 import _projectile_through_concrete
 import _rod_through_plate
+import _slopes
 import _symmetric_impact
 import _water_drop
 
@@ -167,6 +168,17 @@ class Gallery(_mpm.Case):
                 found = self.measured("aluminium_rods", _granular.aluminium_rods(10, base), _granular.measure_aluminium_rods)
                 self.assertAlmostEqual(found["repose"], 14, delta=1.5)
                 self.assertLess(found["kinetic"], 1e-2)
+
+    def test_slopes(self):
+        """Thesis 6.3: the clay's slide takes 5.8 s, dry sand of 30 degrees comes to rest at 22 degrees; with cells of 2.5 m instead
+        of 1 m. The clay's displacement depends on the cells."""
+        clay, sand = (self.measured(_slopes.JOB, _slopes.text(soil, 2.5), _slopes.measure) for soil in ("clay", "dry 30"))
+        self.assertAlmostEqual(clay["time"], 5.8, delta=1)  # 6.2: such cells let it ring longer
+        self.assertAlmostEqual(clay["largest"], 10.5, delta=1)  # 13.7 with cells of 1 m
+        self.assertAlmostEqual(sand["repose"], 22, delta=2.2)
+        for found in (clay, sand):
+            self.assertLess(found["kinetic"], 2e-3)
+            self.assertGreater(found["pressed"], 0.99)
 
 
 if __name__ == "__main__":
