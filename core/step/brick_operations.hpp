@@ -375,6 +375,11 @@ template <bool moves, class F>
       update_domains(body, frame, *batch.layout, b, batch.block[b], used, at);
     } else {
       S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
+      if constexpr (traps) {
+        if (!averages)
+          release_from_faces(frame, at.places[b], at.field.nodes, dt, *batch.layout, batch.block[b], used,
+                             batch.gradient, block_lanes * b);
+      }
       refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
     }
     if (!averages) return;

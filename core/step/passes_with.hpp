@@ -14,6 +14,7 @@
 
 #include "core/contact/contact.hpp"
 #include "core/shape/cell_mass.hpp"
+#include "core/shape/face_traps.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/grid_to_particles.hpp"
 #include "core/step/load_forces.hpp"
@@ -78,6 +79,8 @@ class PassesWith final : public Passes {
   /// Whether particles have domains that deform with them.
   static constexpr bool deforms = requires { &S::template deform<Row[9]>; };
   static constexpr bool settles = requires { &S::settle; };
+  /// Whether gradients jump at the faces of cells, where USF traps particles.
+  static constexpr bool traps = std::is_same_v<S, Linear>;
   /// Whether the transfer corrects velocities (core/transfer/corrected.hpp).
   static constexpr bool corrects = corrects_velocities<T>;
   /// Whether it solves with the consistent mass matrix (core/transfer/consistent.hpp).

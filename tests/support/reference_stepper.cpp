@@ -488,6 +488,37 @@ Matrix relative_to_old_positions(const Matrix& L, double dt) {
     for (std::size_t j = 0; j < 3; ++j) X[i][j] /= A[i][i];
   return X;
 }
+
+struct KickedNode {
+  double weight;
+  Vector slope, velocity;
+  double mass;
+};
+
+/// Adds to L, where a particle is trapped at a face of its cell, the gradient that a share of the kick of its
+/// own traction gives the face: the equations of core/shape/face_traps.hpp.
+void add_own_kick(const ReferenceParticle& particle, const std::vector<KickedNode>& nodes, const Vector& cell,
+                  double dt, Matrix& L) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double h = cell[axis], pressure = particle.p - particle.s[axis][axis];
+    if (!(pressure > 0)) continue;
+    double place = 0;  // in the cell, over its edge: the sum of the upper nodes' weights
+    double velocity = 0, lower_face = 0, upper_face = 0;  // of the faces: sums of w_i^2/m_i
+    for (const KickedNode& node : nodes) {
+      const double w = h * node.slope[axis];  // with a sign
+      velocity += node.weight * node.velocity[axis];
+      if (w > 0) place += node.weight;
+      (w > 0 ? upper_face : lower_face) += w * w / node.mass;
+    }
+    const bool upper = place > 0.5;
+    const double distance = h * (upper ? 1 - place : place), B = upper ? upper_face : lower_face;
+    const double away = upper ? -velocity : velocity, kick = dt * particle.V * pressure * B / h;
+    if (!(away > 0 && away < 2 * kick && distance < dt * std::max(kick, away))) continue;
+    const double x = away / kick, share = std::min(std::max(x, 0.5), 2 - x);
+    for (std::size_t a = 0; a < 3; ++a)
+      L[a][axis] += share * dt * particle.V * B / (h * h) * (a == axis ? pressure : -particle.s[a][axis]);
+  }
+}
 }  // namespace
 
 template <class Support>
@@ -501,6 +532,14 @@ void ReferenceStepper::update_stresses(double dt) {
       if (!node.active) continue;
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b) L[a][b] += node.w[a] * at.slope(n, a)[b];
+    }
+    if (case_.scheme == ReferenceScheme::usf && case_.shape == ReferenceShape::linear && !case_.average) {
+      std::vector<KickedNode> nodes;
+      for (std::size_t n = 0; n < at.count; ++n) {
+        const Node& node = grid_[at.node[n]];
+        if (node.active) nodes.push_back({at.value(n, 0), at.slope(n, 0), node.w, node.m});
+      }
+      add_own_kick(particle, nodes, case_.cell, dt, L);
     }
     if (case_.scheme == ReferenceScheme::usf) L = relative_to_old_positions(L, dt);
     gradients.push_back(L);
