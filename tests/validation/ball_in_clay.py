@@ -17,7 +17,7 @@ COLUMNS = {"ball": ("ball", ""), "cells": ("cells over R", "d"), "inset": ("body
 CHOICE = {"width": 4, "speed": 0.01, "shape": "QuadraticBSpline", "averaging": "cell", "normal": "regression", "kind": 1}
 CELLS = [{"ball": "rough", "cells": 4, "travel": 0.5}, {"ball": "rough", "cells": 6, "travel": 0.35},
          {"ball": "smooth", "cells": 4, "travel": 0.5}, {"ball": "smooth", "cells": 5, "travel": 0.4}, {"ball": "smooth", "cells": 6, "travel": 0.35},
-         {"ball": "smooth", "cells": 4, "travel": 0.5, "speed": 0.005}, {"ball": "smooth", "cells": 6, "travel": 0.35, "speed": 0.005}]
+         {"ball": "smooth", "cells": 4, "travel": 0.5, "speed": 0.005}]
 SMALL = {"cells": 4, "width": 3, "travel": 0.3}
 ROUGH, SMOOTH = {"ball": "rough", "inset": 0, **SMALL}, {"ball": "smooth", "inset": 0, **SMALL}
 CHOICES = [ROUGH | {"width": 4}, ROUGH | {"cells": 6}, *({"ball": "rough", "cells": 4, "travel": 0.5, "inset": 0.5, "width": width} for width in (3, 4, 5)),
