@@ -110,5 +110,6 @@ def measure_aluminium_rods(folder):
     status = _cases.status(folder, "aluminium_rods")
     kinetic = status["kinetic"]
     moving = np.flatnonzero(kinetic > kinetic.max() / 20)[-1]
-    return {"particles": summary["particles"], "steps": summary["steps"], "repose": repose, "foot": foot, "flow": float(status["time"][moving]), "kinetic": kinetic[-1] / summary["energy"]["external_work"],
+    return {"particles": summary["particles"], "steps": summary["steps"], "repose": repose, "foot": foot,
+            "flow": float(status["time"][moving]), "kinetic": kinetic[-1] / summary["energy"]["external_work"],
             "density": heap.density.mean(), "drift": 100 * summary["energy"]["relative_drift"]}
