@@ -27,7 +27,7 @@ def ramp_end(speed):
 
 
 def text(cells, ball="rough", shape="QuadraticBSpline", inset=None, speed=0.01, width=4, travel=None, poisson=0.49, averaging="cell", pressure=20,
-         normal="regression", kind=1):
+         normal="regression", kind=1, transfer="FLIP", flip=1):
     """`cells`: over the ball's radius; `speed`: over that of shear waves; `width`: of the quarter of clay and half of its height, and
     `travel`, of the ball: over the radius; `pressure`: in the clay at the start, over k."""
     cell, inset = RADIUS / cells, INSET[ball] if inset is None else inset
@@ -43,7 +43,8 @@ def text(cells, ball="rough", shape="QuadraticBSpline", inset=None, speed=0.01, 
                 ".//Body[@name='block']/Geometry": {"lx": wide, "ly": wide, "lz": 2 * wide, "z0": -wide},
                 ".//Body[@name='clay']": {"density": DENSITY * (1 + pressure * STRENGTH / bulk)},
                 ".//XMax": {"value": wide}, ".//YMax": {"value": wide}, ".//ZMin": {"value": -wide}, ".//ZMax": {"value": wide},
-                ".//EndTime": {"value": end}, ".//Console": {"print_time": end / 200}, ".//Volumetric": {"averaging": averaging}}
+                ".//EndTime": {"value": end}, ".//Console": {"print_time": end / 100}, ".//Volumetric": {"averaging": averaging},
+                ".//Solution": {"transfer": transfer} | ({"flip_fraction": flip} if flip < 1 else {})}
     return _gallery.text(_gallery.scene(JOB), changes)
 
 

@@ -9,19 +9,21 @@ import _ball_flow
 import _ball_in_clay
 
 COLUMNS = {"ball": ("ball", ""), "cells": ("cells over R", "d"), "inset": ("body smaller by, cells", "g"), "width": ("walls at, R", "g"),
-           "speed": ("speed over c", "g"), "shape": ("shape", ""), "averaging": ("averaging", ""), "contact": ("contact", ""), "travel": ("way, R", ".2f"),
+           "speed": ("speed over c", "g"), "shape": ("shape", ""), "averaging": ("averaging", ""), "contact": ("contact", ""), "mapped": ("transfer", ""),
+           "travel": ("way, R", ".2f"),
            "particles": ("particles", "d"), "steps": ("steps", "d"), "factor": ("N", ".2f"), "error": ("error %", "+.1f"), "growth": ("growth %", "+.1f"),
            "scatter": ("scatter %", ".1f"), "drift": ("energy drift %", "+.2f"), "cpu_seconds": ("processor s", ".1f")}
 
 # What a case has unless it says otherwise.
-CHOICE = {"width": 4, "speed": 0.01, "shape": "QuadraticBSpline", "averaging": "cell", "normal": "regression", "kind": 1}
+CHOICE = {"width": 4, "speed": 0.01, "shape": "QuadraticBSpline", "averaging": "cell", "normal": "regression", "kind": 1, "transfer": "FLIP", "flip": 1}
 CELLS = [{"ball": "rough", "cells": 4, "travel": 0.5}, {"ball": "rough", "cells": 6, "travel": 0.35},
          {"ball": "smooth", "cells": 4, "travel": 0.5}, {"ball": "smooth", "cells": 5, "travel": 0.4}, {"ball": "smooth", "cells": 6, "travel": 0.35},
          {"ball": "smooth", "cells": 4, "travel": 0.5, "speed": 0.005}]
 SMALL = {"cells": 4, "width": 3, "travel": 0.3}
 ROUGH, SMOOTH = {"ball": "rough", "inset": 0, **SMALL}, {"ball": "smooth", "inset": 0, **SMALL}
 CHOICES = [ROUGH | {"width": 4}, ROUGH | {"cells": 6}, *({"ball": "rough", "cells": 4, "travel": 0.5, "inset": 0.5, "width": width} for width in (3, 4, 5)),
-           {"ball": "smooth", "cells": 4, "travel": 0.5, "inset": 0.35},
+           {"ball": "smooth", "cells": 4, "travel": 0.5, "inset": 0.35}, {"ball": "smooth", "cells": 4, "travel": 0.5, "transfer": "AFLIP"},
+           {"ball": "smooth", "cells": 4, "travel": 0.5, "flip": 0.99}, {"ball": "smooth", **SMALL, "cells": 6, "flip": 0.99}, {"ball": "smooth", **SMALL, "cells": 6},
            *(ball | what for ball in (ROUGH, SMOOTH)
              for what in ({}, {"width": 2.5}, {"speed": 0.0025}, {"averaging": "none"}, {"kind": 0}, {"normal": "mass_gradient"},
                           {"shape": "linear", "width": 4}, {"shape": "SGMP", "width": 4}))]
@@ -34,7 +36,8 @@ def run(folder, case):
 
 
 def row(folder, case, seconds):
-    found = {**case, "contact": f"type {case['kind']}, {case['normal']}", **_ball_in_clay.measure(folder, case["ball"], case["speed"]), "cpu_seconds": seconds}
+    mapped = case["transfer"] + (f" {case['flip']:g}" if case["flip"] < 1 else "")
+    found = {**case, "contact": f"type {case['kind']}, {case['normal']}", "mapped": mapped, **_ball_in_clay.measure(folder, case["ball"], case["speed"]), "cpu_seconds": seconds}
     print(" ".join(f"{key} {value}" for key, value in found.items()), flush=True)
     return found
 
