@@ -3,7 +3,8 @@
 
   long_runs.py                     every scene with every method; a quarter of an hour on two cores
   long_runs.py --scene NAME ...    these scenes; --shape, --scheme, --transfer choose methods alike
-  long_runs.py --docs              everything, docs/stability/long_runs.csv and the table of docs/stability.md
+  long_runs.py --docs              everything, docs/stability/long_runs.csv and the table of docs/stability.md; with a choice
+                                   of scenes or methods, these rows anew
 
 A free block of 4 x 4 x 4 cells with 8 particles in each, askew in the grid, vibrates in its longest modes along the three
 axes for 100,000 times 0.9 h/c, c the speed of longitudinal waves: with a limit k of the step (docs/stability.md) in 100,000/k
@@ -99,6 +100,16 @@ def table(rows):
     return results.markdown(list(by_method.items()), columns)
 
 
+def merged(rows):
+    """Those of the table on file, with these in the place of the same scenes and methods."""
+    def key(row):
+        return tuple(row[name] for name in ("scene", "shape", "scheme", "transfer"))
+
+    measured = {key(row): row for row in rows}
+    kept = [measured.pop(key(row), row) for row in (results.read(TABLE)[1] if TABLE.exists() else [])]
+    return [*kept, *measured.values()]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
@@ -119,6 +130,8 @@ def main():
             rows.append(row)
             print(", ".join(f"{v:.3g}" if isinstance(v, float) else str(v) for v in row.values()), flush=True)
     if options.docs:
+        chosen = options.shape or options.scheme or options.transfer or len(options.scene) < len(SCENES)
+        rows = merged(rows) if chosen else rows
         results.write(TABLE, rows)
         results.refresh(PAGE, {"long runs": table(rows)})
 

@@ -6,22 +6,22 @@
 // every time. Stress and kicks grow exponentially, by up to (c dt/h)^2/2 per step. (USF adds to the energy,
 // per step, sum m dv^2/2 - sum V dsigma : de/2: here the kicks dv, and no strain.)
 //
-// With the traction t = -sigma n on a face normal to axis n, V the particle's volume, and w_i its weights on
-// the face among the face's nodes, of masses m_i, one step's kick is k = dt V t_n B/h, B = sum w_i^2/m_i. A
-// particle counts as trapped if it leaves the face at a speed u < 2 k and is nearer than dt max(k, u) to it.
-// It is strained as if a share of its kick had already acted:
-//   L <- L + s dt V B/h^2 t (x) n,   s = min(max(x, 1/2), 2 - x),   x = u/k
-// s = x takes the face's own velocity out of the strain: the particle then neither gains nor loses energy,
-// as if half of its strain were that of the cell it has left. Forces and velocities stay as they are.
-// Tested by tests/core/shape/face_traps_test.cpp; benchmarks/stability/long_runs.py.
+// With the traction t = -sigma n on a face normal to axis n, and w_i the particle's weights on the face among
+// the face's nodes, of masses m_i, a step's kick of its own is k = dt V t_n B/h, B = sum w_i^2/m_i; with all
+// others there it is at most K = dt V t_n/(m h). A particle counts as trapped if it leaves the face at a
+// speed u < 2 K and is nearer to it than dt max(k, 2 u), 2 since the nodes' velocity is the smoothed one of
+// the particles. It is then strained as if a share of the kick had already acted:
+//   L_nn <- L_nn + s k/h,   L_an <- L_an + min(s, 1) k (t_a/t_n)/h,   s = max(u/k, 1/2) min(1, 2 - u/K)
+// s = u/k takes the face's own velocity out of the strain: kicks then neither add nor take energy, as if half
+// of the strain were that of the cell that has been left. Forces and velocities stay as they are.
+// Tested by tests/core/step/oracle_test.cpp and tests/system/physics_face_trap.py.
 #pragma once
 
 #include "core/shape/linear.hpp"
 
 namespace mpm::core {
 
-/// Bit mask of the lanes that may be within 2 dt k of a face: V t_n B/h is at most V t_n/(m h) over the
-/// weight 1 - z at the face, z the distance over h.
+/// Bit mask of the lanes that may be trapped: those within 4 dt K of a face, the most of max(k, 2 u).
 inline unsigned lanes_near_faces(const Vec3<double>& inverse_cell, const LinearPlace& place, double dt,
                                  const ColumnLayout& layout, const double* block, int used) {
   const auto col = [&](Column c) { return block + layout.offset(c); };
@@ -32,7 +32,7 @@ inline unsigned lanes_near_faces(const Vec3<double>& inverse_cell, const LinearP
     const auto close = [&](int n) {
       const Real f = load<Real>(place.f[n] + l), t = p - load<Real>(col(next(Column::s_xx, n)) + l);
       const double step = dt * inverse_cell[n];
-      return f * (Real(1.0) - f) * m < Real(2 * step * step) * v * t;
+      return f * (Real(1.0) - f) * m < Real(4 * step * step) * v * t;
     };
     const auto found = close(0) | close(1) | close(2);
     if (!any(found)) continue;
@@ -80,13 +80,15 @@ inline void release_from_faces(const BrickFrame& frame, const LinearPlace& place
     for (int n = 0; n < 3; ++n) {
       if (!(traction[n][n] > 0)) continue;
       const NearFace face(place, lane, n, nodes);
-      const double response = dt * of(Column::volume) * face.inverse_mass * inverse_cell[n];
-      const double kick = response * traction[n][n];
-      if (!(face.away > 0 && face.away < 2 * kick)) continue;
-      if (!(face.distance < dt * inverse_cell[n] * std::max(kick, face.away))) continue;
-      const double x = face.away / kick, share = std::min(std::max(x, 0.5), 2 - x);
+      const double response = dt * of(Column::volume) * inverse_cell[n];
+      const double own = response * face.inverse_mass, kick = own * traction[n][n];
+      const double most = response / of(Column::mass) * traction[n][n];
+      if (!(kick > 0 && face.away > 0 && face.away < 2 * most)) continue;
+      if (!(face.distance < dt * inverse_cell[n] * std::max(kick, 2 * face.away))) continue;
+      const double share = std::max(face.away / kick, 0.5) * std::min(1.0, 2 - face.away / most);
       for (int a = 0; a < 3; ++a)
-        rows[3 * a + n][at + lane] += share * response * inverse_cell[n] * traction[n][a];
+        rows[3 * a + n][at + lane] +=
+            (a == n ? share : std::min(share, 1.0)) * own * inverse_cell[n] * traction[n][a];
     }
   }
 }

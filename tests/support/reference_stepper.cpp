@@ -513,10 +513,12 @@ void add_own_kick(const ReferenceParticle& particle, const std::vector<KickedNod
     const bool upper = place > 0.5;
     const double distance = h * (upper ? 1 - place : place), B = upper ? upper_face : lower_face;
     const double away = upper ? -velocity : velocity, kick = dt * particle.V * pressure * B / h;
-    if (!(away > 0 && away < 2 * kick && distance < dt * std::max(kick, away))) continue;
-    const double x = away / kick, share = std::min(std::max(x, 0.5), 2 - x);
+    const double most = dt * particle.V * pressure / (particle.m * h);
+    if (!(away > 0 && away < 2 * most && distance < dt * std::max(kick, 2 * away))) continue;
+    const double share = std::max(away / kick, 0.5) * std::min(1.0, 2 - away / most);
     for (std::size_t a = 0; a < 3; ++a)
-      L[a][axis] += share * dt * particle.V * B / (h * h) * (a == axis ? pressure : -particle.s[a][axis]);
+      L[a][axis] +=
+          a == axis ? share * kick / h : -std::min(share, 1.0) * kick / h * particle.s[a][axis] / pressure;
   }
 }
 }  // namespace
