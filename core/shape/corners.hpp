@@ -1,102 +1,87 @@
 // Shape functions through the corners x_c of a particle's domain (CPDI: Sadeghirad, Brannon and Burghardt,
 // IJNME 86 (2011) 1435): with N_i the trilinear functions,
 //   S_i = sum_c s_c N_i(x_c),   grad S_i = sum_c w_c N_i(x_c)
-// Domain supplies its columns, first_column and their number, and, in cells from the particle, the corners of
-// a block's particles and the weights,
-//   evaluate(frame, layout, block, corners[3][8], CornerWeights)
-// (cpdi.hpp). The corners are at most a cell from the particle along each axis, so a particle reaches the
-// 4 x 4 x 4 nodes around its cell.
+// with the corners and weights of a Domain (corner_place.hpp).
 //
-// Particles to grid: one particle at a time, corner by corner, a node's record in the lanes. Two sums take
-// turns: the corners of a particle share nodes, and an addition would wait for the one before. Grid to
-// particles: the records of the nodes are interpolated to the corners in the same way, all components at
-// once, and are transposed to particles in the lanes, where the weights combine them.
+// A particle's corners share most of their nodes, and adding a record to a node takes longer than the
+// arithmetic between two additions. Particles to grid: S_i on 27 nodes, particles in the lanes, serves
+// momentum and mass, which are then added one particle at a time, a node's record in the lanes. With forces,
+// records are added corner by corner to the eight nodes of a cell; two sums take turns, because an addition
+// would wait for the one before. Grid to particles: velocities by S_i again; for strain and motion the nodes'
+// records are interpolated to the corners, and the sums over these that the domain needs are transposed to
+// particles in the lanes.
 #pragma once
 
-#include "core/shape/hexahedron.hpp"
-#include "core/shape/linear.hpp"
+#include "core/shape/corner_place.hpp"
 
 namespace mpm::core {
 
-inline constexpr NodeBlockShape corner_nodes{1, 1};
-
+/// The cells of the corners of a block's particles.
 template <class Domain>
-struct CornerPlace {
-  static constexpr int side = corner_nodes.side();
+struct CornerCells {
   alignas(64) double f[corners][3][block_lanes];  ///< of the corners, within their cells
-  alignas(64) double value[corners][block_lanes];
-  alignas(64) double slope[corners][3][block_lanes];
-  alignas(64) int node[corners][block_lanes];  ///< lowest of the corners' cells
-  int lowest[block_lanes];                     ///< of the particle's 4 x 4 x 4
+  alignas(64) int node[corners][block_lanes];     ///< lowest of a cell's nodes
 
-  CornerPlace() = default;
-  CornerPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
-    find(frame, layout, block);
-  }
-  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+  explicit CornerCells(const CornerPlace<Domain>& place) {
     using R = Lanes<8>;
-    typedef int Ints __attribute__((vector_size(block_lanes * sizeof(int))));
-    const double* x = block + layout.offset(Column::position_x);
-    const auto p = locate_in_sites<R, side>(frame, x, x + block_lanes, x + 2 * block_lanes);
-    const R within[3] = {p.fx, p.fy, p.fz};
-    R at[3][corners];
-    CornerWeights<R> weights;
-    Domain::evaluate(frame, layout, block, at, weights);
-    std::memcpy(lowest, p.node, sizeof lowest);
-    Ints first;
-    std::memcpy(&first, lowest, sizeof first);
     for (int c = 0; c < corners; ++c) {
-      R number(0.0);
-      for (int a = 2; a >= 0; --a) {
-        const R s = within[a] + at[a][c];
-        // Unused lanes may hold anything; a NaN becomes the lower bound.
-        const R cell = min(max(floor(s), R(-1.0)), R(1.0));
-        store(f[c][a], s - cell);
-        store(slope[c][a], weights.slope[a][c] * R(frame.inverse_cell[a]));
-        number = number * R(double(side)) + (cell + R(1.0));
+      R cell[3];
+      for (int a = 0; a < 3; ++a) {
+        const R s = load<R>(place.corner[a][c]);
+        cell[a] = min(max(floor(s), R(-1.0)), R(1.0));
+        store(f[c][a], s - cell[a]);
       }
-      store(value[c], weights.value[c]);
-      const Ints numbers = first + __builtin_convertvector(number.v, Ints);
-      std::memcpy(node[c], &numbers, sizeof numbers);
+      const auto nodes = place.nodes(cell[0] + R(1.0), cell[1] + R(1.0), cell[2] + R(1.0));
+      std::memcpy(node[c], &nodes, sizeof nodes);
     }
   }
 
-  /// Of the particle's cell.
-  int lowest_of_cell(int lane) const { return lowest[lane] + corner_nodes.index(0, 0, 0); }
+  /// The records that the nodes of corner `c`'s cell have from `nodes` on, interpolated to the corner.
+  template <class T>
+  [[gnu::always_inline]] T interpolated(const double* nodes, int c, int lane) const {
+    const T x(f[c][0][lane]), y(f[c][1][lane]), z(f[c][2][lane]);
+    const double* lowest = nodes + node_doubles * node[c][lane];
+    T edge[4];
+    for (int e = 0; e < 4; ++e) {
+      const double* at =
+          lowest + node_doubles * corner_nodes.side() * (e % 2 + corner_nodes.side() * (e / 2));
+      edge[e] = load<T>(at) + x * (load<T>(at + node_doubles) - load<T>(at));
+    }
+    const T lower = edge[0] + y * (edge[1] - edge[0]), upper = edge[2] + y * (edge[3] - edge[2]);
+    return lower + z * (upper - lower);
+  }
+  /// The domain's sums over the corners of those records.
+  template <class T>
+  [[gnu::always_inline]] void sum(const double* nodes, int lane, T (&sums)[Domain::sums]) const {
+    T at[corners];
+#pragma GCC unroll 8
+    for (int c = 0; c < corners; ++c) at[c] = interpolated<T>(nodes, c, lane);
+    Domain::reduce(at, sums);
+  }
 };
 
 namespace corner {
 
-/// Number of the n-th node of a cell, relative to the lowest.
-constexpr int cell_node(int n) {
-  return (n & 1) + corner_nodes.side() * ((n >> 1 & 1) + corner_nodes.side() * (n >> 2));
+/// f(number of the node among n^3, offset of its record from the lowest node's).
+template <int n, int width, class F>
+[[gnu::always_inline]] inline void for_each_record(F f) {
+  constexpr int side = corner_nodes.side();
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) f(i + n * (j + n * k), width * (i + side * (j + side * k)));
 }
 
-/// The records that the nodes of corner `c`'s cell have from `nodes` on, interpolated to the corner.
-template <class T, class Place>
-[[gnu::always_inline]] inline T interpolated(const double* nodes, const Place& place, int c, int lane) {
-  const T x(place.f[c][0][lane]), y(place.f[c][1][lane]), z(place.f[c][2][lane]);
-  const double* lowest = nodes + node_doubles * place.node[c][lane];
-  T edge[4];
-  for (int e = 0; e < 4; ++e) {
-    const T low = load<T>(lowest + node_doubles * cell_node(2 * e));
-    edge[e] = low + x * (load<T>(lowest + node_doubles * cell_node(2 * e + 1)) - low);
-  }
-  const T lower = edge[0] + y * (edge[1] - edge[0]), upper = edge[2] + y * (edge[3] - edge[2]);
-  return lower + z * (upper - lower);
-}
-
-/// Adds a corner's `record` to the records of `width` doubles of its cell's nodes.
-template <int width, class T, class Place>
-[[gnu::always_inline]] inline void add(T record, const Place& place, int c, int lane, double* records) {
-  const T x(place.f[c][0][lane]), y(place.f[c][1][lane]), z(place.f[c][2][lane]);
-  double* lowest = records + width * place.node[c][lane];
+/// Adds the record of a point at x, y, z within a cell to the records, of `width` doubles, of the cell's
+/// nodes.
+template <int width, class T>
+[[gnu::always_inline]] inline void add(T record, T x, T y, T z, double* lowest) {
+  constexpr int side = corner_nodes.side();
   const T upper = z * record;
   for (const int k : {0, 1}) {
     const T plane = k == 0 ? record - upper : upper, far = y * plane;
     for (const int j : {0, 1}) {
       const T row = j == 0 ? plane - far : far, right = x * row;
-      double* left_at = lowest + width * cell_node(2 * j + 4 * k);
+      double* left_at = lowest + width * side * (j + side * k);
       store(left_at, load<T>(left_at) + (row - right));
       store(left_at + width, load<T>(left_at + width) + right);
     }
@@ -105,77 +90,114 @@ template <int width, class T, class Place>
 
 }  // namespace corner
 
-template <NodeFields what, class Place>
+template <NodeFields what, class Domain>
 struct CornerScatter {
+  static constexpr int width = record_doubles(what.array);
   void clear() {}
   void flush(const BrickFrame&, double*) {}
 
-  /// Particle `i` of the block.
-  [[gnu::always_inline]] void add(const BrickFrame&, const Place& place, int i, const MappedRows& rows,
-                                  double* sums) {
-    constexpr int width = record_doubles(what.array), doubles = width * corner_nodes.nodes();
-    if constexpr (maps_force(what)) {
-      using R = Lanes<8>;
-      using V = R::vector;
-      const auto s = [&](int n) { return -rows.stress[n][i]; };
-      const R x_stress = V{0, 0, 0, 0, s(0), s(3), s(5), 0}, y_stress = V{0, 0, 0, 0, s(3), s(1), s(4), 0},
-              z_stress = V{0, 0, 0, 0, s(5), s(4), s(2), 0};
-      R motion(0.0);
-      if constexpr (maps_momentum(what))
-        motion = V{rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i], rows.mass[i], 0, 0, 0, 0};
-      for (int c = 0; c < corners; ++c) {
-        R record = x_stress * R(place.slope[c][0][i]) + y_stress * R(place.slope[c][1][i]) +
-                   z_stress * R(place.slope[c][2][i]);
-        if constexpr (maps_momentum(what)) record += motion * R(place.value[c][i]);
-        corner::add<width>(record, place, c, i, sums + c % 2 * doubles);
+  /// Adds the first `used` particles of a block.
+  [[gnu::always_inline]] void add_block(const BrickFrame&, const CornerPlace<Domain>& place, int used,
+                                        const MappedRows& rows, double* records) {
+    if constexpr (maps_force(what))
+      add_forces(place, used, rows, records);
+    else
+      add_momentum(place, used, rows, records);
+  }
+
+ private:
+  static void add_momentum(const CornerPlace<Domain>& place, int used, const MappedRows& rows,
+                           double* records) {
+    using H = Lanes<4>;
+    const auto& values = place.values();
+    values.with_along([&](auto n) {
+      for (int l = 0; l < used; ++l) {
+        const H motion = H::vector{rows.momentum[0][l], rows.momentum[1][l], rows.momentum[2][l],
+                                   maps_mass(what) ? rows.mass[l] : 0.0};
+        double* lowest = records + width * values.lowest[l];
+        corner::for_each_record<n, width>([&](int node, int offset) {
+          double* at = lowest + offset;
+          store(at, load<H>(at) + motion * H(values.value[node][l]));
+        });
       }
-    } else {
-      using H = Lanes<4>;
-      const H motion = H::vector{rows.momentum[0][i], rows.momentum[1][i], rows.momentum[2][i],
-                                 maps_mass(what) ? rows.mass[i] : 0.0};
-      for (int c = 0; c < corners; ++c)
-        corner::add<width>(motion * H(place.value[c][i]), place, c, i, sums + c % 2 * doubles);
+    });
+  }
+
+  static void add_forces(const CornerPlace<Domain>& place, int used, const MappedRows& rows,
+                         double* records) {
+    using T = std::conditional_t<maps_momentum(what), Lanes<8>, Lanes<4>>;
+    const auto force = [](double x, double y, double z) {
+      if constexpr (maps_momentum(what))
+        return T(typename T::vector{0, 0, 0, 0, x, y, z, 0});
+      else
+        return T(typename T::vector{x, y, z, 0});
+    };
+    const CornerCells<Domain> cells(place);
+    if constexpr (!maps_momentum(what)) records += node_field::force.first;
+    for (int l = 0; l < used; ++l) {
+      const auto s = [&](int c) { return -rows.stress[c][l]; };
+      const T stress[3] = {force(s(0), s(3), s(5)), force(s(3), s(1), s(4)), force(s(5), s(4), s(2))};
+      T motion(0.0), record[corners];
+      if constexpr (maps_momentum(what))
+        motion = typename T::vector{
+            rows.momentum[0][l], rows.momentum[1][l], rows.momentum[2][l], rows.mass[l], 0, 0, 0, 0};
+      Domain::distribute(place, l, motion, stress, record);
+#pragma GCC unroll 8
+      for (int c = 0; c < corners; ++c) {
+        double* sums = records + c % 2 * width * corner_nodes.nodes();
+        corner::add<width>(record[c], T(cells.f[c][0][l]), T(cells.f[c][1][l]), T(cells.f[c][2][l]),
+                           sums + width * cells.node[c][l]);
+      }
     }
   }
 };
 
 /// sum S_i u_i of three components of the records from `nodes` on.
-template <class Place>
+template <class Domain>
 struct CornerInterpolation {
   using R = Lanes<8>;
   using H = Lanes<4>;
   R value[3];
-  CornerInterpolation(const Place& place, const double* nodes) {
+  CornerInterpolation(const CornerPlace<Domain>& place, const double* nodes) {
     alignas(64) double row[3][block_lanes];
-    for (int i = 0; i < block_lanes; ++i) {
-      H sum(0.0);
-      for (int c = 0; c < corners; ++c)
-        sum += H(place.value[c][i]) * corner::interpolated<H>(nodes, place, c, i);
-      for (int a = 0; a < 3; ++a) row[a][i] = sum[a];
-    }
+    const auto& values = place.values();
+    values.with_along([&](auto n) {
+      for (int l = 0; l < block_lanes; ++l) {
+        const double* lowest = nodes + node_doubles * values.lowest[l];
+        H sum[n] = {};  // by planes: an addition waits for the one before
+        corner::for_each_record<n, node_doubles>([&](int node, int offset) {
+          sum[node / (n * n)] += H(values.value[node][l]) * load<H>(lowest + offset);
+        });
+        for (int k = 1; k < n; ++k) sum[0] += sum[k];
+        for (int a = 0; a < 3; ++a) row[a][l] = sum[0][a];
+      }
+    });
     for (int a = 0; a < 3; ++a) value[a] = load<R>(row[a]);
   }
 };
 
-/// The motion of the corners of a block's particles, and what the particles take of it.
-template <class Place>
+/// The domain's sums over the corners of their motion, and what a block's particles take of it.
+template <class Domain>
 struct CornerSample {
   using R = Lanes<8>;
-  const Place& place;
-  R velocity[corners][3], strain[corners][3];
+  const CornerPlace<Domain>& place;
+  R velocity[Domain::sums][3], strain[Domain::sums][3];
 
-  CornerSample(const Place& of, const Linear::Field& field) : place(of) {
-    alignas(64) double record[corners][block_lanes][node_doubles];
-    for (int i = 0; i < block_lanes; ++i)
-      for (int c = 0; c < corners; ++c)
-        store(record[c][i], corner::interpolated<R>(field.nodes, place, c, i));
-    for (int c = 0; c < corners; ++c) {
+  CornerSample(const CornerPlace<Domain>& of, const Linear::Field& field) : place(of) {
+    alignas(64) double record[Domain::sums][block_lanes][node_doubles];
+    const CornerCells<Domain> cells(place);
+    for (int l = 0; l < block_lanes; ++l) {
+      R sum[Domain::sums];
+      cells.sum(field.nodes, l, sum);
+      for (int s = 0; s < Domain::sums; ++s) store(record[s][l], sum[s]);
+    }
+    for (int s = 0; s < Domain::sums; ++s) {
       R component[node_doubles];
-      for (int i = 0; i < block_lanes; ++i) component[i] = load<R>(record[c][i]);
+      for (int l = 0; l < block_lanes; ++l) component[l] = load<R>(record[s][l]);
       transpose(component);
       for (int a = 0; a < 3; ++a) {
-        velocity[c][a] = component[Motion::velocity_at + a];
-        strain[c][a] = component[Motion::strain_velocity_at + a];
+        velocity[s][a] = component[Motion::velocity_at + a];
+        strain[s][a] = component[Motion::strain_velocity_at + a];
       }
     }
   }
@@ -185,7 +207,8 @@ struct CornerSample {
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b < 3; ++b) {
         R sum(0.0);
-        for (int c = 0; c < corners; ++c) sum += strain[c][a] * load<R>(place.slope[c][b]);
+        for (int s = Domain::first_slope; s < Domain::sums; ++s)
+          sum += strain[s][a] * load<R>(place.slope[s - Domain::first_slope][b]);
         store(rows[3 * a + b] + at, sum);
       }
     }
@@ -193,7 +216,7 @@ struct CornerSample {
   /// sum S_i v_i.
   R mean_velocity(int axis) const {
     R sum(0.0);
-    for (int c = 0; c < corners; ++c) sum += load<R>(place.value[c]) * velocity[c][axis];
+    for (int s = 0; s < Domain::values; ++s) sum += load<R>(place.value[s]) * velocity[s][axis];
     return sum;
   }
   /// x += dt sum S_i v_i.
@@ -228,12 +251,12 @@ struct CornerShape {
   static constexpr NodeBlockShape node_block = corner_nodes;
   static constexpr int nodes_per_axis = 4;
   using Place = CornerPlace<Domain>;
-  using Interpolation = CornerInterpolation<Place>;
-  using Sample = CornerSample<Place>;
+  using Interpolation = CornerInterpolation<Domain>;
+  using Sample = CornerSample<Domain>;
   template <NodeFields what>
-  using Scatter = CornerScatter<what, Place>;
+  using Scatter = CornerScatter<what, Domain>;
   template <NodeFields what>
-  using Sums = CornerSums<what>;
+  using Sums = std::conditional_t<maps_force(what), CornerSums<what>, Linear::Sums<what>>;
   using Field = Linear::Field;
   static constexpr Column first_of_domain = Domain::first_column;
   static constexpr int columns_of_domain = Domain::columns;
@@ -247,14 +270,14 @@ struct CornerShape {
   static void gradient(const BrickFrame&, const Place& place, const Field& field, Rows& rows, int at) {
     using H = Lanes<4>;
     const double* nodes = field.nodes + Motion::strain_velocity_at;
-    for (int i = 0; i < block_lanes; ++i) {
-      H along[3] = {0.0, 0.0, 0.0};
-      for (int c = 0; c < corners; ++c) {
-        const H u = corner::interpolated<H>(nodes, place, c, i);
-        for (int b = 0; b < 3; ++b) along[b] += u * H(place.slope[c][b][i]);
-      }
+    const CornerCells<Domain> cells(place);
+    for (int l = 0; l < block_lanes; ++l) {
+      H sum[Domain::sums], along[3] = {0.0, 0.0, 0.0};
+      cells.sum(nodes, l, sum);
+      for (int s = Domain::first_slope; s < Domain::sums; ++s)
+        for (int b = 0; b < 3; ++b) along[b] += sum[s] * H(place.slope[s - Domain::first_slope][b][l]);
       for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) rows[3 * a + b][at + i] = along[b][a];
+        for (int b = 0; b < 3; ++b) rows[3 * a + b][at + l] = along[b][a];
     }
   }
 
@@ -272,38 +295,26 @@ struct CornerShape {
   /// Without the nodes that no corner reaches.
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>&, F f) {
-    struct Weight {
+    constexpr int n = nodes_per_axis;
+    for (int number = 0; number < n * n * n; ++number) {
+      const NodeOffset offset{{number % n, number / n % n, number / (n * n)}};
+      double at[corners], sum[Domain::sums], largest = 0;
+      for (int c = 0; c < corners; ++c) {
+        at[c] = 1;
+        for (int a = 0; a < 3; ++a)
+          at[c] *= std::max(1 - std::abs(place.corner[a][c][lane] - (offset.along[a] - 1)), 0.0);
+        largest = std::max(largest, at[c]);
+      }
+      if (largest == 0) continue;
+      Domain::reduce(at, sum);
       double value = 0;
       Vec3<double> slope{};
-      bool reached = false;
-    };
-    Weight weights[nodes_per_axis * nodes_per_axis * nodes_per_axis];
-    constexpr int side = Place::side;
-    for (int c = 0; c < corners; ++c) {
-      const int from_lowest = place.node[c][lane] - place.lowest[lane];
-      const int at[3] = {from_lowest % side, from_lowest / side % side, from_lowest / (side * side)};
-      for (int n = 0; n < 8; ++n) {
-        double shape = 1;
-        int number = 0;
-        for (int a = 2; a >= 0; --a) {
-          const double fraction = place.f[c][a][lane];
-          shape *= (n >> a & 1) != 0 ? fraction : 1 - fraction;
-          number = nodes_per_axis * number + at[a] + (n >> a & 1);
-        }
-        Weight& w = weights[number];
-        w.reached = true;
-        w.value += place.value[c][lane] * shape;
-        for (int a = 0; a < 3; ++a) w.slope[a] += place.slope[c][a][lane] * shape;
-      }
-    }
-    for (int k = 0; k < nodes_per_axis; ++k) {
-      for (int j = 0; j < nodes_per_axis; ++j) {
-        for (int i = 0; i < nodes_per_axis; ++i) {
-          const Weight& w = weights[i + nodes_per_axis * (j + nodes_per_axis * k)];
-          if (w.reached)
-            f(place.lowest[lane] + i + side * (j + side * k), NodeOffset{{i, j, k}}, w.value, w.slope);
-        }
-      }
+      for (int s = 0; s < Domain::values; ++s) value += place.value[s][lane] * sum[s];
+      for (int s = Domain::first_slope; s < Domain::sums; ++s)
+        for (int a = 0; a < 3; ++a) slope[a] += place.slope[s - Domain::first_slope][a][lane] * sum[s];
+      f(place.lowest[lane] + offset.along[0] +
+            Place::side * (offset.along[1] + Place::side * offset.along[2]),
+        offset, value, slope);
     }
   }
 };

@@ -18,8 +18,8 @@ void replace_domain(const ColumnLayout& layout, double* block, int lane) {
     for (int k = 0; k < 3; ++k) edge[k] = sound ? old.a[k][a] : (k == a ? half : 0);
     if (sound) middle = old.middle[a];
     double to[corners];
-    parallelepiped_corners(edge[0], edge[1], edge[2], to);
-    for (int c = 0; c < corners; ++c) corner[block_lanes * (3 * c + a)] = middle + to[c];
+    parallelepiped_corners(middle, edge[0], edge[1], edge[2], to);
+    for (int c = 0; c < corners; ++c) corner[block_lanes * (3 * c + a)] = to[c];
   }
 }
 
@@ -46,7 +46,7 @@ DomainCounts Cpdi2::settle(const BrickFrame& frame, const ColumnLayout& layout, 
       x[a][c] -= centroid[a];
       store(corner + block_lanes * (3 * c + a), x[a][c]);
     }
-    wide |= bits(R(cpdi::farthest) < HexahedronDomain::reach(x[a]) * R(frame.inverse_cell[a]));
+    wide |= bits(R(cpdi::farthest) < HexahedronDomain::reach_of(x[a]) * R(frame.inverse_cell[a]));
     if (!free) continue;
     double* position = block + layout.offset(next(Column::position_x, a));
     store(position, load<R>(position) + centroid[a]);

@@ -40,28 +40,56 @@ struct Parallelepiped {
   using R = Lanes<8>;
   static constexpr Column first_column = Column::edge_1x;
   static constexpr int columns = 9;
+  /// Over all corners, and with the signs of each edge.
+  static constexpr int sums = 4, values = 1, first_slope = 1;
+  static constexpr int corner_value(int) { return 0; }
+  template <class T>
+  static void reduce(const T (&u)[corners], T (&sum)[sums]) {
+    T total[4], difference[4];  // of pairs along the first edge, then of these along the second
+    for (int i = 0; i < 4; ++i) {
+      total[i] = u[2 * i] + u[2 * i + 1];
+      difference[i] = u[2 * i + 1] - u[2 * i];
+    }
+    const T lower = total[0] + total[1], upper = total[2] + total[3];
+    sum[0] = lower + upper;
+    sum[1] = (difference[0] + difference[1]) + (difference[2] + difference[3]);
+    sum[2] = (total[1] - total[0]) + (total[3] - total[2]);
+    sum[3] = upper - lower;
+  }
+  /// What each corner takes of a particle's `total`, shared out by S_i, and of `columns` by grad S_i.
+  template <class Place, class T>
+  static void distribute(const Place& place, int lane, T total, const T (&columns)[3], T (&to)[corners]) {
+    T along[3];
+    for (int k = 0; k < 3; ++k) {
+      along[k] = columns[0] * T(place.slope[k][0][lane]);
+      for (int a = 1; a < 3; ++a) along[k] += columns[a] * T(place.slope[k][a][lane]);
+    }
+    parallelepiped_corners(total * T(place.value[0][lane]), along[0], along[1], along[2], to);
+  }
   static void load_edges(const ColumnLayout& layout, const double* block, Vec3<R> (&r)[3]) {
     const double* edge = block + layout.offset(Column::edge_1x);
     for (int k = 0; k < 3; ++k)
       for (int a = 0; a < 3; ++a) r[k][a] = load<R>(edge + block_lanes * (3 * k + a));
   }
   static void evaluate(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
-                       R (&at)[3][corners], CornerWeights<R>& w) {
+                       const R (&middle)[3], R (&at)[3][corners], R (&reach)[3],
+                       SumWeights<R, Parallelepiped>& w) {
     Vec3<R> r[3];
     load_edges(layout, block, r);
     for (int a = 0; a < 3; ++a) {
       const R inverse(frame.inverse_cell[a]);
       for (Vec3<R>& edge : r) edge[a] *= inverse;
-      const R reach = abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]);
-      const R scale = R(cpdi::farthest) / max(reach, R(cpdi::farthest));
+      const R farthest = abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]);
+      const R scale = R(cpdi::farthest) / max(farthest, R(cpdi::farthest));
       for (Vec3<R>& edge : r) edge[a] *= scale;
-      parallelepiped_corners(r[0][a], r[1][a], r[2][a], at[a]);
+      reach[a] = farthest * scale;
+      parallelepiped_corners(middle[a], r[0][a], r[1][a], r[2][a], at[a]);
     }
     const Vec3<R> g[3] = {cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1])};
     const R eighth = R(0.125) / dot(r[0], g[0]);
-    for (R& value : w.value) value = R(0.125);
-    for (int a = 0; a < 3; ++a)
-      parallelepiped_corners(eighth * g[0][a], eighth * g[1][a], eighth * g[2][a], w.slope[a]);
+    w.value[0] = R(0.125);
+    for (int k = 0; k < 3; ++k)
+      for (int a = 0; a < 3; ++a) w.slope[k][a] = eighth * g[k][a];
   }
 };
 
@@ -106,6 +134,20 @@ struct HexahedronDomain {
   using R = Lanes<8>;
   static constexpr Column first_column = Column::corner_0x;
   static constexpr int columns = 3 * corners;
+  /// Every corner has weights of its own.
+  static constexpr int sums = corners, values = corners, first_slope = 0;
+  static constexpr int corner_value(int c) { return c; }
+  template <class T>
+  static void reduce(const T (&u)[corners], T (&sum)[corners]) {
+    for (int c = 0; c < corners; ++c) sum[c] = u[c];
+  }
+  template <class Place, class T>
+  static void distribute(const Place& place, int lane, T total, const T (&columns)[3], T (&to)[corners]) {
+    for (int c = 0; c < corners; ++c) {
+      to[c] = total * T(place.value[c][lane]);
+      for (int a = 0; a < 3; ++a) to[c] += columns[a] * T(place.slope[c][a][lane]);
+    }
+  }
   static double* of(const ColumnLayout& layout, double* block) {
     return block + layout.offset(Column::corner_0x);
   }
@@ -114,28 +156,38 @@ struct HexahedronDomain {
     for (int c = 0; c < corners; ++c)
       for (int a = 0; a < 3; ++a) x[a][c] = load<R>(from + block_lanes * (3 * c + a));
   }
-  static R reach(const R (&x)[corners]) {
+  static R reach_of(const R (&x)[corners]) {
     R most = abs(x[0]);
     for (int c = 1; c < corners; ++c) most = max(abs(x[c]), most);
     return most;
   }
   static void evaluate(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
-                       R (&at)[3][corners], CornerWeights<R>& w) {
+                       const R (&middle)[3], R (&at)[3][corners], R (&reach)[3],
+                       SumWeights<R, HexahedronDomain>& w) {
     load_corners(layout, block, at);
     for (int a = 0; a < 3; ++a) {
       const R inverse(frame.inverse_cell[a]);
-      const R scale = inverse * R(cpdi::farthest) / max(reach(at[a]) * inverse, R(cpdi::farthest));
-      for (R& x : at[a]) x *= scale;
+      const R farthest = reach_of(at[a]) * inverse;
+      const R scale = R(cpdi::farthest) / max(farthest, R(cpdi::farthest));
+      for (R& x : at[a]) x *= inverse * scale;
+      reach[a] = farthest * scale;
     }
-    w = Hexahedron<R>(at).weights();
+    const CornerWeights<R> means = Hexahedron<R>(at).weights();
+    for (int c = 0; c < corners; ++c) {
+      w.value[c] = means.value[c];
+      for (int a = 0; a < 3; ++a) {
+        w.slope[c][a] = means.slope[a][c];
+        at[a][c] += middle[a];
+      }
+    }
   }
 };
 
 struct Cpdi2 : CornerShape<HexahedronDomain> {
   static constexpr std::string_view name = "CPDI2";
 
-  struct Sample : CornerSample<Place> {
-    using CornerSample<Place>::CornerSample;
+  struct Sample : CornerSample<HexahedronDomain> {
+    using CornerSample<HexahedronDomain>::CornerSample;
     /// Moves the corners relative to a particle that takes the mean velocity.
     void carry(const ColumnLayout& layout, double dt, double* block) const {
       double* x = HexahedronDomain::of(layout, block);

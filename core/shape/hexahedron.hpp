@@ -49,13 +49,17 @@ inline void modes_to_corners(T (&x)[corners]) {
       [](const T& even, const T& odd) { return even + odd; });
 }
 
-/// The corners +-a +-b +-c, a component of them.
+/// The corners middle +-a +-b +-c, a component of them.
 template <class T>
-inline void parallelepiped_corners(T a, T b, T c, T (&corner)[corners]) {
-  const T sum = a + b, difference = a - b, low[4] = {-sum, difference, -difference, sum};
-  for (int i = 0; i < 4; ++i) {
-    corner[i] = low[i] - c;
-    corner[4 + i] = low[i] + c;
+inline void parallelepiped_corners(T middle, T a, T b, T c, T (&corner)[corners]) {
+  const T sum = a + b, difference = a - b;
+  for (const int upper : {0, 1}) {
+    const T face = upper == 0 ? middle - c : middle + c;
+    T* at = corner + 4 * upper;
+    at[0] = face - sum;
+    at[1] = face + difference;
+    at[2] = face - difference;
+    at[3] = face + sum;
   }
 }
 

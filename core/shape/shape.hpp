@@ -3,7 +3,8 @@
 //
 //   site, node_block    how bricks take particles, and the nodes that a brick keeps for them
 //   Place               location of a block of eight particles: found once per pass
-//   Scatter<fields>     adds m S, m v S and V sigma grad S of particles to a brick's Sums<fields>
+//   Scatter<fields>     adds m S, m v S and V sigma grad S of particles to a brick's Sums<fields>, one by one
+//                       or a block at once
 //   Sums<fields>        sums over a brick's particles; finish() adds them to its nodes' contributions;
 //                       optional: replace() puts them in their place
 //   Field               the nodal motion of a brick as its particles read it: take_motion() for the velocity
@@ -85,5 +86,17 @@ struct MappedRows {
   alignas(64) double momentum[3][block_lanes];
   alignas(64) double stress[6][block_lanes];  ///< V sigma: xx, yy, zz, xy, yz, xz
 };
+
+/// Adds the first `used` particles of a block to a brick's sums.
+template <class Scatter, class Place, class Rows>
+[[gnu::always_inline]] inline void add_particles(Scatter& running, const BrickFrame& frame,
+                                                 const Place& place, int used, const Rows& rows,
+                                                 double* records) {
+  if constexpr (requires { running.add_block(frame, place, used, rows, records); }) {
+    running.add_block(frame, place, used, rows, records);
+  } else {
+    for (int i = 0; i < used; ++i) running.add(frame, place, i, rows, records);
+  }
+}
 
 }  // namespace mpm::core

@@ -48,7 +48,7 @@ void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] 
                      const Place place(frame, layout, block);
                      MappedRows rows;
                      increment_momentum<S>(place, layout, at.corrected, block, rows);
-                     for (int i = 0; i < used; ++i) cell.add(frame, place, i, rows, sums.records);
+                     add_particles(cell, frame, place, used, rows, sums.records);
                    });
     cell.flush(frame, sums.records);
     sums.finish(frame);

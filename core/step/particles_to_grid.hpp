@@ -34,7 +34,7 @@ template <ShapePolicy S, TransferPolicy T, NodeFields what>
     stress_rows(layout, block, rows);
     if (pressures != nullptr) pressures->average_pressures(sites_of(place), layout, block, rows);
   }
-  for (int i = 0; i < used; ++i) running.add(frame, place, i, rows, records);
+  add_particles(running, frame, place, used, rows, records);
 }
 
 }  // namespace mpm::core

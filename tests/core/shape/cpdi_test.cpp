@@ -225,7 +225,8 @@ TEMPLATE_TEST_CASE("Domains that reach more than a cell are counted, and evaluat
   for (const double r : reach) CHECK(r == Approx(1).epsilon(1e-13));
   const double y = (block[block_lanes + 2] - c.geometry.origin.y) * c.geometry.inverse_cell.y;
   const double fraction = y - std::floor(y);
-  for (int k = 0; k < corners; ++k) CHECK(place.f[k][1][2] == Approx(fraction).margin(1e-12));
+  for (int k = 0; k < corners; ++k)
+    CHECK(std::abs(place.corner[1][k][2] - fraction) == Approx(1).margin(1e-12));
 }
 
 TEST_CASE("A tangled hexahedron becomes the parallelepiped of its mean edges, or else a cube") {
