@@ -434,7 +434,9 @@ void ImplicitPassesWith<S>::find_motion(const ParticleTile& tile, const Body& bo
         at.motion.add_beyond_wall(last - static_cast<double>(g.cells[static_cast<std::size_t>(a)]));
     }
     at.motion.add_particle(tile.body, first, travel);
-    if (body.model->rigid()) continue;
+    // A law that fails keeps the gradient for its failure.
+    const bool of_gradient = layout.has(Column::f_xx) && !layout.has(Column::failed);
+    if (body.model->rigid() || of_gradient) continue;
     double square = 0;
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k) {

@@ -2,8 +2,10 @@
 //
 // How far a node moves does not matter: the grid is the configuration at the start of the step, and a particle
 // may travel over any number of bricks (core/step/migration.hpp). What matters:
-// - The strain. The laws receive the increment of the displacement gradient at midstep, whose symmetric part
-//   is the logarithmic strain up to a twelfth of its cube; its largest norm over the particles is limited.
+// - The strain, for laws that add up increments. They receive the displacement gradient at midstep, whose
+//   symmetric part h is the logarithmic strain less h^3/12: its largest norm over their particles is limited.
+//   Laws that keep the deformation gradient take their stress from it, whatever the step; there a step is
+//   limited by inversion alone, where Newton's method fails.
 // - Walls hold nodes. Between a node on a wall and the next one a particle cannot pass the wall while nothing
 //   inverts where it is, but nothing is evaluated in between: no particle may end beyond a wall.
 // - Bodies that meet within the step: contact comes through the nodes that bodies share at its start. Two
@@ -23,15 +25,16 @@ namespace mpm::core {
 
 class StepMotion {
  public:
-  /// Largest strain of a step: lengths change to no less than a third or more than threefold.
-  static constexpr double largest_strain = 1;
+  /// Of the norm of h: lengths change to no less than 0.6 and no more than 1.67 of them, and the strain is
+  /// that of its logarithm within 2 %.
+  static constexpr double largest_strain = 0.5;
   /// Part of a cell by which a particle may end beyond a wall: rounding.
   static constexpr double rounding = 1e-9;
 
   StepMotion() = default;
   explicit StepMotion(std::size_t bodies) : bodies_(bodies) {}
 
-  /// The norm of a particle's symmetric midstep gradient.
+  /// The norm of h of a particle.
   void add_strain(double strain) { strain_ = strain > strain_ ? strain : strain_; }
   /// A particle's place and displacement, in cells from the grid's origin.
   void add_particle(int body, const Vec3<double>& at, const Vec3<double>& moved);

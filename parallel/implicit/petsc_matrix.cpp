@@ -64,6 +64,40 @@ void MatrixPlaces::exchange(MPI_Comm comm) {
   }
 }
 
+/// Numbers the levels of the nodes that are connected to `node`, and puts a node of the last in its place.
+std::size_t MatrixPlaces::widest_level_from(std::size_t& node, std::vector<int>& level) const {
+  std::vector<std::size_t> now{node}, next;
+  std::size_t widest = 1;
+  level[node] = 1;
+  for (int at = 2; !now.empty(); ++at) {
+    node = now.front();
+    widest = std::max(widest, now.size());
+    next.clear();
+    for (const std::size_t i : now)
+      for (const std::int64_t c : own_[i]) {
+        if (!mine(c)) continue;
+        const auto other = static_cast<std::size_t>(c - first_);
+        if (level[other] != 0) continue;
+        level[other] = at;
+        next.push_back(other);
+      }
+    now.swap(next);
+  }
+  return widest;
+}
+
+std::size_t MatrixPlaces::widest_level() const {
+  std::vector<int> first(own_.size()), second(own_.size());
+  std::size_t widest = 0;
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    if (first[i] != 0) continue;
+    std::size_t end = i;
+    widest_level_from(end, first);
+    widest = std::max(widest, widest_level_from(end, second));
+  }
+  return widest;
+}
+
 MatrixValues::MatrixValues(MPI_Comm comm, MatrixPlaces places, std::int64_t all_nodes)
     : places_(std::move(places)) {
   const auto own = static_cast<PetscInt>(places_.own()), all = static_cast<PetscInt>(all_nodes);

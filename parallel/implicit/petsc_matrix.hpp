@@ -36,10 +36,14 @@ class MatrixPlaces final : public core::BlockMatrix {
   std::size_t own() const { return own_.size(); }
   /// Ascending.
   std::span<const std::int64_t> columns(std::size_t own_node) const { return own_[own_node]; }
+  /// Nodes in the widest level, counted from an end of the graph: a matrix of slender bodies has few. Of this
+  /// rank's nodes alone.
+  std::size_t widest_level() const;
   /// Once exchanged.
   bool same_as(const MatrixPlaces& other) const { return first_ == other.first_ && own_ == other.own_; }
 
  private:
+  std::size_t widest_level_from(std::size_t& node, std::vector<int>& level) const;
   bool mine(std::int64_t node) const {
     return node >= first_ && node < first_ + static_cast<std::int64_t>(own_.size());
   }

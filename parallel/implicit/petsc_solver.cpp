@@ -1,7 +1,8 @@
 // Newton's method by PETSc's SNES (core/implicit/newton_solver.hpp), in a library of its own that is loaded
 // when a scene is implicit: explicit runs neither load nor start PETSc.
 //
-// Small problems are solved directly (MUMPS); larger ones by GMRES with smoothed aggregation multigrid
+// Small problems are solved directly, slender ones by PETSc's own factorisation with the bandwidth reduced,
+// others by MUMPS; larger ones by GMRES with smoothed aggregation multigrid
 // (GAMG), which is told the rigid motions. The single system of a linearised step is solved by conjugate
 // gradients, preconditioned with the blocks of the nodes; where it turns out not to be positive definite (a
 // law that softens or whose flow is not associated), by GMRES. All can be replaced by PETSc's own options,
@@ -46,6 +47,8 @@ using core::NonlinearProblem;
 
 /// Unknowns up to which systems are solved directly.
 constexpr std::int64_t direct_up_to = 5000;
+/// Nodes in the widest level of a slender one.
+constexpr std::size_t slender_up_to = 24;
 
 PetscErrorCode keep_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                           PetscErrorType type, const char* message, void*) {
@@ -134,12 +137,14 @@ class PetscSolver final : public core::NewtonSolver {
   void choose_linear_solver(SNES snes, std::int64_t unknowns);
   void choose_conjugate_gradients(SNES snes, double tolerance);
   void describe(SNES snes);
-  bool try_otherwise(SNES snes, const NewtonOptions& options) const;
+  void prefer_pivots(SNES snes);
+  bool try_otherwise(SNES snes, const NewtonOptions& options);
   void refuse_unused_options();
 
   /// What solves with the same places of entries share: PETSc keeps the symbolic part of a factorisation.
   struct SetUp {
     std::unique_ptr<MatrixValues> values;
+    bool slender = false;  ///< as is a bar of few nodes across, on one rank
     OwnedVec solution, residual;
     OwnedMat action;
     OwnedSnes snes;
@@ -277,6 +282,10 @@ void PetscSolver::set_up(NonlinearProblem& problem) {
   check(static_cast<PetscErrorCode>(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, comm_)));
   if (same == 0) {
     of_ = std::make_unique<SetUp>();
+    int ranks = 0;
+    check(static_cast<PetscErrorCode>(MPI_Comm_size(comm_, &ranks)));
+    of_->slender = ranks == 1 && 3 * problem.all_nodes() <= direct_up_to &&
+                   places.widest_level() <= slender_up_to;
     of_->values = std::make_unique<MatrixValues>(comm_, std::move(places), problem.all_nodes());
     check(MatCreateVecs(of_->values->matrix(), &of_->solution, &of_->residual));
     check(SNESCreate(comm_, &of_->snes));
@@ -308,7 +317,8 @@ void PetscSolver::choose_linear_solver(SNES snes, std::int64_t unknowns) {
   if (unknowns <= direct_up_to) {
     check(KSPSetType(ksp, KSPPREONLY));
     check(PCSetType(pc, PCLU));
-    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    check(PCFactorSetMatSolverType(pc, of_->slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
+    if (of_->slender) check(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
   } else {
     check(KSPSetType(ksp, KSPGMRES));
     check(KSPGMRESSetRestart(ksp, 60));
@@ -343,14 +353,30 @@ void PetscSolver::choose_conjugate_gradients(SNES snes, double tolerance) {
   describe(snes);
 }
 
-/// Takes another method after a failure: a line search after full steps, GMRES after conjugate gradients that
+/// PETSc's own factorisation does not exchange rows, MUMPS does.
+void PetscSolver::prefer_pivots(SNES snes) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  MatSolverType solver = nullptr;
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPGetPC(ksp, &pc));
+  check(PCFactorGetMatSolverType(pc, &solver));
+  of_->slender = false;
+  if (solver == nullptr || std::string(solver) != MATSOLVERPETSC) return;
+  check(PCReset(pc));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check(PCFactorSetMatOrderingType(pc, MATORDERINGEXTERNAL));
+}
+
+/// Takes another method after a failure: a line search, and pivots, after full steps, GMRES after conjugate gradients that
 /// met a matrix that is not positive definite. False: there is none, or the user has chosen.
-bool PetscSolver::try_otherwise(SNES snes, const NewtonOptions& options) const {
+bool PetscSolver::try_otherwise(SNES snes, const NewtonOptions& options) {
   if (!options.linear) {
     if (!chose_full_steps_) return false;
     SNESLineSearch steps = nullptr;
     check(SNESGetLineSearch(snes, &steps));
     check(SNESLineSearchSetType(steps, SNESLINESEARCHBT));
+    if (of_->slender) prefer_pivots(snes);
     return true;
   }
   KSP ksp = nullptr;

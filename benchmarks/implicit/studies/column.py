@@ -10,6 +10,7 @@ HEIGHT, DENSITY, GRAVITY = 50.0, 80.0, 10.0
 WEIGHT = DENSITY * GRAVITY * HEIGHT  # stress at the bottom
 YOUNG = {"soft": 1e4, "firm": 1e6}
 LOAD_STEPS = {"soft": 40, "firm": 10}
+FEW = {"soft": (8, 4, 2, 1), "firm": (1,)}
 PERIODS = {"short": 1.5, "long": 4.0}  # of an explicit run, in periods of the slowest wave
 
 
@@ -62,9 +63,11 @@ for linear functions."""
                     for length in PERIODS:
                         found.append(self.one(body, f"explicit {length}", shape, cells,
                                               body == "firm" and length == "short" and cells <= 32))
-        for shape in ("QuadraticBSpline", "CPDI2"):
-            found += [self.one("firm", "few implicit", shape, cells, False) for cells in (16, 32, 64, 128, 256)]
-        found.append(self.one("firm", "explicit long", "CPDI2", 256, False))
+        for body in YOUNG:
+            for shape in ("uGIMP", "QuadraticBSpline", "CPDI2"):
+                for steps in FEW[body]:
+                    found += [self.one(body, f"implicit {steps}", shape, cells, False) for cells in (16, 32, 64, 128, 256, 512)]
+            found += [self.one(body, f"explicit {length}", "CPDI2", cells, False) for length in PERIODS for cells in (256, 512)]
         for cells in (256, 512, 1024):  # where the number of explicit steps tells
             found += [self.one("firm", by, "QuadraticBSpline", cells, False)
                       for by in ("implicit", "explicit short", "explicit long")]
@@ -75,8 +78,8 @@ for linear functions."""
         young, h = YOUNG[body], HEIGHT / cells
         if "implicit" in by:
             end, load = 1.0, f"-{GRAVITY}*t"
-            few = np.ceil(1.05 * (HEIGHT - place(young, HEIGHT)) / h)  # the top moves by less than a cell
-            solution = scenes.implicit(end, end / (few if "few" in by else LOAD_STEPS[body]))
+            steps = LOAD_STEPS[body] if by == "implicit" else int(by.split()[1])
+            solution = scenes.implicit(end, end / steps)
         else:
             end = PERIODS[by.split()[1]] * period(young)
             load = f"-{GRAVITY}*{study.smooth_growth(end / 2)}"

@@ -13,7 +13,7 @@ LAME = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
 WAVE = ((LAME + 2 * SHEAR) / DENSITY) ** 0.5
 STRESS = SHEAR * (SHARE - 1 / SHARE) + LAME * np.log(SHARE) / SHARE
 EXPLICIT_SPEEDS = (0.03, 0.003)  # of the platen, over that of waves
-FEW = (4, 1)  # steps of implicit runs
+FEW = (3, 1)  # steps of implicit runs
 LAYERS = 1 / 8  # of the height, next to the platen, that `below` leaves out
 
 
