@@ -18,9 +18,10 @@ constexpr int easy = 8;
 constexpr double growth = 1.5;
 /// A quasi-static run's steps, and a dynamic step over the largest explicit one, where the input names none.
 constexpr double default_load_steps = 20, default_ratio = 20;
-/// Nodes with less than this part of the volume of a cell around them may be in cells with inactive nodes,
-/// which are not stabilised. They get a stiffness of their own, of this part of the material's.
-constexpr double hardly_any = 0.05, ground = 1e-6;
+/// Nodes with less than CellStabilisation::hardly_any of the volume of a cell around them may belong to a
+/// fragment that nothing holds. They get a stiffness of their own, of this part of the material's: so little
+/// that it bears no weight over the way of a step, and enough for the matrix not to be singular.
+constexpr double ground = 1e-10;
 /// The smallest step over the given one, where the input names none.
 constexpr double default_smallest = 1.0 / 1024;
 
@@ -90,6 +91,7 @@ void ImplicitIntegrator::prepare() {
   const double cell_volume = g.cell_volume();
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
     const double volume = sum[node_field::volume.first] / cell_volume;
+    constexpr double hardly_any = CellStabilisation::hardly_any;
     if (!(volume > 0 && volume < hardly_any)) return;
     const double modulus = sum[node_field::modulus.first] / sum[node_field::volume.first];
     state_[i].ground = ground * (1 - volume / hardly_any) * modulus * g.smallest_cell();
@@ -104,7 +106,7 @@ void ImplicitIntegrator::prepare() {
       at.velocity[a] = at.mass > cutoff ? sum[a] / at.mass : 0;
       at.external[a] = sum[4 + a];
     }
-    // Where the free motion is unknown, the stabilised cells alone hold the node.
+    // Where the free motion is unknown, cells and ties alone hold the node.
     if (rule_.dynamic() && !(at.mass > cutoff)) at.ground = 0;
   }
   if (lags_) {
@@ -168,7 +170,8 @@ double ImplicitIntegrator::look_ahead(std::span<const double> u) {
   ahead_.assign(u.begin(), u.end());
   for (std::size_t i = 0; i < state_.size(); ++i)
     for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
-      if (held(i, static_cast<int>(k - 3 * i))) ahead_[k] += part * (unknowns_.held_displacements()[k] - u[k]);
+      if (held(i, static_cast<int>(k - 3 * i)))
+        ahead_[k] += part * (unknowns_.held_displacements()[k] - u[k]);
   return part;
 }
 

@@ -77,8 +77,8 @@ std::string StepMotion::objection(const std::vector<std::string>& names) const {
     for (std::size_t b = a + 1; b < bodies_.size(); ++b) {
       const double cells = approach(bodies_[a], bodies_[b]);
       if (cells > 1)
-        return fmt::format("bodies \"{}\" and \"{}\" meet, {:.3g} cells against each other", names[a], names[b],
-                           cells);
+        return fmt::format("bodies \"{}\" and \"{}\" meet, {:.3g} cells against each other", names[a],
+                           names[b], cells);
     }
   }
   return {};

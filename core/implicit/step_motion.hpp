@@ -1,7 +1,7 @@
 // What a solution of an implicit step does to the particles, and whether it can be accepted.
 //
-// How far a node moves does not matter: the grid is the configuration at the start of the step, and a particle
-// may travel over any number of bricks (core/step/migration.hpp). What matters:
+// How far a node moves does not matter: the grid is the configuration at the start of the step, and a
+// particle may travel over any number of bricks (core/step/migration.hpp). What matters:
 // - The strain, for laws that add up increments. They receive the displacement gradient at midstep, whose
 //   symmetric part h is the logarithmic strain less h^3/12: its largest norm over their particles is limited.
 //   Laws that keep the deformation gradient take their stress from it, whatever the step; there a step is

@@ -25,8 +25,8 @@ class Migration {
   /// Removes the departing particles from every brick; those that leave the grid or are eroded are recorded
   /// in the ledger and deleted.
   void collect(std::vector<std::vector<DepartingParticle>>& departing);
-  /// True if a collected particle enters a brick that does not exist or that this rank does not know: one that
-  /// is not next to a brick of this rank.
+  /// True if a collected particle enters a brick that does not exist or that this rank does not know: one
+  /// that is not next to a brick of this rank.
   bool wants_new_bricks() const { return !wanted_.empty(); }
   /// Sends all collected particles to the owners of their bricks. `claim`: some rank needs new bricks.
   /// Collective.

@@ -16,10 +16,12 @@ void MatrixPlaces::add(std::span<const std::int64_t> nodes, const double*) {
   std::sort(sorted_.begin(), sorted_.end());
   sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
   for (const std::int64_t row : sorted_) {
-    std::vector<std::int64_t>& columns = mine(row) ? own_[static_cast<std::size_t>(row - first_)] : others_[row];
+    std::vector<std::int64_t>& columns =
+        mine(row) ? own_[static_cast<std::size_t>(row - first_)] : others_[row];
     if (std::includes(columns.begin(), columns.end(), sorted_.begin(), sorted_.end())) continue;
     merged_.clear();
-    std::set_union(columns.begin(), columns.end(), sorted_.begin(), sorted_.end(), std::back_inserter(merged_));
+    std::set_union(columns.begin(), columns.end(), sorted_.begin(), sorted_.end(),
+                   std::back_inserter(merged_));
     columns.assign(merged_.begin(), merged_.end());
   }
 }
@@ -35,7 +37,8 @@ void MatrixPlaces::exchange(MPI_Comm comm) {
   std::vector<std::int64_t> sent;
   std::vector<int> sent_count(n), sent_begin(n), count(n), begin(n);
   for (const auto& [row, columns] : others_) {
-    // A rank without nodes begins where the next one does: the last that begins no later than the row owns it.
+    // A rank without nodes begins where the next one does: the last that begins no later than the row owns
+    // it.
     const auto owner = std::ranges::upper_bound(first, row) - first.begin() - 1;
     const auto before = sent.size();
     sent.push_back(row);
@@ -136,7 +139,8 @@ void MatrixValues::find_parts() {
   direct_ = one == PETSC_TRUE || several == PETSC_TRUE;
   if (!direct_) return;
   inner_.matrix = matrix_;
-  if (several == PETSC_TRUE) check_petsc(MatMPIAIJGetSeqAIJ(matrix_, &inner_.matrix, &outer_.matrix, nullptr));
+  if (several == PETSC_TRUE)
+    check_petsc(MatMPIAIJGetSeqAIJ(matrix_, &inner_.matrix, &outer_.matrix, nullptr));
   const std::int64_t first = places_.first(), beyond = first + static_cast<std::int64_t>(places_.own());
   std::size_t inside = 0, outside = 0;
   for (std::size_t i = 0; i < places_.own(); ++i) {

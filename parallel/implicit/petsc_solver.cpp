@@ -235,8 +235,8 @@ PetscErrorCode PetscSolver::converged(SNES snes, PetscInt iteration, PetscReal s
   return 0;
 }
 
-/// A full step, halved until no particle inverts. Of two such lengths the one with the smaller residual: close
-/// to an inversion forces are large and their derivative tells little.
+/// A full step, halved until no particle inverts. Of two such lengths the one with the smaller residual:
+/// close to an inversion forces are large and their derivative tells little.
 PetscErrorCode PetscSolver::search(SNESLineSearch steps, void* context) {
   constexpr int most_halvings = 12;
   Solve& solve = *static_cast<PetscSolver*>(context)->now_;
@@ -256,8 +256,7 @@ PetscErrorCode PetscSolver::search(SNESLineSearch steps, void* context) {
     for (int i = 0; i < most_halvings && norm < 0; ++i) norm = evaluate(length *= 0.5, w, f);
     if (length < 1 && norm >= 0) {
       const double nearer = evaluate(0.5 * length, w, g);
-      if (nearer >= 0 && nearer < norm)
-        length *= 0.5;
+      if (nearer >= 0 && nearer < norm) length *= 0.5;
     }
     check(VecWAXPY(w, -length, y, x));
     if (length < 1) check(SNESComputeFunction(snes, w, f));
@@ -284,8 +283,8 @@ void PetscSolver::set_up(NonlinearProblem& problem) {
     of_ = std::make_unique<SetUp>();
     int ranks = 0;
     check(static_cast<PetscErrorCode>(MPI_Comm_size(comm_, &ranks)));
-    of_->slender = ranks == 1 && 3 * problem.all_nodes() <= direct_up_to &&
-                   places.widest_level() <= slender_up_to;
+    of_->slender =
+        ranks == 1 && 3 * problem.all_nodes() <= direct_up_to && places.widest_level() <= slender_up_to;
     of_->values = std::make_unique<MatrixValues>(comm_, std::move(places), problem.all_nodes());
     check(MatCreateVecs(of_->values->matrix(), &of_->solution, &of_->residual));
     check(SNESCreate(comm_, &of_->snes));
@@ -368,8 +367,8 @@ void PetscSolver::prefer_pivots(SNES snes) {
   check(PCFactorSetMatOrderingType(pc, MATORDERINGEXTERNAL));
 }
 
-/// Takes another method after a failure: a line search, and pivots, after full steps, GMRES after conjugate gradients that
-/// met a matrix that is not positive definite. False: there is none, or the user has chosen.
+/// Takes another method after a failure: a line search, and pivots, after full steps, GMRES after conjugate
+/// gradients that met a matrix that is not positive definite. False: there is none, or the user has chosen.
 bool PetscSolver::try_otherwise(SNES snes, const NewtonOptions& options) {
   if (!options.linear) {
     if (!chose_full_steps_) return false;
