@@ -47,7 +47,8 @@ using core::NonlinearProblem;
 
 /// Unknowns up to which systems are solved directly.
 constexpr std::int64_t direct_up_to = 5000;
-/// Nodes in the widest level of a slender one.
+/// Nodes in the widest level of a slender body, whose systems are solved directly whatever their size: the
+/// work grows with their length alone.
 constexpr std::size_t slender_up_to = 24;
 
 PetscErrorCode keep_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
@@ -283,8 +284,7 @@ void PetscSolver::set_up(NonlinearProblem& problem) {
     of_ = std::make_unique<SetUp>();
     int ranks = 0;
     check(static_cast<PetscErrorCode>(MPI_Comm_size(comm_, &ranks)));
-    of_->slender =
-        ranks == 1 && 3 * problem.all_nodes() <= direct_up_to && places.widest_level() <= slender_up_to;
+    of_->slender = ranks == 1 && places.widest_level() <= slender_up_to;
     of_->values = std::make_unique<MatrixValues>(comm_, std::move(places), problem.all_nodes());
     check(MatCreateVecs(of_->values->matrix(), &of_->solution, &of_->residual));
     check(SNESCreate(comm_, &of_->snes));
@@ -313,7 +313,7 @@ void PetscSolver::choose_linear_solver(SNES snes, std::int64_t unknowns) {
   PC pc = nullptr;
   check(SNESGetKSP(snes, &ksp));
   check(KSPGetPC(ksp, &pc));
-  if (unknowns <= direct_up_to) {
+  if (unknowns <= direct_up_to || of_->slender) {
     check(KSPSetType(ksp, KSPPREONLY));
     check(PCSetType(pc, PCLU));
     check(PCFactorSetMatSolverType(pc, of_->slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
