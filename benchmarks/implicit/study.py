@@ -79,6 +79,30 @@ def convergence(rows, name, axis, lead, how=".2e", factor=1.0):
     return table([*lead, *(f"{p:g}" for p in places), "orders", "seconds"], lines)
 
 
+def against_explicit(rows, errors):
+    """A line for each implicit run of a given number of steps: the fastest explicit one, of any shape functions and grid, whose
+    error is no larger, and its time over that of the implicit run; for each of these errors. Behind it, the price of an
+    iteration."""
+    others = [r for r in rows if "explicit" in r["steps by"] and done(r)]
+    lines, costs = [], []
+    for row in (r for r in rows if r["steps by"].startswith("implicit ") and done(r)):
+        line = [row["steps by"], row["shape"], *(f"{row[name]:g}" for name in ("cells", "steps", "newton")),
+                f"{row['seconds']:.2g}"]
+        for name in errors:
+            best = min((r for r in others if r[name] <= row[name]), key=lambda r: r["seconds"], default=None)
+            line += [f"{row[name]:.1e}", "none" if best is None else
+                     f"{best['steps by'].split()[1]}, {best['shape']}, {best['cells']:g}: {best['seconds']:.2g} s",
+                     "–" if best is None else f"{best['seconds'] / row['seconds']:.2g}"]
+        lines.append(line)
+        same = [r for r in others if r["shape"] == row["shape"] and r["cells"] == row["cells"]]
+        costs += [row["seconds"] / row["newton"] / (r["seconds"] / r["steps"]) for r in same]
+    if not lines or not costs:
+        return ""
+    heads = ["steps by", "shape", "cells", "steps", "Newton iterations", "seconds",
+             *(head for name in errors for head in (name, f"explicit, {name} no larger", f"time over, {name}"))]
+    return f"{table(heads, lines)}\n\nA Newton iteration takes as long as {min(costs):.0f} to {max(costs):.0f} explicit steps."
+
+
 def table(heads, lines):
     return results.markdown(lines, {head: (lambda line, i=i: line[i], "") for i, head in enumerate(heads)})
 

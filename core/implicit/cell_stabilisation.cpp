@@ -72,15 +72,37 @@ bool CellStabilisation::handles(Slot s, const int (&at)[3]) const {
   return false;
 }
 
+/// Ties in a cell without filling, whose nodes are no mirror images.
+void CellStabilisation::find_ties(Slot s, int lowest, const double* sums, const NodeUnknowns::Node* nodes) {
+  const GridGeometry& g = model_.grid->geometry();
+  const auto volume_of = [&](int node) { return sums[node_doubles * node + node_field::volume.first]; };
+  int fullest = -1;
+  for (const int corner : corner_) {
+    const int node = lowest + corner;
+    if (nodes[node].number >= 0 && (fullest < 0 || volume_of(node) > volume_of(fullest))) fullest = node;
+  }
+  if (fullest < 0) return;
+  for (const int corner : corner_) {
+    const int node = lowest + corner;
+    const double volume = volume_of(node), part = volume / g.cell_volume();
+    if (node == fullest || nodes[node].number < 0 || !(part > 0 && part < hardly_any)) continue;
+    const double modulus = sums[node_doubles * node + node_field::modulus.first] / volume;
+    ties_[static_cast<std::size_t>(s)].push_back(
+        {node, fullest, spring * (1 - part / hardly_any) * modulus * g.smallest_cell()});
+  }
+}
+
 void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
   const BrickGrid& grid = *model_.grid;
   const GridGeometry& g = grid.geometry();
   const NodeBlockShape shape = grid.shape();
   cells_.resize(static_cast<std::size_t>(grid.owned()));
+  ties_.resize(static_cast<std::size_t>(grid.owned()));
   const double cell_volume = g.cell_volume();
   for_each_by_threads(0, grid.owned(), 4, [&](int s) {
     std::vector<Cell>& cells = cells_[static_cast<std::size_t>(s)];
     cells.clear();
+    ties_[static_cast<std::size_t>(s)].clear();
     std::vector<double> sums(static_cast<std::size_t>(node_doubles * shape.nodes()));
     unknowns.sums(s, sums.data());
     const NodeUnknowns::Node* const nodes = unknowns.of_brick(s);
@@ -95,11 +117,13 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
           for (int a = 0; a < 3; ++a)
             inside =
                 inside && first[a] + at[a] >= 0 && first[a] + at[a] < g.cells[static_cast<std::size_t>(a)];
-          if (!inside) continue;
           const int lowest = shape.index(at[0], at[1], at[2]);
           double fill = 0, volume = 0, modulus = 0;
           bool active = true;
-          for (int n = 0; n < 8 && active; ++n) {
+          bool mirrored = false;
+          for (const int corner : corner_) mirrored |= nodes[lowest + corner].from != lowest + corner;
+          if (mirrored) continue;
+          for (int n = 0; n < 8 && active && inside; ++n) {
             const int node = lowest + corner_[n];
             active = nodes[node].number >= 0;
             const double* sum = sums.data() + node_doubles * node;
@@ -113,7 +137,11 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
             volume += sum[node_field::volume.first];
             modulus += sum[node_field::modulus.first];
           }
-          if (!active || !(volume > 0)) continue;
+          if (!active || !inside) {
+            if (handles(s, at)) find_ties(static_cast<Slot>(s), lowest, sums.data(), nodes);
+            continue;
+          }
+          if (!(volume > 0)) continue;
           const double empty = centred_ ? 1 : 1 - fill;
           if (empty > hardly_empty && handles(s, at))
             cells.push_back({lowest, alpha * empty * modulus / volume});
@@ -144,6 +172,14 @@ void CellStabilisation::add_forces(const AlignedDoubles& displacements) {
         }
       }
     }
+    for (const Tie& tie : ties_[static_cast<std::size_t>(s)]) {
+      for (int a = 0; a < 3; ++a) {
+        const double pull =
+            tie.stiffness * (record[node_doubles * tie.node + a] - record[node_doubles * tie.fullest + a]);
+        contributions[node_doubles * tie.node + node_field::force.first + a] -= pull;
+        contributions[node_doubles * tie.fullest + node_field::force.first + a] += pull;
+      }
+    }
   });
 }
 
@@ -163,6 +199,17 @@ void CellStabilisation::add_tangent(const NodeUnknowns& unknowns, bool values, B
         for (std::size_t q = 0; q < 24; ++q)
           sum[24 * p + q] = ((held >> p | held >> q) & 1) != 0 ? 0 : cell.stiffness * matrix_[p][q];
       matrix.add(numbers, values ? sum.data() : nullptr);
+    }
+    for (const Tie& tie : ties_[static_cast<std::size_t>(s)]) {
+      const NodeUnknowns::Node* const ends[2] = {nodes + tie.node, nodes + tie.fullest};
+      const std::uint32_t held = ends[0]->held | std::uint32_t{ends[1]->held} << 3;
+      for (std::size_t p = 0; p < 6; ++p)
+        for (std::size_t q = 0; q < 6; ++q)
+          sum[6 * p + q] = ((held >> p | held >> q) & 1) != 0 || p % 3 != q % 3 ? 0
+                           : p == q                                             ? tie.stiffness
+                                                                                : -tie.stiffness;
+      numbers = {ends[0]->number, ends[1]->number};
+      matrix.add(std::span(numbers).first(2), values ? sum.data() : nullptr);
     }
   }
 }

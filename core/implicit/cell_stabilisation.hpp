@@ -7,8 +7,13 @@
 //   f = - alpha (1 - fill) M  integral of B^T (sym grad u),    M: the longitudinal modulus of the material
 //   around, at most four times its shear modulus
 // The displacement is that of the step and the grid is new in each, so this material never stores stress: it
-// changes a stiffness by the share alpha and no equilibrium. Other remedies: ghost penalties on the faces of
-// such cells (Coombs, IJNME 124 (2023) 4841), which couple nodes two cells apart.
+// changes a stiffness by the share alpha. Other remedies: ghost penalties on the faces of such cells (Coombs,
+// IJNME 124 (2023) 4841), which couple nodes two cells apart.
+//
+// Cells with inactive nodes, and those beyond a free face of the grid, have no such filling. There a node
+// with less than hardly_any of a cell's volume around it is tied to the fullest node of the cell by a spring
+// of a millionth of the material's stiffness: it acts on the difference of two displacements, so that it
+// carries no weight, however far a step moves both.
 //
 // Shape functions through cell centres (SGMP, DDMP) do not see a checkerboard of displacements even where
 // cells are full: there all cells count as empty.
@@ -30,6 +35,7 @@ CellMatrix cell_matrix(const Vec3<double>& cell);
 class CellStabilisation {
  public:
   static constexpr double alpha = 1e-3;
+  static constexpr double hardly_any = 0.05, spring = 1e-6;
 
   explicit CellStabilisation(Model& model);
 
@@ -45,6 +51,11 @@ class CellStabilisation {
     std::int32_t lowest;  ///< node of the brick
     double stiffness;     ///< alpha (1 - fill) M
   };
+  struct Tie {
+    std::int32_t node, fullest;  ///< of the brick
+    double stiffness;
+  };
+  void find_ties(Slot s, int lowest, const double* sums, const NodeUnknowns::Node* nodes);
   bool handles(Slot s, const int (&at)[3]) const;
 
   Model& model_;
@@ -52,6 +63,7 @@ class CellStabilisation {
   CellMatrix matrix_;
   int corner_[8];                         ///< nodes of a cell relative to its lowest
   std::vector<std::vector<Cell>> cells_;  ///< by slot
+  std::vector<std::vector<Tie>> ties_;    ///< by slot
 };
 
 }  // namespace mpm::core

@@ -18,9 +18,10 @@ constexpr int easy = 8;
 constexpr double growth = 1.5;
 /// A quasi-static run's steps, and a dynamic step over the largest explicit one, where the input names none.
 constexpr double default_load_steps = 20, default_ratio = 20;
-/// Nodes with less than this part of the volume of a cell around them may be in cells with inactive nodes,
-/// which are not stabilised. They get a stiffness of their own, of this part of the material's.
-constexpr double hardly_any = 0.05, ground = 1e-6;
+/// Nodes with less than CellStabilisation::hardly_any of the volume of a cell around them may belong to a
+/// fragment that nothing holds. They get a stiffness of their own, of this part of the material's: so little
+/// that it bears no weight over the way of a step, and enough for the matrix not to be singular.
+constexpr double ground = 1e-10;
 /// The smallest step over the given one, where the input names none.
 constexpr double default_smallest = 1.0 / 1024;
 
@@ -90,6 +91,7 @@ void ImplicitIntegrator::prepare() {
   const double cell_volume = g.cell_volume();
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
     const double volume = sum[node_field::volume.first] / cell_volume;
+    constexpr double hardly_any = CellStabilisation::hardly_any;
     if (!(volume > 0 && volume < hardly_any)) return;
     const double modulus = sum[node_field::modulus.first] / sum[node_field::volume.first];
     state_[i].ground = ground * (1 - volume / hardly_any) * modulus * g.smallest_cell();
@@ -104,7 +106,7 @@ void ImplicitIntegrator::prepare() {
       at.velocity[a] = at.mass > cutoff ? sum[a] / at.mass : 0;
       at.external[a] = sum[4 + a];
     }
-    // Where the free motion is unknown, the stabilised cells alone hold the node.
+    // Where the free motion is unknown, cells and ties alone hold the node.
     if (rule_.dynamic() && !(at.mass > cutoff)) at.ground = 0;
   }
   if (lags_) {
@@ -127,15 +129,16 @@ void ImplicitIntegrator::prepare() {
   });
 }
 
-/// Free nodes go on with their velocity; those of a linearised step begin at their place, where it is
-/// linearised.
+/// Nodes go on with their velocity; those of a linearised step begin at their place, where it is linearised.
+/// What walls hold is there, and with products by differences of residuals everything that is held.
 std::vector<double> ImplicitIntegrator::first_guess() const {
   std::vector<double> u(3 * state_.size());
   for (std::size_t i = 0; i < state_.size(); ++i) {
     for (int a = 0; a < 3; ++a) {
       const std::size_t at = 3 * i + static_cast<std::size_t>(a);
-      if (held(i, a))
-        u[at] = unknowns_.held_displacements()[at];
+      const double to = unknowns_.held_displacements()[at];
+      if (held(i, a) && (to == 0 || input_.matrix_free))
+        u[at] = to;
       else
         u[at] = input_.linearised() ? 0 : free_motion(state_[i], a);
     }
@@ -143,11 +146,44 @@ std::vector<double> ImplicitIntegrator::first_guess() const {
   return u;
 }
 
-bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r) {
+bool ImplicitIntegrator::map_forces(std::span<const double> u) {
   unknowns_.distribute(u, displacements_);
   const bool usable = passes_->map_forces(displacements_);
   stabilisation_.add_forces(displacements_);
   unknowns_.exchange(mapped::implicit_force);
+  return usable;
+}
+
+double ImplicitIntegrator::look_ahead(std::span<const double> u) {
+  // Of a cell: so small that the forces are linear, and large against rounding.
+  constexpr double small = 1e-5, there = 1e-12;
+  if (!moves_bodies_ || input_.matrix_free) return 0;
+  const double h = model_.grid->geometry().smallest_cell();
+  double farthest = 0;
+  for (std::size_t i = 0; i < state_.size(); ++i)
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
+      if (held(i, static_cast<int>(k - 3 * i)))
+        farthest = std::max(farthest, std::abs(unknowns_.held_displacements()[k] - u[k]));
+  farthest = ranks_.largest(farthest);
+  if (!(farthest > there * h)) return 0;
+  const double part = std::min(1.0, small * h / farthest);
+  ahead_.assign(u.begin(), u.end());
+  for (std::size_t i = 0; i < state_.size(); ++i)
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
+      if (held(i, static_cast<int>(k - 3 * i)))
+        ahead_[k] += part * (unknowns_.held_displacements()[k] - u[k]);
+  return part;
+}
+
+bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r) {
+  const double part = look_ahead(u);
+  if (part > 0) {
+    map_forces(ahead_);
+    unknowns_.for_each_own([&](std::size_t i, const double* sum) {
+      for (int a = 0; a < 3; ++a) state_[i].ahead[a] = -sum[4 + a] / part;
+    });
+  }
+  const bool usable = map_forces(u);
   const double damping = model_.scene->solution.damping;
   ExactSum squares;
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
@@ -163,7 +199,16 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
       at.reaction[a] = inertia + drag + at.ground * (u[k] - free_motion(at, a)) - rule_.carry * at.force[a] -
                        at.external[a] - sum[4 + a];
       size += std::abs(inertia) + std::abs(at.external[a]);
-      r[k] = held(i, a) ? held_diagonal_ * (u[k] - unknowns_.held_displacements()[k]) : at.reaction[a];
+      if (held(i, a)) {
+        r[k] = held_diagonal_ * (u[k] - unknowns_.held_displacements()[k]);
+        size += std::abs(r[k]);
+        continue;
+      }
+      r[k] = at.reaction[a];
+      if (!(part > 0)) continue;
+      const double led = at.ahead[a] + sum[4 + a] / part;
+      r[k] += led;
+      size += std::abs(led);
     }
     squares.add(size * size);
   });
@@ -186,15 +231,14 @@ void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix
   }
 }
 
-std::string ImplicitIntegrator::objection(const NewtonReport& report, std::span<const double> u) const {
+std::string ImplicitIntegrator::objection(const NewtonReport& report, std::span<const double> u) {
   if (!report.converged) return report.reason;
-  const double cell[3] = {model_.grid->geometry().cell.x, model_.grid->geometry().cell.y,
-                          model_.grid->geometry().cell.z};
-  double farthest = 0;
-  for (std::size_t k = 0; k < u.size(); ++k) farthest = std::max(farthest, std::abs(u[k]) / cell[k % 3]);
-  farthest = ranks_.largest(farthest);
-  if (farthest > 1) return fmt::format("a node moves by {:.3g} cells", farthest);
-  return {};
+  unknowns_.distribute(u, displacements_);
+  StepMotion motion = passes_->motion_of(displacements_);
+  motion.combine(ranks_);
+  std::vector<std::string> names;
+  for (const Body& body : model_.bodies) names.push_back(body.name);
+  return motion.objection(names);
 }
 
 void ImplicitIntegrator::solve() {

@@ -6,8 +6,14 @@
 // the step; particles keep their state until the step has converged (Guilkey and Weiss, IJNME 57 (2003) 1323,
 // for the method; AMPLE, Coombs and Augarde, Adv. Eng. Softw. 139 (2020) 102748, for the quasi-static form).
 //
-// A step that does not converge, inverts a particle or moves a node by more than a cell is taken again with
-// half its length; steps that were cut grow again.
+// A step that does not converge or that step_motion.hpp refuses is taken again with half its length; steps
+// that were cut grow again.
+//
+// Held nodes are led to their places: Newton's method begins with the motion of free flight at all nodes, and
+// what is left of the way of held ones enters the residual of the others by its derivative, R + dR/du_h du_h,
+// a difference of two residuals; a full step of Newton's method then ends there, with the linear answer of
+// the free nodes to all of the way. If they were there from the start, the particles next to them would
+// invert as soon as they move by more than a cell.
 #pragma once
 
 #include <memory>
@@ -44,6 +50,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     double external[3];  ///< force
     double force[3];     ///< all, at the start
     double reaction[3];  ///< residual of the last evaluation, also of held components
+    double ahead[3];     ///< what the rest of the way of held nodes adds to it
   };
 
   // NonlinearProblem.
@@ -64,7 +71,12 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   void move();
   std::vector<double> first_guess() const;
   /// Why the solution cannot be accepted; empty if it can. The same on all ranks.
-  std::string objection(const NewtonReport& report, std::span<const double> u) const;
+  std::string objection(const NewtonReport& report, std::span<const double> u);
+  /// Maps the forces for displacements `u` and exchanges them. False where a state cannot be evaluated.
+  bool map_forces(std::span<const double> u);
+  /// What held nodes have left of their way, into `ahead`, times a small factor, which it returns, plus `u`;
+  /// 0: nothing.
+  double look_ahead(std::span<const double> u);
   /// Displacement of a node without forces.
   double free_motion(const NodeState& at, int axis) const {
     return rule_.dynamic() ? model_.clock.dt * at.velocity[axis] : 0;
@@ -88,7 +100,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   double next_ = 0;            ///< length of the next step
   double force_scale_ = 0;
   std::vector<NodeState> state_;
-  std::vector<double> solution_;
+  std::vector<double> solution_, ahead_;
   AlignedDoubles displacements_, velocities_, lag_increments_;  ///< records of the bricks' nodes
   StepStatistics of_nodes_;
   std::string words_;

@@ -7,6 +7,7 @@
 
 #include "core/implicit/newton_solver.hpp"
 #include "core/implicit/node_unknowns.hpp"
+#include "core/implicit/step_motion.hpp"
 #include "core/step/integrator.hpp"
 #include "core/step/loads.hpp"
 
@@ -37,6 +38,8 @@ class ImplicitPasses {
   virtual void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
                            BlockMatrix& matrix) = 0;
 
+  /// What the displacements do to this rank's particles, which do not change.
+  virtual StepMotion motion_of(const AlignedDoubles& displacements) = 0;
   /// Moves the particles by the displacements, updates their stress and, where the step is dynamic, adds the
   /// increments of `velocities` (4..6 of its records) to theirs; quasi-static particles are at rest. `lags`:
   /// increments of the lag of the acceleration, where particles carry one.

@@ -54,6 +54,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   bool map_forces(const AlignedDoubles& displacements) override;
   void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
                    BlockMatrix& matrix) override;
+  StepMotion motion_of(const AlignedDoubles& displacements) override;
   void move_particles(const AlignedDoubles& displacements, const AlignedDoubles* velocities,
                       const AlignedDoubles* lags) override;
   std::vector<std::vector<DepartingParticle>>& departing() override { return departing_; }
@@ -75,6 +76,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
     ForceTangent tangent;
     AlignedDoubles copies;  ///< of a batch's blocks
     StiffnessBlock stiffness;
+    StepMotion motion;
   };
   /// Whether the batch's blocks are the particles' own or copies.
   enum class Blocks { own, copies };
@@ -144,6 +146,8 @@ class ImplicitPassesWith final : public ImplicitPasses {
                            static_cast<std::size_t>(s);
   }
   bool prescribed(int body) const { return loads_.motion(body).kind == BodyMotion::Kind::prescribed; }
+  /// Adds the motion of a batch of copies, which it moves (motion_of_batches.hpp).
+  void find_motion(const ParticleTile& tile, const Body& body, Scratch& at);
   void move_block(const BrickFrame& frame, const ParticleTile& tile, int b, double* block, int used,
                   bool dynamic, bool lags, Scratch& at);
   /// Adds S times the nodes' increments to three columns.
@@ -497,3 +501,4 @@ StepStatistics ImplicitPassesWith<S>::take_statistics() {
 }  // namespace mpm::core
 
 #include "core/implicit/averaged_batches.hpp"
+#include "core/implicit/motion_of_batches.hpp"

@@ -36,6 +36,7 @@ std::string describe_particle(const Body& body, const double* columns) {
 Migration::Migration(Model& model, Communication& communication)
     : model_(model),
       communication_(communication),
+      far_(model.scene->solution.integration == Integration::implicit),
       columns_of_(columns_of(model)),
       by_thread_(static_cast<std::size_t>(omp_get_max_threads())) {
   for (ThreadMigration& h : by_thread_) {
@@ -90,7 +91,7 @@ void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departin
       const BrickCoord to = grid.geometry().brick_at(x);
       // On the grid's upper face, or within round-off of its own brick.
       if (to == brick.coord && component_of(model_, tile.body, columns) == tile.component) continue;
-      if (!adjacent(to, brick.coord)) {
+      if (!far_ && !adjacent(to, brick.coord)) {
         report(body, " moved by more than one brick in one step");
         continue;
       }
@@ -158,7 +159,11 @@ void Migration::deliver(bool claim) {
     wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
     communication_.bricks.activate(*model_.grid, wanted_);
   }
-  communication_.particles.migrate(*model_.grid, particles_, columns_of_);
+  // Bricks that this rank does not know may belong to any rank.
+  if (claim && far_)
+    communication_.particles.scatter(particles_, columns_of_);
+  else
+    communication_.particles.migrate(*model_.grid, particles_, columns_of_);
   insert_particles(model_, particles_);
   particles_.clear();
 }

@@ -3,6 +3,9 @@
 //
 // The order inside a tile decides the order of sums, so it must not depend on ranks or threads: departing
 // particles are removed in descending order, arriving ones are appended in order of identity.
+//
+// Explicit steps move a particle by less than a cell. Implicit ones may move it over any number of bricks: to
+// a brick of any rank, whose owner is then asked of the directory.
 #pragma once
 
 #include <string>
@@ -22,7 +25,8 @@ class Migration {
   /// Removes the departing particles from every brick; those that leave the grid or are eroded are recorded
   /// in the ledger and deleted.
   void collect(std::vector<std::vector<DepartingParticle>>& departing);
-  /// True if a collected particle enters a brick that does not exist or that this rank does not know.
+  /// True if a collected particle enters a brick that does not exist or that this rank does not know: one
+  /// that is not next to a brick of this rank.
   bool wants_new_bricks() const { return !wanted_.empty(); }
   /// Sends all collected particles to the owners of their bricks. `claim`: some rank needs new bricks.
   /// Collective.
@@ -53,6 +57,7 @@ class Migration {
 
   Model& model_;
   Communication& communication_;
+  const bool far_;                          ///< steps may move particles by more than one brick
   std::vector<int> columns_of_;             ///< by body
   std::vector<ThreadMigration> by_thread_;  ///< by thread
   MigrationBuffer particles_;

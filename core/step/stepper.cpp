@@ -32,7 +32,10 @@ std::vector<Phase> Stepper::make_phases() {
   step.push_back({"reduce status", [this] { reduce_status(); }});
   step.push_back({"migrate", [this] { migration_.deliver(needs_bricks_); }});
   step.push_back({"sort and prune", [this] {
-                    if (model_.clock.step % sorting_interval == 0) migration_.sort_and_prune();
+                    // Next to the solution of an implicit step's equations this costs nothing, and particles
+                    // that are sorted are assembled cell by cell.
+                    const bool implicit = model_.scene->solution.integration == Integration::implicit;
+                    if (implicit || model_.clock.step % sorting_interval == 0) migration_.sort_and_prune();
                   }});
   return step;
 }

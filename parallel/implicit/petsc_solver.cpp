@@ -1,7 +1,8 @@
 // Newton's method by PETSc's SNES (core/implicit/newton_solver.hpp), in a library of its own that is loaded
 // when a scene is implicit: explicit runs neither load nor start PETSc.
 //
-// Small problems are solved directly (MUMPS); larger ones by GMRES with smoothed aggregation multigrid
+// Small problems are solved directly, slender ones by PETSc's own factorisation with the bandwidth reduced,
+// others by MUMPS; larger ones by GMRES with smoothed aggregation multigrid
 // (GAMG), which is told the rigid motions. The single system of a linearised step is solved by conjugate
 // gradients, preconditioned with the blocks of the nodes; where it turns out not to be positive definite (a
 // law that softens or whose flow is not associated), by GMRES. All can be replaced by PETSc's own options,
@@ -18,22 +19,37 @@
 #include <petscsnes.h>
 
 #include "core/implicit/newton_solver.hpp"
+#include "parallel/implicit/petsc_matrix.hpp"
 #include "parallel/implicit/solver_library.hpp"
 
 namespace mpm::parallel {
 
 namespace {
 
-using core::BlockMatrix;
+/// PETSc's description of the first error, instead of a stack from every rank.
+std::string first_error;  // NOLINT: PETSc's handlers have no state of their own that survives
+
+}  // namespace
+
+void check_petsc(PetscErrorCode code) {
+  if (code == 0) return;
+  const std::string what =
+      first_error.empty() ? fmt::format("PETSc error {}", static_cast<int>(code)) : first_error;
+  first_error.clear();
+  throw std::runtime_error("PETSc: " + what);
+}
+
+namespace {
+
 using core::NewtonOptions;
 using core::NewtonReport;
 using core::NonlinearProblem;
 
 /// Unknowns up to which systems are solved directly.
 constexpr std::int64_t direct_up_to = 5000;
-
-/// PETSc's description of the first error, instead of a stack from every rank.
-std::string first_error;  // NOLINT: PETSc's handlers have no state of their own that survives
+/// Nodes in the widest level of a slender body, whose systems are solved directly whatever their size: the
+/// work grows with their length alone.
+constexpr std::size_t slender_up_to = 24;
 
 PetscErrorCode keep_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                           PetscErrorType type, const char* message, void*) {
@@ -42,33 +58,7 @@ PetscErrorCode keep_error(MPI_Comm, int, const char* function, const char*, Pets
   return code;
 }
 
-void check(PetscErrorCode code) {
-  if (code == 0) return;
-  const std::string what =
-      first_error.empty() ? fmt::format("PETSc error {}", static_cast<int>(code)) : first_error;
-  first_error.clear();
-  throw std::runtime_error("PETSc: " + what);
-}
-
-/// Adds to a matrix of PETSc; without values, to its structure.
-class MatrixWriter final : public BlockMatrix {
- public:
-  explicit MatrixWriter(Mat matrix) : matrix_(matrix) {}
-  void add(std::span<const std::int64_t> nodes, const double* values) override {
-    rows_.assign(nodes.begin(), nodes.end());
-    if (values == nullptr) {
-      zeros_.resize(std::max(zeros_.size(), 9 * nodes.size() * nodes.size()), 0.0);
-      values = zeros_.data();
-    }
-    const auto n = static_cast<PetscInt>(rows_.size());
-    check(MatSetValuesBlocked(matrix_, n, rows_.data(), n, rows_.data(), values, ADD_VALUES));
-  }
-
- private:
-  Mat matrix_;
-  std::vector<PetscInt> rows_;
-  std::vector<double> zeros_;
-};
+void check(PetscErrorCode code) { check_petsc(code); }
 
 /// Releases a PETSc object at the end of a scope.
 template <class Object, PetscErrorCode (*destroy)(Object*)>
@@ -104,6 +94,7 @@ class PetscSolver final : public core::NewtonSolver {
     given_ = !options.empty();
   }
   ~PetscSolver() override {
+    of_.reset();
     PetscPopErrorHandler();
     PetscFinalize();
     MPI_Comm_free(&comm_);
@@ -122,7 +113,6 @@ class PetscSolver final : public core::NewtonSolver {
     NewtonReport report;
     std::exception_ptr failure;  ///< must not pass through PETSc
     bool usable = true;          ///< the last state could be evaluated
-    Vec solution_update = nullptr;
   };
   /// f(), whose exceptions are kept.
   template <class F>
@@ -140,16 +130,30 @@ class PetscSolver final : public core::NewtonSolver {
   static PetscErrorCode converged(SNES, PetscInt iteration, PetscReal, PetscReal step, PetscReal norm,
                                   SNESConvergedReason* reason, void* context);
 
+  static PetscErrorCode search(SNESLineSearch steps, void* context);
+
   static double relative(double norm, const NonlinearProblem& problem);
-  void allocate(NonlinearProblem& problem, Mat* matrix) const;
+  void set_up(NonlinearProblem& problem);
   static void give_rigid_motions(const NonlinearProblem& problem, Mat matrix);
   void choose_linear_solver(SNES snes, std::int64_t unknowns);
   void choose_conjugate_gradients(SNES snes, double tolerance);
   void describe(SNES snes);
-  bool try_otherwise(SNES snes, const NewtonOptions& options) const;
+  void prefer_pivots(SNES snes);
+  bool try_otherwise(SNES snes, const NewtonOptions& options);
   void refuse_unused_options();
 
+  /// What solves with the same places of entries share: PETSc keeps the symbolic part of a factorisation.
+  struct SetUp {
+    std::unique_ptr<MatrixValues> values;
+    bool slender = false;  ///< as is a bar of few nodes across, on one rank
+    OwnedVec solution, residual;
+    OwnedMat action;
+    OwnedSnes snes;
+  };
+
   MPI_Comm comm_ = MPI_COMM_NULL;
+  std::unique_ptr<SetUp> of_;
+  Solve* now_ = nullptr;  ///< within solve()
   std::vector<std::string> words_;
   std::vector<char*> pointers_;
   std::string description_;
@@ -158,7 +162,7 @@ class PetscSolver final : public core::NewtonSolver {
 };
 
 PetscErrorCode PetscSolver::residual(SNES, Vec u, Vec r, void* context) {
-  Solve& solve = *static_cast<Solve*>(context);
+  Solve& solve = *static_cast<PetscSolver*>(context)->now_;
   return guarded(solve, [&] {
     const double start = MPI_Wtime();
     const PetscScalar* in = nullptr;
@@ -185,19 +189,18 @@ PetscErrorCode PetscSolver::residual(SNES, Vec u, Vec r, void* context) {
 }
 
 PetscErrorCode PetscSolver::jacobian(SNES, Vec u, Mat shell, Mat matrix, void* context) {
-  Solve& solve = *static_cast<Solve*>(context);
+  MatrixValues& values = *static_cast<PetscSolver*>(context)->of_->values;
+  Solve& solve = *static_cast<PetscSolver*>(context)->now_;
   return guarded(solve, [&] {
     const double start = MPI_Wtime();
     const PetscScalar* in = nullptr;
     PetscInt n = 0;
     check(VecGetLocalSize(u, &n));
     check(VecGetArrayRead(u, &in));
-    check(MatZeroEntries(matrix));
-    MatrixWriter writer(matrix);
-    solve.problem.jacobian({in, static_cast<std::size_t>(n)}, writer);
+    values.begin();
+    solve.problem.jacobian({in, static_cast<std::size_t>(n)}, values);
+    values.end();
     check(VecRestoreArrayRead(u, &in));
-    check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
     if (shell != matrix) {
       check(MatAssemblyBegin(shell, MAT_FINAL_ASSEMBLY));
       check(MatAssemblyEnd(shell, MAT_FINAL_ASSEMBLY));
@@ -215,7 +218,7 @@ double PetscSolver::relative(double norm, const NonlinearProblem& problem) {
 /// |r| against the forces that balance in it; or steps that are rounding errors.
 PetscErrorCode PetscSolver::converged(SNES snes, PetscInt iteration, PetscReal size, PetscReal step,
                                       PetscReal norm, SNESConvergedReason* reason, void* context) {
-  Solve& solve = *static_cast<Solve*>(context);
+  Solve& solve = *static_cast<PetscSolver*>(context)->now_;
   const double scale = solve.problem.force_scale();
   solve.report.norms.push_back(relative(norm, solve.problem));
   *reason = SNES_CONVERGED_ITERATING;
@@ -233,29 +236,62 @@ PetscErrorCode PetscSolver::converged(SNES snes, PetscInt iteration, PetscReal s
   return 0;
 }
 
-/// A matrix with room for the problem's entries.
-void PetscSolver::allocate(NonlinearProblem& problem, Mat* matrix) const {
-  const auto rows = static_cast<PetscInt>(3 * problem.own_nodes());
-  const auto all = static_cast<PetscInt>(3 * problem.all_nodes());
-  OwnedMat places;
-  for (Mat* m : {&places, matrix}) {
-    check(MatCreate(comm_, m));
-    check(MatSetSizes(*m, rows, rows, all, all));
-    check(MatSetBlockSize(*m, 3));
-  }
-  check(MatSetType(places, MATPREALLOCATOR));
-  check(MatSetUp(places));
-  MatrixWriter writer(places);
-  problem.structure(writer);
+/// A full step, halved until no particle inverts. Of two such lengths the one with the smaller residual:
+/// close to an inversion forces are large and their derivative tells little.
+PetscErrorCode PetscSolver::search(SNESLineSearch steps, void* context) {
+  constexpr int most_halvings = 12;
+  Solve& solve = *static_cast<PetscSolver*>(context)->now_;
+  return guarded(solve, [&] {
+    SNES snes = nullptr;
+    Vec x = nullptr, f = nullptr, y = nullptr, w = nullptr, g = nullptr;
+    check(SNESLineSearchGetSNES(steps, &snes));
+    check(SNESLineSearchGetVecs(steps, &x, &f, &y, &w, &g));
+    const auto evaluate = [&](double length, Vec at, Vec r) {
+      check(VecWAXPY(at, -length, y, x));
+      check(SNESComputeFunction(snes, at, r));
+      PetscReal norm = 0;
+      check(VecNorm(r, NORM_2, &norm));
+      return solve.usable && std::isfinite(norm) ? norm : -1.0;
+    };
+    double length = 1, norm = evaluate(length, w, f);
+    for (int i = 0; i < most_halvings && norm < 0; ++i) norm = evaluate(length *= 0.5, w, f);
+    if (length < 1 && norm >= 0) {
+      const double nearer = evaluate(0.5 * length, w, g);
+      if (nearer >= 0 && nearer < norm) length *= 0.5;
+    }
+    check(VecWAXPY(w, -length, y, x));
+    if (length < 1) check(SNESComputeFunction(snes, w, f));
+    check(VecCopy(w, x));
+    check(VecScale(y, length));
+    check(SNESLineSearchSetLambda(steps, length));
+    check(SNESLineSearchComputeNorms(steps));
+    check(SNESLineSearchSetReason(steps, SNES_LINESEARCH_SUCCEEDED));
+  });
+}
+
+/// The matrix and the solver, or those of the last solve where the places of the entries are the same.
+void PetscSolver::set_up(NonlinearProblem& problem) {
+  MatrixPlaces places(problem.first_node(), problem.own_nodes());
+  problem.structure(places);
   for (std::int64_t i = 0; i < problem.own_nodes(); ++i) {
     const std::int64_t number = problem.first_node() + i;
-    writer.add(std::span(&number, 1), nullptr);
+    places.add(std::span(&number, 1), nullptr);
   }
-  check(MatAssemblyBegin(places, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(places, MAT_FINAL_ASSEMBLY));
-  check(MatSetType(*matrix, MATAIJ));
-  check(MatSetFromOptions(*matrix));
-  check(MatPreallocatorPreallocate(places, PETSC_TRUE, *matrix));
+  places.exchange(comm_);
+  int same = of_ && of_->values->places().same_as(places) ? 1 : 0;
+  check(static_cast<PetscErrorCode>(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, comm_)));
+  if (same == 0) {
+    of_ = std::make_unique<SetUp>();
+    int ranks = 0;
+    check(static_cast<PetscErrorCode>(MPI_Comm_size(comm_, &ranks)));
+    of_->slender = ranks == 1 && places.widest_level() <= slender_up_to;
+    of_->values = std::make_unique<MatrixValues>(comm_, std::move(places), problem.all_nodes());
+    check(MatCreateVecs(of_->values->matrix(), &of_->solution, &of_->residual));
+    check(SNESCreate(comm_, &of_->snes));
+    check(SNESSetFunction(of_->snes, of_->residual, residual, this));
+    check(SNESSetConvergenceTest(of_->snes, converged, this, nullptr));
+  }
+  give_rigid_motions(problem, of_->values->matrix());
 }
 
 void PetscSolver::give_rigid_motions(const NonlinearProblem& problem, Mat matrix) {
@@ -277,10 +313,11 @@ void PetscSolver::choose_linear_solver(SNES snes, std::int64_t unknowns) {
   PC pc = nullptr;
   check(SNESGetKSP(snes, &ksp));
   check(KSPGetPC(ksp, &pc));
-  if (unknowns <= direct_up_to) {
+  if (unknowns <= direct_up_to || of_->slender) {
     check(KSPSetType(ksp, KSPPREONLY));
     check(PCSetType(pc, PCLU));
-    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    check(PCFactorSetMatSolverType(pc, of_->slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
+    if (of_->slender) check(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
   } else {
     check(KSPSetType(ksp, KSPGMRES));
     check(KSPGMRESSetRestart(ksp, 60));
@@ -291,9 +328,10 @@ void PetscSolver::choose_linear_solver(SNES snes, std::int64_t unknowns) {
   // lets it fall alone. Where they fail, a search is tried.
   PetscBool chosen = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, "-snes_linesearch_type", &chosen));
-  SNESLineSearch search = nullptr;
-  check(SNESGetLineSearch(snes, &search));
-  check(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  SNESLineSearch steps = nullptr;
+  check(SNESGetLineSearch(snes, &steps));
+  check(SNESLineSearchSetType(steps, SNESLINESEARCHSHELL));
+  check(SNESLineSearchShellSetUserFunc(steps, search, this));
   check(SNESSetFromOptions(snes));
   SNESType method = nullptr;
   check(SNESGetType(snes, &method));
@@ -314,14 +352,30 @@ void PetscSolver::choose_conjugate_gradients(SNES snes, double tolerance) {
   describe(snes);
 }
 
-/// Takes another method after a failure: a line search after full steps, GMRES after conjugate gradients that
-/// met a matrix that is not positive definite. False: there is none, or the user has chosen.
-bool PetscSolver::try_otherwise(SNES snes, const NewtonOptions& options) const {
+/// PETSc's own factorisation does not exchange rows, MUMPS does.
+void PetscSolver::prefer_pivots(SNES snes) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  MatSolverType solver = nullptr;
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPGetPC(ksp, &pc));
+  check(PCFactorGetMatSolverType(pc, &solver));
+  of_->slender = false;
+  if (solver == nullptr || std::string(solver) != MATSOLVERPETSC) return;
+  check(PCReset(pc));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check(PCFactorSetMatOrderingType(pc, MATORDERINGEXTERNAL));
+}
+
+/// Takes another method after a failure: a line search, and pivots, after full steps, GMRES after conjugate
+/// gradients that met a matrix that is not positive definite. False: there is none, or the user has chosen.
+bool PetscSolver::try_otherwise(SNES snes, const NewtonOptions& options) {
   if (!options.linear) {
     if (!chose_full_steps_) return false;
-    SNESLineSearch search = nullptr;
-    check(SNESGetLineSearch(snes, &search));
-    check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+    SNESLineSearch steps = nullptr;
+    check(SNESGetLineSearch(snes, &steps));
+    check(SNESLineSearchSetType(steps, SNESLINESEARCHBT));
+    if (of_->slender) prefer_pivots(snes);
     return true;
   }
   KSP ksp = nullptr;
@@ -370,11 +424,11 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
                                 const NewtonOptions& options) {
   Solve solve{problem, options, {}, nullptr};
   const double start = MPI_Wtime();
-  OwnedMat matrix, action;
-  allocate(problem, &matrix);
-  give_rigid_motions(problem, matrix);
-  OwnedVec solution, r;
-  check(MatCreateVecs(matrix, &solution, &r));
+  now_ = &solve;
+  set_up(problem);
+  const Vec solution = of_->solution, r = of_->residual;
+  const SNES snes = of_->snes;
+  const Mat matrix = of_->values->matrix();
   const auto start_from_guess = [&] {
     PetscScalar* to = nullptr;
     check(VecGetArray(solution, &to));
@@ -382,13 +436,8 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
     check(VecRestoreArray(solution, &to));
   };
   start_from_guess();
-
-  OwnedSnes snes;
-  check(SNESCreate(comm_, &snes));
-  check(SNESSetFunction(snes, r, residual, &solve));
-  if (options.matrix_free) check(MatCreateSNESMF(snes, &action));
-  check(SNESSetJacobian(snes, options.matrix_free ? action : matrix, matrix, jacobian, &solve));
-  check(SNESSetConvergenceTest(snes, converged, &solve, nullptr));
+  if (options.matrix_free && of_->action.object == nullptr) check(MatCreateSNESMF(snes, &of_->action));
+  check(SNESSetJacobian(snes, options.matrix_free ? of_->action.object : matrix, matrix, jacobian, this));
   check(SNESSetTolerances(snes, 0, 0, 0, options.max_iterations, 100 * options.max_iterations));
   if (options.linear)
     choose_conjugate_gradients(snes, options.relative_tolerance);
@@ -445,6 +494,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   check(VecRestoreArrayRead(solution, &from));
   report.linear_seconds =
       MPI_Wtime() - start - report.structure_seconds - report.residual_seconds - report.jacobian_seconds;
+  now_ = nullptr;
   refuse_unused_options();
   return report;
 }
