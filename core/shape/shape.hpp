@@ -11,8 +11,7 @@
 //                       and its increment, take_strain() for the strain velocity
 //   Interpolation       sum_i S_i u_i of the velocity or its increment at a block's particles
 //   gradient            sum_i u_i (x) grad S_i of the strain velocity, into rows 0..8 (order of Mat3),
-//   columns
-//                       at .. at + 7
+//                       columns at .. at + 7
 //   cell_divergence     mean of div u over the cell of each particle, times `factor` (volume update `cell`)
 //   columns             the columns that its particles need beyond the mechanics
 //   deform              optional: the particles' domains follow the velocity gradient
@@ -20,11 +19,11 @@
 //   settle              optional: domains that Sample has carried along become those of the next step
 //   first_of_domain, columns_of_domain   optional: those of them that locating a particle reads
 //   nodes_per_axis, lowest_node   the nodes of a particle along an axis
-//   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: infrequent
-//   terms
+//   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: for
+//                       infrequent terms
 //   for_each_weight     optional: the same without the gradient, where that costs much
 //   momentum_block      optional: the nodes that momentum and mass reach, where forces reach more
-//   needs_cells      optional: whether BrickFrame::cells must be there
+//   needs_cells         optional: whether BrickFrame::cells must be there
 //
 // Kernels identify a node by its number in the brick's node block and read records of node_doubles.
 #pragma once
