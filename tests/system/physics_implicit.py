@@ -362,7 +362,7 @@ class Far(_mpm.Case):
                 self.assertEqual(_mpm.summary(self.folder / folder)["particles"], mine.size)
 
     def test_flight_over_bricks(self):
-        """Free flight of 10, 5 and 2.5 cells in a step, into bricks that nobody knows."""
+        """Free flight of 10, 5 and 2.5 cells in a step, into bricks that no rank knows yet."""
         body = _mpm.block("body", (2, 2, 2), (3, 3, 3), (10.0, 5.0, 2.5))
         text = _mpm.scene([body], _mpm.grid((0, 0, 0), (30, 20, 12)), implicit(2.0, "dynamic", 1.0), [SOFT])
         for ranks in (1, 2):
