@@ -115,7 +115,8 @@ class Gallery(_mpm.Case):
         self.assertGreater(elastic["pole"], 1.05 * stuck["pole"])
         self.assertGreater(elastic["speed"], 1.2 * stuck["speed"])
         self.assertTrue(95 <= rigid["crater"] <= 98, rigid["crater"])
-        self.assertLess(rigid["steps"], elastic["steps"] / 5)
+        # With finer cells; waves of the soil are slower than the shell, so that the strain limits the steps.
+        self.assertLess(rigid["steps"], elastic["steps"] / 4)
         # All soil in whose place the shell is taken along, and nothing else: 94.6 mm.
         self.assertAlmostEqual(rigid["pole"], _hemisphere.inelastic_depth(200, 0.62), delta=3)
         slow = self.measured(_hemisphere.JOB, _hemisphere.text(24, speed=45, end=24, shell="rigid"), _hemisphere.measure)
