@@ -56,13 +56,13 @@ struct Parallelepiped {
     sum[2] = (total[1] - total[0]) + (total[3] - total[2]);
     sum[3] = upper - lower;
   }
-  /// What each corner takes of a particle's `total`, shared out by S_i, and of `columns` by grad S_i.
+  /// What each corner takes of a particle's `total`, shared out by S_i, and of `flow` by grad S_i.
   template <class Place, class T>
-  static void distribute(const Place& place, int lane, T total, const T (&columns)[3], T (&to)[corners]) {
+  static void distribute(const Place& place, int lane, T total, const T (&flow)[3], T (&to)[corners]) {
     T along[3];
     for (int k = 0; k < 3; ++k) {
-      along[k] = columns[0] * T(place.slope[k][0][lane]);
-      for (int a = 1; a < 3; ++a) along[k] += columns[a] * T(place.slope[k][a][lane]);
+      along[k] = flow[0] * T(place.slope[k][0][lane]);
+      for (int a = 1; a < 3; ++a) along[k] += flow[a] * T(place.slope[k][a][lane]);
     }
     parallelepiped_corners(total * T(place.value[0][lane]), along[0], along[1], along[2], to);
   }
@@ -142,10 +142,10 @@ struct HexahedronDomain {
     for (int c = 0; c < corners; ++c) sum[c] = u[c];
   }
   template <class Place, class T>
-  static void distribute(const Place& place, int lane, T total, const T (&columns)[3], T (&to)[corners]) {
+  static void distribute(const Place& place, int lane, T total, const T (&flow)[3], T (&to)[corners]) {
     for (int c = 0; c < corners; ++c) {
       to[c] = total * T(place.value[c][lane]);
-      for (int a = 0; a < 3; ++a) to[c] += columns[a] * T(place.slope[c][a][lane]);
+      for (int a = 0; a < 3; ++a) to[c] += flow[a] * T(place.slope[c][a][lane]);
     }
   }
   static double* of(const ColumnLayout& layout, double* block) {
