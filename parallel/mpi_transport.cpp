@@ -33,7 +33,7 @@ std::int32_t existing(std::int32_t owner, const MigrationBuffer::Head& head) {
 void MpiTransport::migrate(const BrickGrid& grid, MigrationBuffer& particles,
                            std::span<const int> columns_of) {
   const std::vector<HaloPartner>& partners = halo_.partners(grid);
-  const auto self = static_cast<std::ptrdiff_t>(partners.size());
+  const auto stays = static_cast<std::ptrdiff_t>(partners.size());
   std::vector<std::uint32_t> destination;
   destination.reserve(particles.size());
   for (const MigrationBuffer::Head& head : particles.heads) {
@@ -46,20 +46,20 @@ void MpiTransport::migrate(const BrickGrid& grid, MigrationBuffer& particles,
                            ", but no brick of that rank is next to one of rank " +
                            std::to_string(comm_.rank()));
     }
-    destination.push_back(static_cast<std::uint32_t>(is_partner ? p - partners.begin() : self));
+    destination.push_back(static_cast<std::uint32_t>(is_partner ? p - partners.begin() : stays));
   }
 
-  const ParticleMessages messages = pack(particles, destination, partners.size() + 1, columns_of);
+  const ParticleMessages messages = pack(particles, destination, partners.size(), columns_of);
   Requests requests;
   for (std::size_t p = 0; p < partners.size(); ++p) {
     requests.send_unannounced(comm_, messages.of(p).data(), messages.of(p).size_bytes(), partners[p].rank,
                               tag_migrate);
   }
-  const auto stay = messages.of(partners.size());
-  std::vector<double> arrived(stay.begin(), stay.end());
-  for (const HaloPartner& p : partners) comm_.receive_onto(arrived, p.rank, tag_migrate);
+  drop_packed(particles, destination, partners.size());
+  const std::size_t arrivals = particles.columns.size();
+  for (const HaloPartner& p : partners) comm_.receive_onto(particles.columns, p.rank, tag_migrate);
   requests.wait_all();
-  particles = unpack(std::move(arrived), columns_of);
+  unpack(particles, arrivals, columns_of);
 }
 
 void MpiTransport::scatter(MigrationBuffer& particles, std::span<const int> columns_of) {
@@ -73,7 +73,8 @@ void MpiTransport::scatter(MigrationBuffer& particles, std::span<const int> colu
   const ParticleMessages messages =
       pack(particles, destination, static_cast<std::size_t>(comm_.size()), columns_of);
   particles = {};  // at most twice the particles at any time
-  particles = unpack(comm_.all_to_all(std::span<const double>(messages.data), messages.begin), columns_of);
+  particles.columns = comm_.all_to_all(std::span<const double>(messages.data), messages.begin);
+  unpack(particles, 0, columns_of);
 }
 
 }  // namespace mpm::parallel

@@ -28,6 +28,7 @@ ParticleMessages pack(const MigrationBuffer& particles, std::span<const std::uin
   ParticleMessages messages;
   messages.begin.resize(destinations + 1);
   for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (destination[i] == destinations) continue;
     messages.begin[destination[i] + 1] += head_doubles + columns(columns_of, particles.heads[i].body);
   }
   for (std::size_t d = 0; d < destinations; ++d) messages.begin[d + 1] += messages.begin[d];
@@ -35,6 +36,7 @@ ParticleMessages pack(const MigrationBuffer& particles, std::span<const std::uin
 
   std::vector<std::size_t> next(messages.begin.begin(), messages.begin.end() - 1);
   for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (destination[i] == destinations) continue;
     double* to = messages.data.data() + next[destination[i]];
     const std::size_t n = columns(columns_of, particles.heads[i].body);
     std::memcpy(to, &particles.heads[i], sizeof(MigrationBuffer::Head));
@@ -44,9 +46,22 @@ ParticleMessages pack(const MigrationBuffer& particles, std::span<const std::uin
   return messages;
 }
 
-MigrationBuffer unpack(std::vector<double> data, std::span<const int> columns_of) {
-  MigrationBuffer particles;
-  for (std::size_t at = 0; at < data.size();) {
+void drop_packed(MigrationBuffer& particles, std::span<const std::uint32_t> destination,
+                 std::size_t destinations) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (destination[i] != destinations) continue;
+    particles.heads[kept] = particles.heads[i];
+    particles.offsets[kept] = particles.offsets[i];
+    ++kept;
+  }
+  particles.heads.resize(kept);
+  particles.offsets.resize(kept);
+}
+
+void unpack(MigrationBuffer& particles, std::size_t begin, std::span<const int> columns_of) {
+  const std::vector<double>& data = particles.columns;
+  for (std::size_t at = begin; at < data.size();) {
     MigrationBuffer::Head head;
     const bool has_head = at + head_doubles <= data.size();
     if (has_head) std::memcpy(static_cast<void*>(&head), data.data() + at, sizeof head);
@@ -56,8 +71,6 @@ MigrationBuffer unpack(std::vector<double> data, std::span<const int> columns_of
     particles.offsets.push_back(at + head_doubles);
     at = end;
   }
-  particles.columns = std::move(data);
-  return particles;
 }
 
 }  // namespace mpm::parallel

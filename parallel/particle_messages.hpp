@@ -1,5 +1,6 @@
 // Messages of migrating particles: those for one rank are stored consecutively, each as its head, in two
-// doubles, and its columns. Received messages are read in place: the message becomes the buffer's columns.
+// doubles, and its columns. Messages are received at the end of a
+// buffer's columns and read in place.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +19,16 @@ struct ParticleMessages {
   }
 };
 
-/// `destination[i]`, below `destinations`, is the destination of particle i.
+/// `destination[i]` is the destination of particle i; particles with `destinations` stay and are left out.
 ParticleMessages pack(const core::MigrationBuffer& particles, std::span<const std::uint32_t> destination,
                       std::size_t destinations, std::span<const int> columns_of);
 
-/// The particles in `data`. Throws std::logic_error where pack() cannot have made `data`.
-core::MigrationBuffer unpack(std::vector<double> data, std::span<const int> columns_of);
+/// Removes the particles that pack() has taken; the others' columns remain where they are.
+void drop_packed(core::MigrationBuffer& particles, std::span<const std::uint32_t> destination,
+                 std::size_t destinations);
+
+/// Adds the particles in the messages that `columns` holds from `begin` on. Throws std::logic_error where
+/// pack() cannot have made them.
+void unpack(core::MigrationBuffer& particles, std::size_t begin, std::span<const int> columns_of);
 
 }  // namespace mpm::parallel

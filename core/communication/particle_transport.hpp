@@ -9,7 +9,7 @@
 
 namespace mpm::core {
 
-/// Migrating particles: their columns one after the other, and their destinations.
+/// Migrating particles: their columns, each particle's in a row, and their destinations.
 struct MigrationBuffer {
   struct Head {
     BrickCoord to;
@@ -26,11 +26,9 @@ struct MigrationBuffer {
     columns.insert(columns.end(), first, first + n);
   }
   std::size_t size() const { return heads.size(); }
-  /// Keeps the capacity of a typical step. Where a lattice moves with one velocity, whole layers cross at
-  /// once: too rare to keep that capacity.
+  /// Keeps the memory for the next step: where a lattice moves with one velocity, whole layers cross at once,
+  /// and fresh pages for them take as long as the copies.
   void clear() {
-    constexpr std::size_t kept = std::size_t{1} << 18;  // doubles
-    if (columns.capacity() > kept) *this = {};
     heads.clear();
     offsets.clear();
     columns.clear();
