@@ -2,13 +2,19 @@
 
 #include <cerrno>
 #include <condition_variable>
+#include <cstdlib>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <omp.h>
 #include <unistd.h>
+
+#include "core/scene/limits.hpp"
+#include "core/simd/denormals.hpp"
 
 namespace mpm::apps {
 
@@ -30,6 +36,10 @@ std::string why_no_descriptors() {
   return refusal;
 }
 
+namespace {
+
+/// Starts `more` additional threads at once and ends them. Returns an empty text or the system's message.
+/// They use the default stack size; a larger OMP_STACKSIZE is not tested.
 std::string why_no_threads(int more) {
   std::mutex mutex;
   std::condition_variable change;
@@ -51,6 +61,35 @@ std::string why_no_threads(int more) {
   change.notify_all();
   for (std::thread& t : threads) t.join();
   return refusal;
+}
+
+}  // namespace
+
+int choose_threads(const core::Scene& scene) {
+  const bool environment = std::getenv("OMP_NUM_THREADS") != nullptr;
+  const int threads = scene.solution.threads.value_or(environment ? omp_get_max_threads() : 1);
+  if (threads > core::most_threads) {
+    throw core::InputErrors(core::SourceLocation{}, {},
+                            fmt::format("{} threads per rank are more than {}: set OMP_NUM_THREADS lower",
+                                        threads, core::most_threads));
+  }
+  omp_set_num_threads(threads);
+  return threads;
+}
+
+void start_threads(int threads, core::Reductions& ranks) {
+  const std::string refusal = why_no_threads(threads - 1);
+  if (ranks.any(!refusal.empty())) {
+    for (const std::string& text : ranks.gather(refusal)) {
+      if (!text.empty())
+        throw NoThreads(
+            fmt::format("the system refuses {} threads per rank: {}; request fewer with OpenMPSetting "
+                        "or OMP_NUM_THREADS, or raise the limit (ulimit -u, ulimit -v)",
+                        threads, text));
+    }
+  }
+#pragma omp parallel
+  core::flush_denormals_to_zero();
 }
 
 }  // namespace mpm::apps

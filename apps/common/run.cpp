@@ -1,27 +1,19 @@
 #include "apps/common/run.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include "apps/common/case.hpp"
+#include "apps/common/describe.hpp"
 #include "apps/common/outputs.hpp"
 #include "apps/common/resources.hpp"
 #include "apps/common/stop.hpp"
 #include "apps/common/watch.hpp"
 #include "core/contact/overlaps.hpp"
 #include "core/contact/rigid_bodies.hpp"
-#include "core/particle_range.hpp"
-#include "core/scene/limits.hpp"
 #include "core/setup/build_model.hpp"
-#include "core/setup/memory.hpp"
 #include "core/setup/prepare_model.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/finite.hpp"
@@ -41,118 +33,6 @@
 namespace mpm::apps {
 
 namespace {
-
-/// Threads per rank: from the scene, else from the environment, else one, so that many ranks on few cores
-/// stay efficient.
-int choose_threads(const core::Scene& scene) {
-  const bool environment = std::getenv("OMP_NUM_THREADS") != nullptr;
-  const int threads = scene.solution.threads.value_or(environment ? omp_get_max_threads() : 1);
-  if (threads > core::most_threads) {
-    throw core::InputErrors(core::SourceLocation{}, {},
-                            fmt::format("{} threads per rank are more than {}: set OMP_NUM_THREADS lower",
-                                        threads, core::most_threads));
-  }
-  omp_set_num_threads(threads);
-  return threads;
-}
-
-/// Starts all threads at once. OpenMP terminates the program if the system refuses one, so this is tested
-/// first. Throws NoThreads on every rank if any rank is refused. Collective.
-void start_threads(int threads, core::Communication& communication) {
-  const std::string refusal = why_no_threads(threads - 1);
-  if (communication.reductions.any(!refusal.empty())) {
-    for (const std::string& text : communication.reductions.gather(refusal)) {
-      if (!text.empty())
-        throw NoThreads(
-            fmt::format("the system refuses {} threads per rank: {}; request fewer with OpenMPSetting "
-                        "or OMP_NUM_THREADS, or raise the limit (ulimit -u, ulimit -v)",
-                        threads, text));
-    }
-  }
-#pragma omp parallel
-  core::flush_denormals_to_zero();
-}
-
-std::string bytes_in_words(double bytes) {
-  return bytes < 1e6   ? fmt::format("{:.1f} kB", bytes / 1e3)
-         : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6)
-                       : fmt::format("{:.2f} GB", bytes / 1e9);
-}
-
-/// A line for each body, up to a maximum.
-void describe_bodies(const core::Model& model, io::Log& log) {
-  constexpr std::size_t most = 100;
-  const int common = core::ColumnSet::mechanics().size();
-  for (std::size_t b = 0; b < std::min(model.bodies.size(), most); ++b) {
-    const core::Body& body = model.bodies[b];
-    const core::ColumnLayout& layout = body.pool->layout();
-    std::string more;
-    for (int c = common; c < core::column_count; ++c) {
-      if (layout.has(static_cast<core::Column>(c)))
-        more += fmt::format(" {}", core::name_of(static_cast<core::Column>(c)));
-    }
-    log.say("body       \"{}\" of \"{}\": {} bytes per particle{}{}", body.name, body.model->name(),
-            layout.bytes_per_particle(), more.empty() ? "" : ", beyond the mechanics", more);
-  }
-  if (model.bodies.size() > most) log.say("body       {} more bodies", model.bodies.size() - most);
-}
-
-/// Size and cost of the scene, for a dry run and the head of the log.
-void describe(const core::Model& model, const core::Stepper& stepper, core::Communication& communication,
-              int threads, io::Log& log) {
-  const core::GridGeometry& g = model.grid->geometry();
-  std::int64_t counts[2] = {static_cast<std::int64_t>(model.local_particles()), model.grid->owned()};
-  const auto particles = communication.reductions.spread(static_cast<double>(counts[0]));
-  const core::MemoryNeed need = core::memory_need(model);
-  const auto memory = communication.reductions.spread(need.total());
-  communication.reductions.sum(std::span<std::int64_t>(counts));
-  log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use",
-          g.cells[0], g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
-  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} per rank", counts[0],
-          communication.reductions.size(), threads, particles.min, particles.max);
-  log.say("memory     {} for particles, bricks and bodies, maximum over the ranks",
-          bytes_in_words(memory.max));
-  describe_bodies(model, log);
-  std::string phases;
-  for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
-  log.say("step       {}", phases);
-  const double critical = model.clock.critical_dt;
-  log.say("time step  critical {}, end time {:.6g}",
-          std::isfinite(critical) ? fmt::format("{:.6g}", critical) : "without limit",
-          model.scene->solution.end_time);
-}
-
-/// A body with an initial temperature, at the density of a cold one, starts under thermal pressure: a note
-/// gives the density (to first order) that avoids it. Collective.
-void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log) {
-  const std::vector<const core::BodyInput*> inputs = core::active_bodies(*model.scene);
-  if (std::ranges::none_of(inputs, [](const auto* input) { return input->initial_temperature.has_value(); }))
-    return;
-  std::vector<double> lowest(2 * model.bodies.size(), 0.0);  // minima of the pressure and of its negative
-  for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
-    const auto b = static_cast<std::size_t>(block.body);
-    if (!inputs[b]->initial_temperature) continue;
-    for (const core::ConstParticle p : block) {
-      lowest[2 * b] = std::min(lowest[2 * b], p[core::Column::pressure]);
-      lowest[2 * b + 1] = std::min(lowest[2 * b + 1], -p[core::Column::pressure]);
-    }
-  }
-  ranks.minimum(lowest);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const double p = -lowest[2 * b + 1] > -lowest[2 * b] ? -lowest[2 * b + 1] : lowest[2 * b];
-    const core::ConstitutiveModel& material = *model.bodies[b].model;
-    const double c = material.initial_sound_speed(), s = material.initial_shear_speed();
-    const double bulk = material.reference_density() * (c * c - 4.0 / 3 * s * s);
-    if (!inputs[b]->initial_temperature || !(std::abs(p) > 1e-6 * bulk)) continue;
-    const double change = p / bulk;
-    log.note("note       body '{}' starts with the pressure {:.6g}, including thermal pressure{}",
-             model.bodies[b].name, p,
-             std::abs(change) > 0.1
-                 ? ""
-                 : fmt::format("; with density=\"{:.6g}\" it would start nearly free of pressure",
-                               inputs[b]->density * (1 - change)));
-  }
-}
 
 /// Adds the bodies that the restart file does not have, with a note for each. Collective.
 std::vector<std::string> add_new_bodies(core::Model& model, const std::vector<std::size_t>& numbers,
@@ -176,7 +56,7 @@ class Run {
       : options_(options), communication_(world), case_(load_case(options, world, registry.catalogue())) {
     core::flush_denormals_to_zero();
     threads_ = choose_threads(*case_.scene);
-    start_threads(threads_, communication_);
+    start_threads(threads_, communication_.reductions);
     start_solver(world);
     core::check_decomposition(case_.scene->decomposition, communication_.reductions.size());
     model_ = core::prepare_model(case_.scene, physics::make_materials(*case_.scene, registry),
@@ -203,7 +83,7 @@ class Run {
       log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step,
                 model_.clock.time);
     stepper_.emplace(model_, communication_);
-    describe(model_, *stepper_, communication_, threads_, *log_);
+    describe(model_, *stepper_, communication_.reductions, threads_, *log_);
     for (const std::string& law : registry.added()) log_->note("law        {}, added by this program", law);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
     if (!case_.restart) say_thermal_pressures(model_, communication_, *log_);
@@ -382,37 +262,6 @@ class Run {
     save_seconds_ += clock_.seconds() - before;
   }
 
-  /// Reports states that were corrected or limited, in particles times steps. Collective.
-  void say_what_was_counted() {
-    const core::MaterialEvents& events = model_.ledger.events;
-    std::int64_t counts[] = {events.failed,
-                             events.negative_volume,
-                             events.volume_limited,
-                             events.undefined_root,
-                             events.unresolved,
-                             model_.ledger.velocity_limited,
-                             model_.ledger.wide_domains,
-                             model_.ledger.tangled_domains};
-    const bool boxes = model_.scene->grid.shape == core::ShapeFunction::contiguous_particle_gimp;
-    const char* const words[] = {
-        "failed",
-        "with an update to zero or negative volume; the old volume was kept",
-        "limited by Volume min or max",
-        "with undefined wave speed: its square was negative, or the compression exceeded the limit of the "
-        "equation of state",
-        "with a strain increment too large for the return to the yield surface: use a smaller TimeStep "
-        "factor",
-        "limited by LimitVelocity",
-        boxes ? "with a domain wider than a cell, limited to one cell: use CPDI or larger cells"
-              : "with a domain that extends more than a cell from the particle, limited to one cell: use "
-                "larger cells",
-        "with a tangled domain, replaced by a parallelepiped or a cube: use smaller steps or CPDI"};
-    communication_.reductions.sum(std::span<std::int64_t>(counts));
-    for (std::size_t i = 0; i < std::size(counts); ++i) {
-      if (counts[i] > 0) log_->say("counted    {} particle(s) {}", counts[i], words[i]);
-    }
-  }
-
   void conclude(const std::string& status, const std::string& reason, double loop_seconds) {
     io::RunReport report;
     report.status = status;
@@ -439,7 +288,7 @@ class Run {
           totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic,
           totals.removed_internal);
     }
-    say_what_was_counted();
+    say_what_was_counted(model_, communication_.reductions, *log_);
     watch_->conclude(*log_);
     if (status == "failed") {
       log_->say("FAILED     {}", reason);

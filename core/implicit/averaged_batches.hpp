@@ -1,5 +1,5 @@
 // Averaged volume changes in the passes of an implicit step (site_dilatation.hpp for the formulas): the means
-// of a tile are found in a pass of their own before its particles are.
+// of a tile are found in a pass of their own before its particles are. Part of implicit_passes_with.hpp.
 #pragma once
 
 #include "core/contact/rigid_state.hpp"

@@ -1,8 +1,9 @@
-// What a step would do to the particles (step_motion.hpp), batch by batch: the part of
-// implicit_passes_with.hpp that finds it. Included there alone.
+// What a step would do to the particles (step_motion.hpp), batch by batch. Part of
+// implicit_passes_with.hpp.
 #pragma once
 
 #include "core/implicit/implicit_passes_with.hpp"
+#include "core/step/grid_to_particles.hpp"
 
 namespace mpm::core {
 

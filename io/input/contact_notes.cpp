@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/contact/component_contact.hpp"
+#include "core/discretise/solid_box.hpp"
 
 namespace mpm::io {
 
@@ -120,12 +121,62 @@ void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::D
                    "impulses of contact. Use MUSL"});
 }
 
+/// Two bodies of different components whose bounding boxes are less than a cell apart at the start.
+std::string touching(const core::Scene& scene) {
+  struct Item {
+    core::SolidBox box;
+    std::size_t component;
+    const std::string* name;
+  };
+  std::vector<Item> items;
+  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
+    const core::SolidBox box = core::solid_box(scene, body);
+    if (!box.empty()) items.push_back({box, static_cast<std::size_t>(component), &body.name});
+  });
+  std::ranges::sort(items, {}, [](const Item& item) { return item.box.lower[0]; });
+  std::size_t left = 1'000'000;  // maximum number of pairs to test; in a larger scene the note names none
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    for (std::size_t j = i + 1; j < items.size() && left-- > 0; ++j) {
+      const auto apart = [&](std::size_t a) {
+        const double cell = scene.grid.axes[a].cell_size;
+        return items[j].box.lower[a] - items[i].box.upper[a] > cell ||
+               items[i].box.lower[a] - items[j].box.upper[a] > cell;
+      };
+      if (apart(0)) break;
+      if (items[i].component != items[j].component && !apart(1) && !apart(2))
+        return fmt::format("bodies '{}' and '{}' touch at the start; ", *items[i].name, *items[j].name);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 void note_contact(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   note_driven(scene, notes);
   note_scheme(root, scene, notes);
   note_tied_weights(root, scene, notes);
+}
+
+void note_no_contact(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const core::ComponentInput* second = nullptr;
+  int first = -1, count = 0, rigid_bodies = 0;
+  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
+    ++count;
+    if (is_rigid(scene, body)) ++rigid_bodies;
+    if (first < 0) first = component;
+    if (component != first && second == nullptr)
+      second = &scene.components[static_cast<std::size_t>(component)];
+  });
+  const auto add = [&](const core::SourceLocation& at, std::string message) {
+    notes.push_back({at.file, at.line, "Component", {}, {}, std::move(message)});
+  };
+  if (rigid_bodies > 1)
+    return add(scene.components.front().source, "rigid bodies pass through each other without contact");
+  if (second != nullptr && rigid_bodies < count)
+    add(second->source, touching(scene) +
+                            "without contact, bodies of different components that come within a cell of each "
+                            "other stick together: they neither slide nor separate");
 }
 
 }  // namespace mpm::io

@@ -1,4 +1,4 @@
-// Notes on scenes with contact that are valid, but may not do what is wanted.
+// Notes on bodies that meet, in scenes that are valid, but may not do what is wanted.
 #pragma once
 
 #include <vector>
@@ -9,6 +9,9 @@
 
 namespace mpm::io {
 
+/// With contact.
 void note_contact(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+/// Consequences of several components without contact.
+void note_no_contact(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
 }  // namespace mpm::io

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "core/discretise/solid_box.hpp"
 #include "io/input/contact_notes.hpp"
+#include "io/input/idle_rules.hpp"
 #include "io/input/text.hpp"
 
 namespace mpm::io {
@@ -17,344 +17,6 @@ namespace {
 
 using core::MaterialInput;
 using core::Scene;
-
-/// Position in the traversal of the input: the element, and its material or body.
-struct Place {
-  const Scene& scene;
-  const Node& node;
-  const MaterialInput* material = nullptr;
-  const core::BodyInput* body = nullptr;
-  /// Operands of the Bool bodies.
-  const std::unordered_set<const core::BodyInput*>* operands = nullptr;
-
-  const core::LawInput& strength() const { return material->strength; }
-  double eos(std::string_view name) const { return material->eos ? material->eos->value_or(name, 0) : 0; }
-};
-
-bool contact_is_off(const Place& at) { return !at.scene.contact.enable; }
-bool regression(const Place& at) { return at.scene.contact.enable && at.scene.contact.regression; }
-
-const MaterialInput& material_of(const Scene& scene, const core::BodyInput& body) {
-  return scene.materials[body.material];
-}
-
-template <class Test>
-bool any_body(const Scene& scene, Test test) {
-  return std::ranges::any_of(scene.components, [&](const core::ComponentInput& component) {
-    return std::ranges::any_of(component.bodies, test);
-  });
-}
-
-bool unused_material(const Place& at) {
-  const auto number = static_cast<std::size_t>(at.material - at.scene.materials.data());
-  return !any_body(at.scene, [&](const core::BodyInput& body) { return body.material == number; });
-}
-
-bool unused_plane(const Place& at) {
-  const std::string name = at.node.word("name");
-  return !any_body(at.scene, [&](const core::BodyInput& body) {
-    return body.work_plane && at.scene.work_planes[*body.work_plane].name == name;
-  });
-}
-
-bool rigid(const MaterialInput& material) { return material.strength.type == "Rigid"; }
-
-/// Whether the law itself has damage.
-bool has_damage(const Place& at) {
-  const std::string& type = at.strength().type;
-  return type == "HolmquistJohnsonCook" || type == "RHT" || type == "JH2" ||
-         (type == "JohnsonCook" && at.strength().has("D1"));
-}
-
-bool can_fail(const Place& at) {
-  const std::string& type = at.strength().type;
-  return !at.material->failures.empty() || has_damage(at) || type == "DruckerPrager" || type == "DFFoam" ||
-         type == "Gurson";
-}
-
-bool failed_type_is_not(const Place& at, int type) { return at.strength().value_or("FailedType", 0) != type; }
-
-/// Nothing reads FailureDamageThreshold.
-bool no_damage_rule(const Place& at) {
-  return (contact_is_off(at) || !at.scene.contact.failed_to_component) &&
-         at.strength().value_or("DamageToFail", 0) == 0;
-}
-
-bool all_zero(const Place& at) {
-  return at.node.word("type") != "none" &&
-         std::ranges::all_of(at.node.spec().attributes, [&](const AttributeSpec& row) {
-           return row.type != ValueType::real || !row.applies_to(at.node.type()) ||
-                  at.node.real(row.name) == 0;
-         });
-}
-
-bool operand(const Place& at) { return at.body->for_bool; }
-
-bool nothing_explodes(const Place& at) {
-  return !any_body(at.scene, [&](const core::BodyInput& body) {
-    const core::LawInput& law = material_of(at.scene, body).strength;
-    return law.type == "HighExpBurn" && law.value_or("beta", 2) != 1;
-  });
-}
-
-bool no_free_face(const Place& at) {
-  return std::ranges::none_of(at.scene.grid.axes, [](const core::GridAxis& axis) {
-    return axis.lower == core::Boundary::free || axis.upper == core::Boundary::free;
-  });
-}
-
-bool all_rigid(const Place& at) {
-  return !any_body(at.scene,
-                   [&](const core::BodyInput& body) { return !rigid(material_of(at.scene, body)); });
-}
-
-bool no_pictures(const Place& at) {
-  const auto& post = at.scene.output.post_processing;
-  return !post || (!post->h5part && post->vtk == core::PostProcessingInput::Vtk::none);
-}
-
-bool steps_are_implicit(const Place& at) {
-  return at.scene.solution.integration == core::Integration::implicit;
-}
-bool steps_are_explicit(const Place& at) { return !steps_are_implicit(at); }
-
-using Random = core::RandomFailureInput;
-const Random& random(const Place& at) { return at.material->random_failure; }
-
-/// A setting that may have no effect.
-struct Rule {
-  std::string_view path;  ///< of the element
-  /// Attributes checked where they are given with a value other than the default; none: the element itself;
-  /// "*": all attributes of the element except the first, its switch.
-  std::vector<std::string_view> attributes;
-  bool (*idle)(const Place&);
-  std::string_view why;
-};
-
-const std::vector<Rule>& rules() {
-  static constexpr std::string_view no_contact = "used only by Contact, which is off";
-  static constexpr std::string_view no_weights =
-      "with contact_normal=\"regression\" the particles of both bodies give the normal";
-  static constexpr std::string_view no_part = "an operand of Bool bodies takes no part in the run";
-  static const std::vector<Rule> table{
-      {"Solution/Implicit", {}, steps_are_explicit, "used only with Integration=\"impl\""},
-      {"Solution/Implicit",
-       {"newmark_beta", "newmark_gamma"},
-       [](const Place& at) {
-         const core::ImplicitInput& input = *at.scene.solution.implicit;
-         return input.type != core::ImplicitType::dynamic || input.rule != core::ImplicitRule::newmark;
-       },
-       "used only by Newmark's rule of dynamic problems"},
-      {"Solution/Implicit",
-       {"spectral_radius"},
-       [](const Place& at) {
-         const core::ImplicitInput& input = *at.scene.solution.implicit;
-         return input.type != core::ImplicitType::dynamic ||
-                input.rule != core::ImplicitRule::generalised_alpha;
-       },
-       "used only by rule=\"generalised_alpha\" of dynamic problems"},
-      {"Solution/Implicit",
-       {"rule"},
-       [](const Place& at) { return at.scene.solution.implicit->type != core::ImplicitType::dynamic; },
-       "used only by type=\"dynamic\""},
-      {"Solution/Implicit",
-       {"max_newton", "atol"},
-       [](const Place& at) { return at.scene.solution.implicit->linearised(); },
-       "type=\"semi\" solves one linear system per step, to rtol"},
-      {"Solution/TimeStep", {}, steps_are_implicit, "implicit steps take their length from Implicit"},
-      {"Solution",
-       {"algorithm"},
-       steps_are_implicit,
-       "implicit steps have one scheme: the stress at the end of the step"},
-      {"Material", {}, unused_material, "no body is made of this material"},
-      {"Material/StrengthModel",
-       {"TensileCutoff"},
-       [](const Place& at) { return failed_type_is_not(at, 2); },
-       "used only with FailedType=\"2\""},
-      {"Material/StrengthModel",
-       {"FailedType", "FailViscosity"},
-       [](const Place& at) { return !can_fail(at); },
-       "applies only to failed particles, and this material cannot fail"},
-      {"Material/StrengthModel",
-       {"FailureDamageThreshold"},
-       no_damage_rule,
-       "used only with Contact failure_to_component=\"1\", or with DamageToFail=\"1\" of "
-       "HolmquistJohnsonCook"},
-      {"Material/StrengthModel",
-       {"PlasticWorkCoefficient"},
-       [](const Place& at) { return !at.strength().has("SpecHeat"); },
-       "requires SpecHeat, which is not given"},
-      {"Material/StrengthModel",
-       {"roomt"},
-       [](const Place& at) { return !at.strength().has("SpecHeat"); },
-       "there is no temperature without SpecHeat"},
-      {"Material/StrengthModel",
-       {"SpecHeat"},
-       [](const Place& at) {
-         return at.node.spec().attribute("PlasticWorkCoefficient", at.node.type()) == nullptr &&
-                at.strength().value_or("TemperatureCoefficient", 0) == 0 &&
-                at.strength().value_or("CoefficientOfThermalConductivity", 0) == 0;
-       },
-       "nothing heats this material"},
-      {"Material/StrengthModel",
-       {"*"},
-       [](const Place& at) { return rigid(*at.material); },
-       "a rigid body has neither stress nor heat"},
-      {"Material/StrengthModel",
-       {"Young", "Poisson"},
-       [](const Place& at) {
-         const std::string& type = at.strength().type;
-         return type == "HighExpBurn" || (type == "Null" && at.material->eos);
-       },
-       "the equation of state determines the stiffness"},
-      {"Material/StrengthModel",
-       {"limiter"},
-       [](const Place& at) {
-         return !rigid(*at.material) && at.strength().value_or("bq1", 0) == 0 &&
-                at.strength().value_or("bq2", 0) == 0;
-       },
-       "bq1 and bq2 are 0: there is no artificial viscosity to limit"},
-      {"Material/StrengthModel",
-       {"limiter"},
-       [](const Place& at) { return !rigid(*at.material) && steps_are_implicit(at); },
-       "implicit steps have no artificial viscosity"},
-      {"Material/EquationOfState",
-       {"c0", "c1", "c2", "c3", "c4", "c5", "c6"},
-       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 1; },
-       "used only with EOSID=\"1\""},
-      {"Material/EquationOfState",
-       {"A1", "A2", "A3", "B0", "B1", "T1", "T2"},
-       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 2; },
-       "used only with EOSID=\"2\""},
-      {"Material/EquationOfState",
-       {"S1", "gamma0", "simplified"},
-       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 3; },
-       "used only with EOSID=\"3\""},
-      {"Material/FailureModel",
-       {"Erosion"},
-       [](const Place& at) { return at.node.type() == "none"; },
-       "type none has no criterion"},
-      {"Material/FailureModel", {}, all_zero, "all its bounds are 0, which switches it off"},
-      {"Material/RandomFailure",
-       {"*"},
-       [](const Place& at) { return !random(at).enable; },
-       "RandomFailure is off"},
-      {"Material/RandomFailure",
-       {"enable"},
-       [](const Place& at) { return random(at).distribution == Random::Distribution::constant; },
-       "FailDistribution 0 gives every particle the same thresholds"},
-      {"Material/RandomFailure",
-       {"enable"},
-       [](const Place& at) {
-         return random(at).distribution != Random::Distribution::constant && !can_fail(at);
-       },
-       "this material cannot fail"},
-      {"Material/RandomFailure",
-       {"GaussMean", "GaussStd"},
-       [](const Place& at) {
-         return random(at).enable && random(at).distribution != Random::Distribution::gauss;
-       },
-       "used only with FailDistribution=\"1\""},
-      {"Material/RandomFailure",
-       {"WeibMed", "WeibMod", "WeibRefVol", "WeibPartVol"},
-       [](const Place& at) {
-         return random(at).enable && random(at).distribution != Random::Distribution::weibull;
-       },
-       "used only with FailDistribution=\"2\""},
-      {"Material/RandomFailure",
-       {"DamageRandom"},
-       [](const Place& at) { return random(at).enable && !has_damage(at); },
-       "the law of this material has no damage"},
-      {"Friction", {}, contact_is_off, no_contact},
-      {"WorkPlane", {}, unused_plane, "no body uses this work plane"},
-      {"Component", {"normal_vector_weight"}, contact_is_off, no_contact},
-      {"Component", {"normal_vector_weight"}, regression, no_weights},
-      {"Contact",
-       {"auto_normal_vector_weight", "normal_vector_excluding_failure_particle"},
-       regression,
-       no_weights},
-      {"Component/Body",
-       {"ForBoolBody"},
-       [](const Place& at) { return operand(at) && !at.operands->contains(at.body); },
-       "no Bool body uses this body, and it takes no part in the run"},
-      {"Component/Body", {"density"}, operand, "the density of the Bool body applies"},
-      {"Component/Body/InitialVelocity", {}, operand, no_part},
-      {"Component/Body/InitialTemperature", {}, operand, no_part},
-      {"Component/Body/PrescribedVelocity", {}, operand, no_part},
-      {"Component/Body/PrescribedAcceleration", {}, operand, no_part},
-      {"Component/Body/HarmExcit", {}, operand, no_part},
-      {"Component/Body/BodyForce", {}, operand, no_part},
-      {"Component/Body/Traction", {}, operand, no_part},
-      {"Component/Body/ConstrainRigidPosition", {}, operand, no_part},
-      {"Component/Body/BodyContrl", {}, operand, no_part},
-      {"Component/Body/InitialVelocity",
-       {"vx", "vy", "vz"},
-       [](const Place& at) { return at.body->prescribed_velocity.has_value(); },
-       "PrescribedVelocity replaces it from the start"},
-      {"Component/Body/PrescribedAcceleration/Coefficient",
-       {"crx", "cry", "crz"},
-       [](const Place& at) {
-         return at.body->prescribed_acceleration->angular_amplitude == core::Vec3<double>{};
-       },
-       "multiplies arx, ary, arz, which are 0"},
-      {"Component/Body/ConstrainRigidPosition",
-       {},
-       [](const Place& at) { return !at.body->constrain_rigid_position; },
-       "0 is equivalent to omitting the element: a rigid body follows PrescribedVelocity, or without it "
-       "moves freely"},
-      {"Component/Body/BodyContrl", {"NoOutput"}, no_pictures, "no PostProcessing writes particles"},
-      {"Detonation", {}, nothing_explodes, "no body has a HighExpBurn material with beta 0 or 2"},
-      {"Grid/Cell/MovingGrid",
-       {"*"},
-       [](const Place& at) { return !at.scene.grid.moving.enable; },
-       "MovingGrid is off"},
-      {"Grid/DynamicCell",
-       {"enable", "clear_steps"},
-       [](const Place&) { return true; },
-       "only cells with particles are stored in any case"},
-      {"Contact", {"*"}, contact_is_off, "Contact is off"},
-      {"Solution",
-       {"near_boundary_stop"},
-       no_free_face,
-       "applies only to grid faces with boundary=\"0\", and there are none"},
-      {"Solution",
-       {"xpic_order", "xpic_interval"},
-       [](const Place& at) { return !core::is_corrected(at.scene.solution.transfer); },
-       "used only with transfer XPIC and FMPM"},
-      {"Solution",
-       {"mass"},
-       [](const Place& at) {
-         return at.scene.solution.mass == core::MassMatrix::consistent && all_rigid(at);
-       },
-       "it does not apply to rigid bodies"},
-      {"Solution/TimeStep",
-       {"factor", "const", "NotConsiderVisForCp"},
-       [](const Place& at) { return at.scene.solution.time_step.specified > 0; },
-       "the specified step is used instead"},
-      {"Solution/LimitVelocity", {}, all_rigid, "it does not apply to rigid bodies"},
-      {"Solution/Volumetric", {"averaging"}, all_rigid, "rigid bodies keep their volume"},
-      {"Solution/Volumetric",
-       {"relaxation"},
-       [](const Place& at) { return at.scene.solution.averaging == core::VolumeAveraging::none; },
-       "used only with averaging=\"cell\""},
-      {"Solution/DynamicRelax", {}, all_rigid, "it does not apply to rigid bodies"},
-      {"Solution/OpenMPSetting",
-       {"directionofdecomposition"},
-       [](const Place&) { return true; },
-       "bricks of cells are shared among the threads"},
-      {"Output/PostProcessing", {}, no_pictures, "neither h5part nor vtk_data requests a file"},
-      {"Output/Restart",
-       {},
-       [](const Place& at) { return *at.scene.output.restart_interval > at.scene.solution.end_time; },
-       "the interval is longer than the run: no restart file is written at intervals"},
-      {"Output/Summary", {"enable"}, [](const Place&) { return true; }, "Job.summary.json is always written"},
-      {"DomainDecomposition",
-       {"dimension0", "dimension1", "dimension2"},
-       [](const Place& at) { return at.scene.decomposition.method == core::PartitionMethod::metis; },
-       "method metis does not use them, except that their product must be the number of ranks"},
-  };
-  return table;
-}
 
 /// Whether the attribute is given with a value other than the default; the default of a required number is 0.
 bool asked(const Node& node, std::string_view attribute) {
@@ -367,7 +29,7 @@ bool asked(const Node& node, std::string_view attribute) {
   return number && default_number ? *number != *default_number : value != standard;
 }
 
-std::vector<std::string> asked(const Node& node, const Rule& rule) {
+std::vector<std::string> asked(const Node& node, const IdleRule& rule) {
   std::vector<std::string> names;
   const auto add = [&](std::string_view name) {
     if (asked(node, name) && std::ranges::find(names, name) == names.end()) names.emplace_back(name);
@@ -382,7 +44,8 @@ std::vector<std::string> asked(const Node& node, const Rule& rule) {
 
 class Walk {
  public:
-  explicit Walk(const Scene& scene) : scene_(scene), times_(rules().size()), notes_(rules().size()) {
+  explicit Walk(const Scene& scene)
+      : scene_(scene), times_(idle_rules().size()), notes_(idle_rules().size()) {
     for (const core::ComponentInput& component : scene.components)
       for (const core::BodyInput& body : component.bodies)
         if (const auto* difference = std::get_if<core::BoolGeometry>(&body.geometry))
@@ -398,8 +61,8 @@ class Walk {
       bodies_ = 0;
     }
     if (path == "Component/Body") body = &component_->bodies[bodies_++];
-    for (std::size_t i = 0; i < rules().size(); ++i)
-      if (rules()[i].path == path) apply(i, {scene_, node, material, body, &operands_});
+    for (std::size_t i = 0; i < idle_rules().size(); ++i)
+      if (idle_rules()[i].path == path) apply(i, {scene_, node, material, body, &operands_});
     for (const ElementSpec& child : node.spec().children)
       for (const Node& n : node.children(child.name))
         element(n, path.empty() ? child.name : path + "/" + child.name, material, body);
@@ -417,8 +80,8 @@ class Walk {
   }
 
  private:
-  void apply(std::size_t number, const Place& at) {
-    const Rule& rule = rules()[number];
+  void apply(std::size_t number, const SettingPlace& at) {
+    const IdleRule& rule = idle_rules()[number];
     std::vector<std::string> names;
     if (!rule.attributes.empty()) {
       names = asked(at.node, rule);
@@ -447,66 +110,16 @@ class Walk {
   const core::ComponentInput* component_ = nullptr;
 };
 
-/// Two bodies of different components whose bounding boxes are less than a cell apart at the start.
-std::string touching(const Scene& scene) {
-  struct Item {
-    core::SolidBox box;
-    std::size_t component;
-    const std::string* name;
-  };
-  std::vector<Item> items;
-  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
-    const core::SolidBox box = core::solid_box(scene, body);
-    if (!box.empty()) items.push_back({box, static_cast<std::size_t>(component), &body.name});
-  });
-  std::ranges::sort(items, {}, [](const Item& item) { return item.box.lower[0]; });
-  std::size_t left = 1'000'000;  // maximum number of pairs to test; in a larger scene the note names none
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    for (std::size_t j = i + 1; j < items.size() && left-- > 0; ++j) {
-      const auto apart = [&](std::size_t a) {
-        const double cell = scene.grid.axes[a].cell_size;
-        return items[j].box.lower[a] - items[i].box.upper[a] > cell ||
-               items[i].box.lower[a] - items[j].box.upper[a] > cell;
-      };
-      if (apart(0)) break;
-      if (items[i].component != items[j].component && !apart(1) && !apart(2))
-        return fmt::format("bodies '{}' and '{}' touch at the start; ", *items[i].name, *items[j].name);
-    }
-  }
-  return {};
-}
-
-/// Consequences of several components without contact.
-void note_components(const Scene& scene, std::vector<core::Diagnostic>& notes) {
-  if (scene.contact.enable) return;
-  const core::ComponentInput* second = nullptr;
-  int first = -1, count = 0, rigid_bodies = 0;
-  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
-    ++count;
-    if (rigid(material_of(scene, body))) ++rigid_bodies;
-    if (first < 0) first = component;
-    if (component != first && second == nullptr)
-      second = &scene.components[static_cast<std::size_t>(component)];
-  });
-  const auto add = [&](const core::SourceLocation& at, std::string message) {
-    notes.push_back({at.file, at.line, "Component", {}, {}, std::move(message)});
-  };
-  if (rigid_bodies > 1)
-    return add(scene.components.front().source, "rigid bodies pass through each other without contact");
-  if (second != nullptr && rigid_bodies < count)
-    add(second->source, touching(scene) +
-                            "without contact, bodies of different components that come within a cell of each "
-                            "other stick together: they neither slide nor separate");
-}
-
 }  // namespace
 
 std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene) {
   Walk walk(scene);
   walk.element(root, "", nullptr, nullptr);
   std::vector<core::Diagnostic> notes = walk.notes();
-  note_components(scene, notes);
-  if (scene.contact.enable) note_contact(root, scene, notes);
+  if (scene.contact.enable)
+    note_contact(root, scene, notes);
+  else
+    note_no_contact(scene, notes);
   std::ranges::stable_sort(notes, {}, &core::Diagnostic::line);
   return notes;
 }

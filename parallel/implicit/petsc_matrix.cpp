@@ -4,11 +4,9 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace mpm::parallel {
+#include "parallel/implicit/petsc_errors.hpp"
 
-namespace {
-void check_mpi(int code) { check_petsc(static_cast<PetscErrorCode>(code)); }
-}  // namespace
+namespace mpm::parallel {
 
 void MatrixPlaces::add(std::span<const std::int64_t> nodes, const double*) {
   sorted_.assign(nodes.begin(), nodes.end());

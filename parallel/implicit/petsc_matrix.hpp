@@ -19,9 +19,6 @@
 
 namespace mpm::parallel {
 
-/// Throws std::runtime_error with PETSc's description of the first error.
-void check_petsc(PetscErrorCode code);
-
 /// Where the entries are: the columns of every own row of nodes, and of rows of other ranks.
 class MatrixPlaces final : public core::BlockMatrix {
  public:

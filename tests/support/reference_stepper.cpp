@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include <Eigen/Dense>
+#include "tests/support/reference_gradients.hpp"
 
 namespace mpm::tests {
 namespace {
@@ -154,31 +153,6 @@ ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& 
   return result;
 }
 
-void ReferenceStepper::find_cells_in_use() {
-  const auto& cells = case_.cells;
-  geometry_.in_use.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]), false);
-  for (const auto& particle : case_.particles) {
-    const std::array<int, 3> c = cell_at(geometry_, particle.x);
-    geometry_.in_use[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))] = true;
-  }
-  average_gradients(geometry_);
-}
-
-/// With the particle's domain.
-ReferenceGrid ReferenceStepper::grid_of(const ReferenceParticle& particle) const {
-  ReferenceGrid grid = geometry_;
-  for (std::size_t a = 0; a < 3; ++a)  // a wider domain counts as one cell wide
-    grid.half_size[a] = std::min(particle.half_size[a], 0.5 * case_.cell[a]);
-  grid.corner = scaled_back(particle.corner, case_.cell);
-  return grid;
-}
-
-std::size_t ReferenceStepper::number(const std::array<int, 3>& node) const {
-  std::size_t at = 0;
-  for (std::size_t a = 3; a-- > 0;) at = at * nodes_[a] + static_cast<std::size_t>(node[a] + 1);
-  return at;
-}
-
 /// What the faces of the grid do to component `axis` of a velocity at node (i, j, k).
 ReferenceStepper::Stop ReferenceStepper::stop(const Index& node, std::size_t axis, double velocity) const {
   Stop result = Stop::none;
@@ -190,15 +164,6 @@ ReferenceStepper::Stop ReferenceStepper::stop(const Index& node, std::size_t axi
       if (kind == 4 && a == axis && (side == 0 ? velocity < 0 : velocity > 0)) result = Stop::wall;
     }
   return result;
-}
-
-template <class Operation>
-void ReferenceStepper::for_active_nodes(Operation&& operation) {
-  std::size_t n = 0;
-  for (std::size_t k = 0; k < nodes_[2]; ++k)
-    for (std::size_t j = 0; j < nodes_[1]; ++j)
-      for (std::size_t i = 0; i < nodes_[0]; ++i, ++n)
-        if (grid_[n].active) operation(Index{i, j, k}, grid_[n]);
 }
 
 /// 2-31, 2-32; the forces at once unless USF has yet to update the stress.
@@ -277,114 +242,6 @@ void ReferenceStepper::integrate_momentum(double dt) {
   });
 }
 
-/// XPIC and FMPM: u = sum of du(l), du(l) = (1 - S+ S) du(l - 1) on the nodes, where walls hold what they
-/// held in the equation of motion.
-template <class Support>
-void ReferenceStepper::add_orders() {
-  for_active_nodes([&](const Index&, Node& node) {
-    node.u = node.v;
-    node.du = case_.transfer == ReferenceTransfer::fmpm ? node.v : node.start;
-    for (std::size_t a = 0; a < 3; ++a)
-      if (node.held[a]) node.du[a] = 0;
-  });
-  for (int order = 2; order <= case_.order; ++order) {
-    for (Node& node : grid_) node.q = {};
-    for (const auto& particle : case_.particles) {
-      const Support at = support<Support>(particle);
-      Vector seen{};
-      for (std::size_t n = 0; n < at.count; ++n)
-        for (std::size_t a = 0; a < 3; ++a) seen[a] += at.value(n, a) * grid_[at.node[n]].du[a];
-      for (std::size_t n = 0; n < at.count; ++n)
-        for (std::size_t a = 0; a < 3; ++a) grid_[at.node[n]].q[a] += particle.m * at.value(n, a) * seen[a];
-    }
-    for_active_nodes([&](const Index& index, Node& node) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (node.held[a]) {
-          node.du[a] = 0;
-          continue;
-        }
-        node.du[a] -= node.q[a] / node.m;
-        const double before = node.u[a];
-        node.u[a] += node.du[a];
-        if (stop(index, a, node.u[a]) == Stop::wall) {
-          node.du[a] = -before;
-          node.u[a] = 0;
-          node.held[a] = true;
-        }
-      }
-    });
-  }
-}
-
-template <class Support>
-void ReferenceStepper::solve_mass(Vector Node::*of, Vector Node::*stopped) {
-  std::vector<Eigen::Index> number(grid_.size(), -1);
-  std::vector<std::pair<Index, Node*>> nodes;
-  for_active_nodes([&](const Index& index, Node& node) {
-    number[static_cast<std::size_t>(&node - grid_.data())] = static_cast<Eigen::Index>(nodes.size());
-    nodes.emplace_back(index, &node);
-  });
-  const auto count = static_cast<Eigen::Index>(nodes.size());
-  const double b = case_.mass_blend;
-  for (std::size_t a = 0; a < 3; ++a) {
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-    for (const auto& particle : case_.particles) {
-      const Support at = support<Support>(particle);
-      for (std::size_t i = 0; i < at.count; ++i)
-        for (std::size_t j = 0; j < at.count; ++j)
-          if (number[at.node[i]] >= 0 && number[at.node[j]] >= 0)
-            matrix(number[at.node[i]], number[at.node[j]]) +=
-                (1 - b) * particle.m * at.value(i, a) * at.value(j, a);
-    }
-    Eigen::VectorXd right(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Node& node = *nodes[static_cast<std::size_t>(i)].second;
-      matrix(i, i) += b * node.m;
-      right(i) = node.m * (node.*of)[a];
-    }
-    // Rows and columns of what walls hold: u_i is given.
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const auto& [index, node] = nodes[static_cast<std::size_t>(i)];
-      const bool rests = at_rigid_wall(index, a) && (node->*stopped)[a] == 0;
-      if (!rests && stop(index, a, 0) != Stop::held) continue;
-      const double given = (node->*of)[a];
-      right -= given * matrix.col(i);
-      matrix.row(i).setZero();
-      matrix.col(i).setZero();
-      matrix(i, i) = 1;
-      right(i) = given;
-    }
-    const Eigen::VectorXd solution = matrix.partialPivLu().solve(right);
-    for (Eigen::Index i = 0; i < count; ++i)
-      (nodes[static_cast<std::size_t>(i)].second->*of)[a] = solution(i);
-  }
-}
-
-void ReferenceStepper::stop_at_walls(Vector Node::*of) {
-  for_active_nodes([&](const Index& index, Node& node) {
-    for (std::size_t a = 0; a < 3; ++a)
-      if (stop(index, a, (node.*of)[a]) == Stop::wall) (node.*of)[a] = 0;
-  });
-}
-
-/// Consistent mass: the increments; USF: the velocities at the end.
-template <class Support>
-void ReferenceStepper::solve_motion(double dt) {
-  for_active_nodes([&](const Index&, Node& node) {
-    for (std::size_t a = 0; a < 3; ++a) node.du[a] = dt * node.a[a];
-  });
-  solve_mass<Support>(&Node::du, &Node::v);
-  for_active_nodes([&](const Index& index, Node& node) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      node.a[a] = node.du[a] / dt;
-      if (case_.scheme != ReferenceScheme::usf) continue;
-      node.u[a] += node.du[a];
-      if (at_rigid_wall(index, a) && node.v[a] == 0) node.u[a] = 0;
-    }
-  });
-  stop_at_walls(&Node::u);
-}
-
 template <class Support>
 void ReferenceStepper::move_particles(double dt) {
   for (std::size_t index = 0; index < case_.particles.size(); ++index) {
@@ -427,31 +284,6 @@ void ReferenceStepper::grid_to_particles(double dt) {
   }
 }
 
-/// Each corner with the grid's velocity there; the particle to the centroid.
-void ReferenceStepper::move_corners(std::size_t index, double dt) {
-  const ReferenceParticle& particle = case_.particles[index];
-  ReferenceGrid grid = grid_of(particle);
-  grid.shape = ReferenceShape::linear;
-  DomainCorners moved = particle.corner;
-  for (std::size_t c = 0; c < 8; ++c) {
-    Vector at = particle.x;
-    for (std::size_t a = 0; a < 3; ++a) at[a] += grid.corner[c][a];
-    const WideSupport support = wide_support(grid, at);
-    for (std::size_t n = 0; n < support.count; ++n) {
-      const Node& node = grid_[number(support.entry[n].node)];
-      for (std::size_t a = 0; a < 3; ++a)
-        if (node.active) moved[c][a] += dt * support.entry[n].value[a] * moving(node)[a];
-    }
-  }
-  if (!(smallest_corner(moved) > 0)) throw std::runtime_error("a particle's domain is tangled");
-  const Vector centroid = means_over(moved).centroid;
-  for (std::size_t a = 0; a < 3; ++a) {
-    next_x_[index][a] = particle.x[a] + centroid[a];
-    for (Vector& corner : moved) corner[a] -= centroid[a];
-  }
-  next_corner_[index] = moved;
-}
-
 /// The rest of 2-45 for MUSL, and the boundary conditions on the velocity of the strain rate.
 void ReferenceStepper::final_velocities() {
   for_active_nodes([&](const Index& index, Node& node) {
@@ -466,62 +298,6 @@ void ReferenceStepper::final_velocities() {
     }
   });
 }
-
-namespace {
-/// X of (I - dt L) X = L by elimination. USF has L at the positions that its velocities led to, so that
-/// I + dt X is the deformation from the old ones.
-Matrix relative_to_old_positions(const Matrix& L, double dt) {
-  Matrix A{}, X = L;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) A[i][j] = (i == j ? 1.0 : 0.0) - dt * L[i][j];
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (i == k) continue;
-      const double factor = A[i][k] / A[k][k];
-      for (std::size_t j = 0; j < 3; ++j) {
-        A[i][j] -= factor * A[k][j];
-        X[i][j] -= factor * X[k][j];
-      }
-    }
-  }
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) X[i][j] /= A[i][i];
-  return X;
-}
-
-struct KickedNode {
-  double weight;
-  Vector slope, velocity;
-  double mass;
-};
-
-/// Adds to L, where a particle is trapped at a face of its cell, the gradient that a share of the kick of its
-/// own traction gives the face: the equations of core/shape/face_traps.hpp.
-void add_own_kick(const ReferenceParticle& particle, const std::vector<KickedNode>& nodes, const Vector& cell,
-                  double dt, Matrix& L) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double h = cell[axis], pressure = particle.p - particle.s[axis][axis];
-    if (!(pressure > 0)) continue;
-    double place = 0;  // in the cell, over its edge: the sum of the upper nodes' weights
-    double velocity = 0, lower_face = 0, upper_face = 0;  // of the faces: sums of w_i^2/m_i
-    for (const KickedNode& node : nodes) {
-      const double w = h * node.slope[axis];  // with a sign
-      velocity += node.weight * node.velocity[axis];
-      if (w > 0) place += node.weight;
-      (w > 0 ? upper_face : lower_face) += w * w / node.mass;
-    }
-    const bool upper = place > 0.5;
-    const double distance = h * (upper ? 1 - place : place), B = upper ? upper_face : lower_face;
-    const double away = upper ? -velocity : velocity, kick = dt * particle.V * pressure * B / h;
-    const double most = dt * particle.V * pressure / (particle.m * h);
-    if (!(away > 0 && away < 2 * most && distance < dt * std::max(kick, 2 * away))) continue;
-    const double share = std::max(away / kick, 0.5) * std::min(1.0, 2 - away / most);
-    for (std::size_t a = 0; a < 3; ++a)
-      L[a][axis] +=
-          a == axis ? share * kick / h : -std::min(share, 1.0) * kick / h * particle.s[a][axis] / pressure;
-  }
-}
-}  // namespace
 
 template <class Support>
 void ReferenceStepper::update_stresses(double dt) {
@@ -563,49 +339,6 @@ void ReferenceStepper::update_stresses(double dt) {
   const std::vector<double> pressures = acting_pressures();
   for (std::size_t p = 0; p < case_.particles.size(); ++p)
     add_force(case_.particles[p], pressures[p], support<Support>(case_.particles[p]));
-}
-
-/// A site is a cell, or for shapes of three nodes per axis what is nearer to a node than to the others.
-void ReferenceStepper::average(std::vector<double>& values) const {
-  using enum ReferenceShape;
-  const bool of_nodes = case_.shape == sgmp || case_.shape == quadratic_bspline || case_.shape == ugimp ||
-                        case_.shape == cpgimp;
-  const auto site = [&](const ReferenceParticle& particle) {
-    std::array<double, 3> at{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double scaled = (particle.x[a] - case_.origin[a]) * inverse_cell_[a];
-      at[a] = of_nodes ? std::floor(scaled + 0.5) : std::min(std::floor(scaled), case_.cells[a] - 1.0);
-    }
-    return at;
-  };
-  std::map<std::array<double, 3>, std::array<double, 2>> sums;
-  for (std::size_t p = 0; p < values.size(); ++p) {
-    auto& [volume, sum] = sums[site(case_.particles[p])];
-    volume += case_.particles[p].V;
-    sum += case_.particles[p].V * values[p];
-  }
-  for (std::size_t p = 0; p < values.size(); ++p) {
-    const auto& [volume, sum] = sums[site(case_.particles[p])];
-    values[p] = sum / volume;
-  }
-}
-
-void ReferenceStepper::relax_pressures(double dt, std::vector<double>& changes) const {
-  const double modulus = case_.material.young / (3 * (1 - 2 * case_.material.poisson));
-  const double sound = std::sqrt(modulus / case_.material.density);
-  const double rate = std::min(case_.relaxation * sound / *std::ranges::min_element(case_.cell), 1 / dt);
-  std::vector<double> means;
-  for (const auto& particle : case_.particles) means.push_back(particle.p);
-  average(means);
-  for (std::size_t p = 0; p < means.size(); ++p)
-    changes[p] += rate * (case_.particles[p].p - means[p]) / (modulus + 8 * std::abs(means[p]));
-}
-
-std::vector<double> ReferenceStepper::acting_pressures() const {
-  std::vector<double> pressures;
-  for (const auto& particle : case_.particles) pressures.push_back(particle.p + particle.q);
-  if (case_.average) average(pressures);
-  return pressures;
 }
 
 ReferenceEnergy ReferenceStepper::energy() const {

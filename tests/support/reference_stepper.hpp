@@ -126,7 +126,13 @@ class ReferenceStepper {
   std::size_t number(const std::array<int, 3>& node) const;
   Stop stop(const Index& node, std::size_t axis, double velocity) const;
   template <class Operation>
-  void for_active_nodes(Operation&& operation);
+  void for_active_nodes(Operation&& operation) {
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < nodes_[2]; ++k)
+      for (std::size_t j = 0; j < nodes_[1]; ++j)
+        for (std::size_t i = 0; i < nodes_[0]; ++i, ++n)
+          if (grid_[n].active) operation(Index{i, j, k}, grid_[n]);
+  }
 
   template <class Support>
   void step_with();
@@ -187,6 +193,11 @@ class ReferenceStepper {
   double time_ = 0;
   int steps_ = 0;  ///< completed
 };
+
+template <>
+ReferenceStepper::CellSupport ReferenceStepper::support(const ReferenceParticle& particle) const;
+template <>
+ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& particle) const;
 
 /// The copper Taylor bar of thesis 3.5.1 and 5.3.3: a full cylinder, 25.4 long and 7.6 across, at 190 mm/ms
 /// onto the symmetry plane z = 0; particles on a lattice of spacing dp (along z: nearest that divides the

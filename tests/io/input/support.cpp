@@ -93,6 +93,13 @@ std::vector<std::string> faults(std::string_view text, const io::ReadOptions& op
   return {"ok"};
 }
 
+void check_faults(const std::vector<Wrong>& table) {
+  for (const Wrong& wrong : table) {
+    INFO(wrong.from << "  ->  " << wrong.to);
+    CHECK(faults(replaced(bar, wrong.from, wrong.to)) == wrong.messages);
+  }
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "mpm_test_XXXXXX").string();
   REQUIRE(mkdtemp(pattern.data()) != nullptr);

@@ -51,6 +51,15 @@ core::Scene parse(std::string_view text, const io::ReadOptions& options = {});
 /// The faults about a text without the file's name; one "ok" when there are none.
 std::vector<std::string> faults(std::string_view text, const io::ReadOptions& options = {});
 
+struct Wrong {
+  std::string_view from;  ///< piece of the bar's input
+  std::string_view to;    ///< what stands there instead
+  std::vector<std::string> messages;
+};
+
+/// Checks that each of these changes to the bar brings its messages and no others.
+void check_faults(const std::vector<Wrong>& table);
+
 /// A folder of its own that is removed again.
 class TemporaryFolder {
  public:

@@ -1,0 +1,128 @@
+#include "apps/common/describe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/particle_range.hpp"
+#include "core/setup/memory.hpp"
+
+namespace mpm::apps {
+
+namespace {
+
+std::string bytes_in_words(double bytes) {
+  return bytes < 1e6   ? fmt::format("{:.1f} kB", bytes / 1e3)
+         : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6)
+                       : fmt::format("{:.2f} GB", bytes / 1e9);
+}
+
+/// A line for each body, up to a maximum.
+void describe_bodies(const core::Model& model, io::Log& log) {
+  constexpr std::size_t most = 100;
+  const int common = core::ColumnSet::mechanics().size();
+  for (std::size_t b = 0; b < std::min(model.bodies.size(), most); ++b) {
+    const core::Body& body = model.bodies[b];
+    const core::ColumnLayout& layout = body.pool->layout();
+    std::string more;
+    for (int c = common; c < core::column_count; ++c) {
+      if (layout.has(static_cast<core::Column>(c)))
+        more += fmt::format(" {}", core::name_of(static_cast<core::Column>(c)));
+    }
+    log.say("body       \"{}\" of \"{}\": {} bytes per particle{}{}", body.name, body.model->name(),
+            layout.bytes_per_particle(), more.empty() ? "" : ", beyond the mechanics", more);
+  }
+  if (model.bodies.size() > most) log.say("body       {} more bodies", model.bodies.size() - most);
+}
+
+}  // namespace
+
+void describe(const core::Model& model, const core::Stepper& stepper, core::Reductions& ranks, int threads,
+              io::Log& log) {
+  const core::GridGeometry& g = model.grid->geometry();
+  std::int64_t counts[2] = {static_cast<std::int64_t>(model.local_particles()), model.grid->owned()};
+  const auto particles = ranks.spread(static_cast<double>(counts[0]));
+  const core::MemoryNeed need = core::memory_need(model);
+  const auto memory = ranks.spread(need.total());
+  ranks.sum(std::span<std::int64_t>(counts));
+  log.say("grid       {} x {} x {} cells of {:.6g} x {:.6g} x {:.6g}; {} bricks of 4 x 4 x 4 cells in use",
+          g.cells[0], g.cells[1], g.cells[2], g.cell.x, g.cell.y, g.cell.z, counts[1]);
+  log.say("particles  {}, on {} rank(s) x {} thread(s): {:.0f} to {:.0f} per rank", counts[0], ranks.size(),
+          threads, particles.min, particles.max);
+  log.say("memory     {} for particles, bricks and bodies, maximum over the ranks",
+          bytes_in_words(memory.max));
+  describe_bodies(model, log);
+  std::string phases;
+  for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
+  log.say("step       {}", phases);
+  const double critical = model.clock.critical_dt;
+  log.say("time step  critical {}, end time {:.6g}",
+          std::isfinite(critical) ? fmt::format("{:.6g}", critical) : "without limit",
+          model.scene->solution.end_time);
+}
+
+void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log) {
+  const std::vector<const core::BodyInput*> inputs = core::active_bodies(*model.scene);
+  if (std::ranges::none_of(inputs, [](const auto* input) { return input->initial_temperature.has_value(); }))
+    return;
+  std::vector<double> lowest(2 * model.bodies.size(), 0.0);  // minima of the pressure and of its negative
+  for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+    const auto b = static_cast<std::size_t>(block.body);
+    if (!inputs[b]->initial_temperature) continue;
+    for (const core::ConstParticle p : block) {
+      lowest[2 * b] = std::min(lowest[2 * b], p[core::Column::pressure]);
+      lowest[2 * b + 1] = std::min(lowest[2 * b + 1], -p[core::Column::pressure]);
+    }
+  }
+  ranks.minimum(lowest);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const double p = -lowest[2 * b + 1] > -lowest[2 * b] ? -lowest[2 * b + 1] : lowest[2 * b];
+    const core::ConstitutiveModel& material = *model.bodies[b].model;
+    const double c = material.initial_sound_speed(), s = material.initial_shear_speed();
+    const double bulk = material.reference_density() * (c * c - 4.0 / 3 * s * s);
+    if (!inputs[b]->initial_temperature || !(std::abs(p) > 1e-6 * bulk)) continue;
+    const double change = p / bulk;
+    log.note("note       body '{}' starts with the pressure {:.6g}, including thermal pressure{}",
+             model.bodies[b].name, p,
+             std::abs(change) > 0.1
+                 ? ""
+                 : fmt::format("; with density=\"{:.6g}\" it would start nearly free of pressure",
+                               inputs[b]->density * (1 - change)));
+  }
+}
+
+void say_what_was_counted(const core::Model& model, core::Reductions& ranks, io::Log& log) {
+  const core::MaterialEvents& events = model.ledger.events;
+  std::int64_t counts[] = {events.failed,
+                           events.negative_volume,
+                           events.volume_limited,
+                           events.undefined_root,
+                           events.unresolved,
+                           model.ledger.velocity_limited,
+                           model.ledger.wide_domains,
+                           model.ledger.tangled_domains};
+  const bool boxes = model.scene->grid.shape == core::ShapeFunction::contiguous_particle_gimp;
+  const char* const words[] = {
+      "failed",
+      "with an update to zero or negative volume; the old volume was kept",
+      "limited by Volume min or max",
+      "with undefined wave speed: its square was negative, or the compression exceeded the limit of the "
+      "equation of state",
+      "with a strain increment too large for the return to the yield surface: use a smaller TimeStep "
+      "factor",
+      "limited by LimitVelocity",
+      boxes ? "with a domain wider than a cell, limited to one cell: use CPDI or larger cells"
+            : "with a domain that extends more than a cell from the particle, limited to one cell: use "
+              "larger cells",
+      "with a tangled domain, replaced by a parallelepiped or a cube: use smaller steps or CPDI"};
+  ranks.sum(std::span<std::int64_t>(counts));
+  for (std::size_t i = 0; i < std::size(counts); ++i) {
+    if (counts[i] > 0) log.say("counted    {} particle(s) {}", counts[i], words[i]);
+  }
+}
+
+}  // namespace mpm::apps

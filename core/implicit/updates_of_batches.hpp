@@ -1,0 +1,100 @@
+// The end of an implicit step: particles move by the displacements found, and keep stress, volume and
+// velocity. Part of implicit_passes_with.hpp.
+#pragma once
+
+#include <algorithm>
+
+#include "core/implicit/implicit_passes_with.hpp"
+#include "core/step/grid_to_particles.hpp"
+#include "core/step/speeds.hpp"
+
+namespace mpm::core {
+
+/// Adds S times the nodes' increments to three columns.
+template <ShapePolicy S>
+inline void ImplicitPassesWith<S>::add_increments(const ColumnLayout& layout, const Place& place,
+                                                  const typename S::Field& of, Column first, double* block) {
+  const typename S::Interpolation gained(place, of.increment());
+  for (int a = 0; a < 3; ++a) {
+    double* const to = block + layout.offset(next(first, a));
+    store(to, load<Lanes<8>>(to) + gained.value[a]);
+  }
+}
+
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTile& tile, int b,
+                                       double* block, int used, bool dynamic, bool lags, Scratch& at) {
+  const ColumnLayout& layout = *at.batch.layout;
+  const Place& place = at.places[b];
+  const auto velocity = [&](int a) { return block + layout.offset(next(Column::velocity_x, a)); };
+  const bool moved = prescribed(tile.body);
+  if (moved) {
+    const PrescribedMotion& motion = loads_.motion(tile.body).velocity;
+    for (int l = 0; l < used; ++l) {
+      const Vec3<double> v = motion.velocity(block + l);
+      for (int a = 0; a < 3; ++a) {
+        // The constraint supplies the kinetic energy.
+        double& now = velocity(a)[l];
+        at.work += 0.5 * block[layout.offset(Column::mass) + l] * (v[a] * v[a] - now * now);
+        now = v[a];
+      }
+    }
+  } else if (dynamic) {
+    add_increments(layout, place, at.velocities, Column::velocity_x, block);
+    if (lags && layout.has(Column::acceleration_lag_x))
+      add_increments(layout, place, at.lags, Column::acceleration_lag_x, block);
+  } else {
+    std::fill_n(velocity(0), 3 * block_lanes, 0.0);
+  }
+  const MotionOfBlock<S> motion{place, at.displacements};
+  if (moved)
+    move_at_own_velocity(layout, dt_, block);
+  else
+    motion.move(layout, 1.0, block);
+  if constexpr (settles) motion.carry(layout, 1.0, block);
+  if constexpr (deforms)
+    at.statistics.domains += S::deform(frame, layout, at.gradient, block_lanes * b, 1.0, block, used);
+  if constexpr (settles) at.statistics.domains += S::settle(frame, layout, !moved, block, used);
+}
+
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::move_particles(const AlignedDoubles& displacements,
+                                           const AlignedDoubles* velocities, const AlignedDoubles* lags) {
+  departing_.resize(static_cast<std::size_t>(model_.grid->owned()));
+  for_bricks([&](Slot s, Scratch& at) {
+    const BrickFrame frame(*model_.grid, s);
+    auto& departing = departing_[static_cast<std::size_t>(s)];
+    departing.clear();
+    at.displacements.take_strain(frame, records(displacements, s));
+    at.displacements.take_motion(records(displacements, s));
+    if (velocities != nullptr) at.velocities.take_motion(records(*velocities, s));
+    if (lags != nullptr) at.lags.take_motion(records(*lags, s));
+    for_each_tile(s, true, [&](const ParticleTile& tile, const Body& body) {
+      if (averages(body)) find_dilatations(tile, body, frame, at);
+      for_each_batch(tile, frame, Blocks::own, at, [&](std::size_t first) {
+        Batch& batch = at.batch;
+        take_strains(frame, body, at);
+        for (int b = 0; b < batch.blocks; ++b)
+          move_block(frame, tile, b, batch.block[b], tile.used_lanes(first + static_cast<std::size_t>(b)),
+                     velocities != nullptr, lags != nullptr, at);
+        body.model->update(batch, model_.options);
+        at.statistics.events += batch.events;
+        if (batch.layout->has(Column::sound_speed)) {
+          for (int b = 0; b < batch.blocks; ++b)
+            std::copy_n(batch.sound_speed + block_lanes * b, block_lanes,
+                        batch.column(Column::sound_speed, b));
+        }
+        at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
+        const auto c = static_cast<int>(&tile - model_.grid->brick(s).tiles.data());
+        for (int b = 0; b < batch.blocks; ++b) {
+          const std::size_t at_block = first + static_cast<std::size_t>(b);
+          find_departing(c, at_block, frame, 0, failed_.of(tile), *batch.layout, batch.block[b],
+                         tile.used_lanes(at_block), departing);
+        }
+      });
+    });
+    at.add_work_of_brick();
+  });
+}
+
+}  // namespace mpm::core

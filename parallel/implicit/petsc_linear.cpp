@@ -1,0 +1,85 @@
+#include "parallel/implicit/petsc_linear.hpp"
+
+#include <fmt/format.h>
+
+#include "parallel/implicit/petsc_errors.hpp"
+
+namespace mpm::parallel {
+
+namespace {
+
+/// Unknowns up to which systems are solved directly.
+constexpr std::int64_t direct_up_to = 5000;
+
+}  // namespace
+
+void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check_petsc(SNESGetKSP(snes, &ksp));
+  check_petsc(KSPGetPC(ksp, &pc));
+  if (unknowns <= direct_up_to || slender) {
+    check_petsc(KSPSetType(ksp, KSPPREONLY));
+    check_petsc(PCSetType(pc, PCLU));
+    check_petsc(PCFactorSetMatSolverType(pc, slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
+    if (slender) check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+  } else {
+    check_petsc(KSPSetType(ksp, KSPGMRES));
+    check_petsc(KSPGMRESSetRestart(ksp, 60));
+    check_petsc(KSPSetTolerances(ksp, 1e-5, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+    check_petsc(PCSetType(pc, PCGAMG));
+  }
+}
+
+void choose_conjugate_gradients(SNES snes, double tolerance) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check_petsc(SNESSetType(snes, SNESKSPONLY));
+  check_petsc(SNESGetKSP(snes, &ksp));
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(KSPSetType(ksp, KSPCG));
+  check_petsc(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, 10000));
+  check_petsc(PCSetType(pc, PCPBJACOBI));
+}
+
+void prefer_pivots(SNES snes) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  MatSolverType solver = nullptr;
+  check_petsc(SNESGetKSP(snes, &ksp));
+  check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(PCFactorGetMatSolverType(pc, &solver));
+  if (solver == nullptr || std::string(solver) != MATSOLVERPETSC) return;
+  check_petsc(PCReset(pc));
+  check_petsc(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGEXTERNAL));
+}
+
+bool choose_gmres(SNES snes) {
+  KSP ksp = nullptr;
+  KSPConvergedReason why = KSP_CONVERGED_ITERATING;
+  PetscBool chosen = PETSC_FALSE;
+  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-ksp_type", &chosen));
+  check_petsc(SNESGetKSP(snes, &ksp));
+  check_petsc(KSPGetConvergedReason(ksp, &why));
+  if (chosen || (why != KSP_DIVERGED_INDEFINITE_MAT && why != KSP_DIVERGED_INDEFINITE_PC &&
+                 why != KSP_DIVERGED_BREAKDOWN))
+    return false;
+  check_petsc(KSPSetType(ksp, KSPGMRES));
+  return true;
+}
+
+std::string description_of(SNES snes) {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check_petsc(SNESGetKSP(snes, &ksp));
+  check_petsc(KSPGetPC(ksp, &pc));
+  KSPType solver = nullptr;
+  PCType preconditioner = nullptr;
+  check_petsc(KSPGetType(ksp, &solver));
+  check_petsc(PCGetType(pc, &preconditioner));
+  return fmt::format("PETSc {}.{}.{}: {} with {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
+                     PETSC_VERSION_SUBMINOR, solver, preconditioner);
+}
+
+}  // namespace mpm::parallel

@@ -1,0 +1,34 @@
+// Which methods PETSc takes for the linear systems of a solve, before its own options replace them
+// (SNESSetFromOptions), and which others after a failure.
+//
+// Small problems are solved directly, slender ones by PETSc's own factorisation with the bandwidth reduced,
+// others by MUMPS; larger ones by GMRES with smoothed aggregation multigrid (GAMG). The single system of a
+// linearised step is solved by conjugate gradients, preconditioned with the blocks of the nodes; where it
+// turns out not to be positive definite (a law that softens or whose flow is not associated), by GMRES.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <petscsnes.h>
+
+namespace mpm::parallel {
+
+/// Nodes in the widest level of a slender body, whose systems are solved directly whatever their size: the
+/// work grows with their length alone.
+inline constexpr std::size_t slender_up_to = 24;
+
+void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender);
+/// For the one system of a linearised step.
+void choose_conjugate_gradients(SNES snes, double tolerance);
+/// PETSc's own factorisation does not exchange rows, MUMPS does.
+void prefer_pivots(SNES snes);
+/// After conjugate gradients that met a matrix that is not positive definite. False: they did not, or the
+/// user has chosen.
+bool choose_gmres(SNES snes);
+
+/// The names of the methods.
+std::string description_of(SNES snes);
+
+}  // namespace mpm::parallel

@@ -1,0 +1,60 @@
+// What the oracle's shape functions need beyond a particle's position: its domain, whose corners may move
+// with the grid, and the cells in use.
+#include <algorithm>
+#include <stdexcept>
+
+#include "tests/support/reference_stepper.hpp"
+
+namespace mpm::tests {
+
+void ReferenceStepper::find_cells_in_use() {
+  const auto& cells = case_.cells;
+  geometry_.in_use.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]), false);
+  for (const auto& particle : case_.particles) {
+    const std::array<int, 3> c = cell_at(geometry_, particle.x);
+    geometry_.in_use[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))] = true;
+  }
+  average_gradients(geometry_);
+}
+
+/// With the particle's domain.
+ReferenceGrid ReferenceStepper::grid_of(const ReferenceParticle& particle) const {
+  ReferenceGrid grid = geometry_;
+  for (std::size_t a = 0; a < 3; ++a)  // a wider domain counts as one cell wide
+    grid.half_size[a] = std::min(particle.half_size[a], 0.5 * case_.cell[a]);
+  grid.corner = scaled_back(particle.corner, case_.cell);
+  return grid;
+}
+
+std::size_t ReferenceStepper::number(const std::array<int, 3>& node) const {
+  std::size_t at = 0;
+  for (std::size_t a = 3; a-- > 0;) at = at * nodes_[a] + static_cast<std::size_t>(node[a] + 1);
+  return at;
+}
+
+/// Each corner with the grid's velocity there; the particle to the centroid.
+void ReferenceStepper::move_corners(std::size_t index, double dt) {
+  const ReferenceParticle& particle = case_.particles[index];
+  ReferenceGrid grid = grid_of(particle);
+  grid.shape = ReferenceShape::linear;
+  DomainCorners moved = particle.corner;
+  for (std::size_t c = 0; c < 8; ++c) {
+    Vector at = particle.x;
+    for (std::size_t a = 0; a < 3; ++a) at[a] += grid.corner[c][a];
+    const WideSupport support = wide_support(grid, at);
+    for (std::size_t n = 0; n < support.count; ++n) {
+      const Node& node = grid_[number(support.entry[n].node)];
+      for (std::size_t a = 0; a < 3; ++a)
+        if (node.active) moved[c][a] += dt * support.entry[n].value[a] * moving(node)[a];
+    }
+  }
+  if (!(smallest_corner(moved) > 0)) throw std::runtime_error("a particle's domain is tangled");
+  const Vector centroid = means_over(moved).centroid;
+  for (std::size_t a = 0; a < 3; ++a) {
+    next_x_[index][a] = particle.x[a] + centroid[a];
+    for (Vector& corner : moved) corner[a] -= centroid[a];
+  }
+  next_corner_[index] = moved;
+}
+
+}  // namespace mpm::tests
