@@ -109,6 +109,8 @@ inline constexpr NodeFields implicit_start = momentum_mass_force | node_field::s
 inline constexpr NodeFields implicit_force = node_field::force | node_field::support;
 inline constexpr NodeFields implicit_motion =
     node_field::momentum | node_field::moved_volume | node_field::volume | node_field::modulus;
+/// Surface and volume of a rigid body in contact, in the places of momentum and mass.
+inline constexpr NodeFields implicit_surface = node_field::momentum | node_field::mass;
 /// Of generalised alpha: mass times the lag of the acceleration, in the place of the momentum.
 inline constexpr NodeFields implicit_lag = node_field::momentum;
 inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_field::second_mass;

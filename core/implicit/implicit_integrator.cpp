@@ -22,6 +22,14 @@ constexpr double default_load_steps = 20, default_ratio = 20;
 /// fragment that nothing holds. They get a stiffness of their own, of this part of the material's: so little
 /// that it bears no weight over the way of a step, and enough for the matrix not to be singular.
 constexpr double ground = 1e-10;
+/// Friction has settled where it changes by less than this part of what it may be; and how often a step is
+/// solved for that.
+constexpr double settled_friction = 1e-3;
+/// The stiffness of a cell in shear over that in compression, about.
+constexpr double shear_share = 0.25;
+constexpr int many_frictions = 10, most_frictions = 40;
+/// Forces of this strain are rounding errors: a body without loads is in equilibrium.
+constexpr double rounding = 1e-13;
 /// The smallest step over the given one, where the input names none.
 constexpr double default_smallest = 1.0 / 1024;
 
@@ -42,18 +50,21 @@ ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communicatio
       solver_(solver),
       input_(model.scene->solution.implicit.value_or(ImplicitInput{})),
       cells_(make_cells_in_use(model, communication.halo)),
-      passes_(make_implicit_passes(model)),
+      rigid_(make_rigid_bodies(model, communication.reductions)),
+      passes_(make_implicit_passes(model, rigid_.get())),
       unknowns_(model, communication),
       stabilisation_(model),
       lags_(TimeRule::lags(input_)) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    moves_bodies_ |= passes_->loads().motion(static_cast<int>(b)).kind == BodyMotion::Kind::prescribed;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    moves_bodies_ |= passes_->loads().motion(b).kind == BodyMotion::Kind::prescribed &&
+                     (!rigid_ || rigid_->of_body(b) < 0);
   const double h = model.grid->geometry().smallest_cell();
   for (const Body& body : model.bodies) {
     const double c = body.model->initial_sound_speed();
     held_diagonal_ = std::max(held_diagonal_, body.model->reference_density() * c * c * h);
   }
   if (!(held_diagonal_ > 0)) held_diagonal_ = 1;
+  contact_ = make_rigid_contact(model, rigid_.get(), held_diagonal_);
 }
 
 std::vector<Phase> ImplicitIntegrator::phases() {
@@ -79,6 +90,7 @@ void ImplicitIntegrator::prepare() {
   const double dt = model_.clock.dt;
   rule_ = TimeRule::of(input_, dt);
   passes_->begin_step(dt, rule_.dynamic() ? 0.5 : 1.0);
+  if (contact_) contact_->begin_step(passes_->loads(), dt);
   passes_->map_start();
   unknowns_.exchange(mapped::implicit_start);
   const std::vector<double> sums = unknowns_.number();
@@ -97,6 +109,7 @@ void ImplicitIntegrator::prepare() {
     state_[i].ground = ground * (1 - volume / hardly_any) * modulus * g.smallest_cell();
   });
   if (moves_bodies_) unknowns_.hold_moved(dt);
+  if (contact_) contact_->find_nodes(*passes_, unknowns_);
   const double cutoff = model_.grid->geometry().mass_cutoff;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     NodeState& at = state_[i];
@@ -184,6 +197,7 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
     });
   }
   const bool usable = map_forces(u);
+  find_contact_forces(u);
   const double damping = model_.scene->solution.damping;
   ExactSum squares;
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
@@ -197,8 +211,8 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
           damping * (at.mass * (rule_.gain * u[k] + rule_.keep * at.velocity[a] + rule_.push * at.lag[a]) +
                      rule_.push * at.force[a]);
       at.reaction[a] = inertia + drag + at.ground * (u[k] - free_motion(at, a)) - rule_.carry * at.force[a] -
-                       at.external[a] - sum[4 + a];
-      size += std::abs(inertia) + std::abs(at.external[a]);
+                       at.external[a] - (1 + rule_.carry) * at.contact[a] - sum[4 + a];
+      size += std::abs(inertia) + std::abs(at.external[a]) + std::abs(at.contact[a]);
       if (held(i, a)) {
         r[k] = held_diagonal_ * (u[k] - unknowns_.held_displacements()[k]);
         size += std::abs(r[k]);
@@ -217,15 +231,42 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
   return !ranks_.any(!usable);
 }
 
+void ImplicitIntegrator::find_contact_forces(std::span<const double> u) {
+  if (!contact_) return;
+  for (NodeState& at : state_) std::fill_n(at.contact, 3, 0.0);
+  for (const RigidContact::Touch& touch : contact_->touches()) {
+    const Vec3<double> f = contact_->response(touch, RigidContact::displacement(u, touch.node)).force;
+    for (int a = 0; a < 3; ++a) state_[touch.node].contact[a] += f[a];
+  }
+}
+
+/// By own node; empty without contact.
+std::vector<Mat3<double>> ImplicitIntegrator::contact_stiffness(std::span<const double> u) const {
+  if (!contact_) return {};
+  std::vector<Mat3<double>> k(state_.size());
+  for (const RigidContact::Touch& touch : contact_->touches()) {
+    const auto found = contact_->response(touch, RigidContact::displacement(u, touch.node));
+    k[touch.node] = k[touch.node] + (1 + rule_.carry) * found.stiffness;
+  }
+  return k;
+}
+
 void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix) {
   unknowns_.distribute(u, displacements_);
   passes_->add_tangent(&displacements_, unknowns_, matrix);
   stabilisation_.add_tangent(unknowns_, true, matrix);
+  const std::vector<Mat3<double>> contact = contact_stiffness(u);
   const double per_mass = rule_.inertia + model_.scene->solution.damping * rule_.gain;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     double diagonal[9] = {};
     for (int a = 0; a < 3; ++a)
       diagonal[4 * a] = held(i, a) ? held_diagonal_ : per_mass * state_[i].mass + state_[i].ground;
+    if (contact_) {
+      const Mat3<double>& k = contact[i];
+      const double values[9] = {k.xx, k.xy, k.xz, k.yx, k.yy, k.yz, k.zx, k.zy, k.zz};
+      for (int c = 0; c < 9; ++c)
+        if (!held(i, c / 3) && !held(i, c % 3)) diagonal[c] += values[c];
+    }
     const std::int64_t number = unknowns_.first() + static_cast<std::int64_t>(i);
     matrix.add(std::span(&number, 1), diagonal);
   }
@@ -241,21 +282,57 @@ std::string ImplicitIntegrator::objection(const NewtonReport& report, std::span<
   return motion.objection(names);
 }
 
+NewtonReport ImplicitIntegrator::solve_once(std::span<double> u, const NewtonOptions& options) {
+  const NewtonReport report = solver_.solve(*this, u, options);
+  ++solves_;
+  total_.iterations += report.iterations;
+  total_.linear_iterations += report.linear_iterations;
+  total_.structure_seconds += report.structure_seconds;
+  total_.residual_seconds += report.residual_seconds;
+  total_.jacobian_seconds += report.jacobian_seconds;
+  total_.linear_seconds += report.linear_seconds;
+  return report;
+}
+
+/// Solves again with the friction that the last solution allows, until it no longer changes.
+void ImplicitIntegrator::settle_friction(std::span<double> u, const NewtonOptions& options,
+                                         NewtonReport& report) {
+  double relaxation = shear_share * held_diagonal_, last = 0;
+  for (int i = 0; report.converged; ++i) {
+    RigidContact::Changes mine = contact_->find_friction(u, relaxation);
+    ExactSum sums[2] = {mine.change, mine.most};
+    ranks_.sum(std::span(sums));
+    const double change = sums[0].value();
+    if (change <= settled_friction * sums[1].value()) return contact_->keep_friction();
+    // Softer bodies than a cell of the material overshoot; and what goes to and fro settles by ever less.
+    if (i > 1 && change > last) relaxation *= 0.5;
+    if (i > many_frictions) relaxation *= 0.8;
+    last = change;
+    if (i == most_frictions) {
+      report.converged = false;
+      report.reason = "friction does not settle";
+      return;
+    }
+    contact_->take_friction();
+    const NewtonReport next = solve_once(u, options);
+    report.converged = next.converged;
+    report.reason = next.reason;
+    report.linear_iterations += next.linear_iterations;
+    report.iterations = std::max(report.iterations, next.iterations);
+    report.norms = next.norms;
+  }
+}
+
 void ImplicitIntegrator::solve() {
   const double length = length_of(input_, model_);
-  const NewtonOptions options{input_.relative_tolerance, input_.absolute_tolerance.value_or(0),
+  const double no_force = rounding * held_diagonal_ * model_.grid->geometry().smallest_cell();
+  const NewtonOptions options{input_.relative_tolerance, input_.absolute_tolerance.value_or(no_force),
                               input_.max_newton, input_.matrix_free, input_.linearised()};
   std::string cuts;
   for (;;) {
     std::vector<double> u = first_guess();
-    const NewtonReport report = solver_.solve(*this, u, options);
-    ++solves_;
-    total_.iterations += report.iterations;
-    total_.linear_iterations += report.linear_iterations;
-    total_.structure_seconds += report.structure_seconds;
-    total_.residual_seconds += report.residual_seconds;
-    total_.jacobian_seconds += report.jacobian_seconds;
-    total_.linear_seconds += report.linear_seconds;
+    NewtonReport report = solve_once(u, options);
+    if (contact_ && contact_->rubs()) settle_friction(u, options, report);
     const std::string why = objection(report, u);
     const double dt = model_.clock.dt;
     const std::string norms = fmt::format("{:.2e}", fmt::join(report.norms, " "));
@@ -328,7 +405,7 @@ void ImplicitIntegrator::move() {
     double work = 0;
     for (int a = 0; a < 3; ++a) {
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
-      const double u = solution_[k], force = at.mass > cutoff ? at.force[a] / at.mass : 0;
+      const double u = solution_[k], force = at.mass > cutoff ? (at.force[a] + at.contact[a]) / at.mass : 0;
       work += at.external[a] * u;
       if (held(i, a)) work += 0.5 * (at.reaction[a] - at.force[a]) * u;
       const double v = held(i, a)
@@ -338,20 +415,61 @@ void ImplicitIntegrator::move() {
       const bool on_wall = held(i, a) && unknowns_.held_displacements()[k] == 0;
       gained[k] = at.mass > cutoff && !on_wall ? v - at.velocity[a] : 0;
       if (lags_ && at.mass > cutoff && !on_wall) {
+        const bool led = held(i, a) || at.contact[0] != 0 || at.contact[1] != 0 || at.contact[2] != 0;
         const double at_end = rule_.force_at_end(u, at.velocity[a], force, at.lag[a]);
-        const double lag = held(i, a) ? 0 : rule_.fresh * (at_end - force) - rule_.fade * at.lag[a];
+        const double lag = led ? 0 : rule_.fresh * (at_end - force) - rule_.fade * at.lag[a];
         lag_gained[k] = (lag - at.lag[a]) / model_.clock.dt;
       }
       work -= 0.5 * model_.scene->solution.damping * at.mass * (at.velocity[a] + v) * u;
     }
     if (work != 0) of_nodes_.work.add(work);
   }
+  std::vector<RigidContact::Exerted> exerted;
+  if (contact_) exerted = exerted_by_bodies(gained);
   // The last residual of a line search need not be that of the solution.
   unknowns_.distribute(solution_, displacements_);
   if (rule_.dynamic()) unknowns_.distribute(gained, velocities_);
   if (lags_) unknowns_.distribute(lag_gained, lag_increments_);
   passes_->move_particles(displacements_, rule_.dynamic() ? &velocities_ : nullptr,
                           lags_ ? &lag_increments_ : nullptr);
+  if (contact_) contact_->end_step(solution_, exerted, of_nodes_);
+}
+
+/// What the bodies have exerted. In a dynamic step nodes that press go on with the body, those that stick in
+/// all directions. Of a quasi-static one equilibrium gives the forces at the start too: the mean does the
+/// work.
+std::vector<RigidContact::Exerted> ImplicitIntegrator::exerted_by_bodies(std::span<double> gained) const {
+  std::vector<RigidContact::Exerted> exerted;
+  std::vector<RigidContact::Response> found;
+  std::vector<int> bodies(state_.size());  // that act on a node
+  for (const RigidContact::Touch& touch : contact_->touches()) {
+    found.push_back(contact_->response(touch, RigidContact::displacement(solution_, touch.node)));
+    if (found.back().force != Vec3<double>{}) ++bodies[touch.node];
+  }
+  for (std::size_t t = 0; t < found.size(); ++t) {
+    const RigidContact::Touch& touch = contact_->touches()[t];
+    const NodeState& at = state_[touch.node];
+    RigidContact::Exerted by_body{found[t].force, found[t].force};
+    if (!rule_.dynamic() && bodies[touch.node] > 0) {
+      for (int a = 0; a < 3; ++a)
+        by_body.mean[a] -=
+            0.5 * (found[t].force[a] + (held(touch.node, a) ? 0 : at.force[a] / bodies[touch.node]));
+    } else if (found[t].pressure > 0 && at.mass > model_.grid->geometry().mass_cutoff) {
+      double* const more = gained.data() + 3 * touch.node;
+      Vec3<double> v{}, missing{};
+      for (int a = 0; a < 3; ++a) {
+        v[a] = at.velocity[a] + more[a];
+        if (!held(touch.node, a))
+          missing[a] = solution_[3 * touch.node + static_cast<std::size_t>(a)] / model_.clock.dt - v[a];
+      }
+      if (!touch.sticks) missing = dot(missing, touch.normal) * touch.normal;
+      for (int a = 0; a < 3; ++a) more[a] += missing[a];
+      by_body.stop = at.mass * missing;
+      by_body.gained = dot(by_body.stop, v + 0.5 * missing);
+    }
+    exerted.push_back(by_body);
+  }
+  return exerted;
 }
 
 double ImplicitIntegrator::stable_step(const StepStatistics& statistics) const {
@@ -361,6 +479,7 @@ double ImplicitIntegrator::stable_step(const StepStatistics& statistics) const {
 StepStatistics ImplicitIntegrator::take_statistics() {
   StepStatistics all = passes_->take_statistics();
   all.work += of_nodes_.work;
+  all.contact += of_nodes_.contact;
   of_nodes_ = {};
   return all;
 }

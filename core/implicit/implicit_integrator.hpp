@@ -20,6 +20,7 @@
 
 #include "core/implicit/cell_stabilisation.hpp"
 #include "core/implicit/implicit_passes.hpp"
+#include "core/implicit/rigid_contact.hpp"
 #include "core/implicit/time_rule.hpp"
 #include "core/step/cells_in_use.hpp"
 #include "core/step/integrator.hpp"
@@ -49,6 +50,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     double lag[3];       ///< of the acceleration, at the start
     double external[3];  ///< force
     double force[3];     ///< all, at the start
+    double contact[3];   ///< force by rigid bodies in the last evaluation
     double reaction[3];  ///< residual of the last evaluation, also of held components
     double ahead[3];     ///< what the rest of the way of held nodes adds to it
   };
@@ -68,7 +70,13 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
 
   void prepare();
   void solve();
+  NewtonReport solve_once(std::span<double> u, const NewtonOptions& options);
+  void settle_friction(std::span<double> u, const NewtonOptions& options, NewtonReport& report);
   void move();
+  /// Sets the nodes' contact forces at displacements `u`.
+  void find_contact_forces(std::span<const double> u);
+  std::vector<Mat3<double>> contact_stiffness(std::span<const double> u) const;
+  std::vector<RigidContact::Exerted> exerted_by_bodies(std::span<double> gained) const;
   std::vector<double> first_guess() const;
   /// Why the solution cannot be accepted; empty if it can. The same on all ranks.
   std::string objection(const NewtonReport& report, std::span<const double> u);
@@ -90,9 +98,11 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   NewtonSolver& solver_;
   const ImplicitInput input_;
   std::unique_ptr<CellsInUse> cells_;
+  std::unique_ptr<RigidBodies> rigid_;  ///< in contact; null without
   std::unique_ptr<ImplicitPasses> passes_;
   NodeUnknowns unknowns_;
   CellStabilisation stabilisation_;
+  std::unique_ptr<RigidContact> contact_;  ///< null without
   TimeRule rule_;
   const bool lags_;            ///< particles carry a lag
   bool moves_bodies_ = false;  ///< some body has a prescribed motion

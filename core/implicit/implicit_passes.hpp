@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "core/contact/rigid_bodies.hpp"
 #include "core/implicit/newton_solver.hpp"
 #include "core/implicit/node_unknowns.hpp"
 #include "core/implicit/step_motion.hpp"
@@ -26,6 +27,10 @@ class ImplicitPasses {
   virtual void map_start() = 0;
   /// mapped::implicit_motion.
   virtual void map_motion() = 0;
+  /// mapped::implicit_surface: sums of V grad S and of V S over a rigid body in contact, or over the material
+  /// (no_body).
+  static constexpr int no_body = -1;
+  virtual void map_surface(int body) = 0;
   /// mapped::implicit_lag, of particles that carry one.
   virtual void map_lag() = 0;
   /// mapped::implicit_force: internal forces at the end of the step, with the nodes' displacements in
@@ -50,7 +55,8 @@ class ImplicitPasses {
   virtual StepStatistics take_statistics() = 0;
 };
 
-/// For the scene's shape functions.
-std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model);
+/// For the scene's shape functions. `rigid`: the rigid bodies in contact, which give the nodes nothing else;
+/// null without.
+std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model, const RigidBodies* rigid);
 
 }  // namespace mpm::core

@@ -24,8 +24,9 @@ namespace mpm::core {
 template <ShapePolicy S>
 class ImplicitPassesWith final : public ImplicitPasses {
  public:
-  explicit ImplicitPassesWith(Model& model)
+  ImplicitPassesWith(Model& model, const RigidBodies* rigid)
       : model_(model),
+        rigid_(rigid),
         loads_(model),
         failed_(model),
         averages_(model.scene->solution.averaging == VolumeAveraging::cell),
@@ -45,6 +46,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   }
   void map_start() override;
   void map_motion() override;
+  void map_surface(int body) override;
   void map_lag() override;
   bool map_forces(const AlignedDoubles& displacements) override;
   void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
@@ -82,10 +84,11 @@ class ImplicitPassesWith final : public ImplicitPasses {
       f(static_cast<Slot>(s), *scratch_[static_cast<std::size_t>(omp_get_thread_num())]);
     });
   }
-  /// f(tile, block, body, layout, block, lanes in use)
+  /// f(tile, layout, block, lanes in use), without rigid bodies in contact.
   template <class F>
   void for_each_block(Slot s, F f) {
     for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
+      if (rigid(tile.body) >= 0) continue;
       BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
       for (std::size_t b = 0; b < tile.blocks.size(); ++b)
         f(tile, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
@@ -140,6 +143,8 @@ class ImplicitPassesWith final : public ImplicitPasses {
     return of.data() + static_cast<std::size_t>(node_doubles * model_.grid->shape().nodes()) *
                            static_cast<std::size_t>(s);
   }
+  /// Number of the rigid body in contact that is this body; -1: none.
+  int rigid(int body) const { return rigid_ == nullptr ? -1 : rigid_->of_body(body); }
   bool prescribed(int body) const { return loads_.motion(body).kind == BodyMotion::Kind::prescribed; }
   /// Adds the motion of a batch of copies, which it moves.
   void find_motion(const ParticleTile& tile, const Body& body, Scratch& at);
@@ -149,6 +154,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
                              Column first, double* block);
 
   Model& model_;
+  const RigidBodies* rigid_;
   Loads loads_;
   FailedComponent failed_;
   Vec3<double> gravity_{};  ///< of this step

@@ -3,10 +3,10 @@
 
 namespace mpm::core {
 
-std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model) {
+std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model, const RigidBodies* rigid) {
   using Made = std::unique_ptr<ImplicitPasses>;
   return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> Made {
-    return std::make_unique<ImplicitPassesWith<S>>(model);
+    return std::make_unique<ImplicitPassesWith<S>>(model, rigid);
   });
 }
 

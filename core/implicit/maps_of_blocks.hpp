@@ -71,6 +71,33 @@ void ImplicitPassesWith<S>::map_motion() {
 }
 
 template <ShapePolicy S>
+void ImplicitPassesWith<S>::map_surface(int body) {
+  const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
+  for_bricks([&](Slot s, Scratch&) {
+    const BrickFrame frame(*model_.grid, s);
+    double* const contributions = clear_contributions(s);
+    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
+      if (body == no_body ? rigid(tile.body) >= 0 : tile.body != body) continue;
+      const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+      for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+        const double* block = pool.block(tile.blocks[b]);
+        const Place place(frame, pool.layout(), block);
+        for (int l = 0; l < tile.used_lanes(b); ++l) {
+          const double volume = block[pool.layout().offset(Column::volume) + l];
+          S::for_each_node(place, l, inverse_cell,
+                           [&](int node, const NodeOffset&, double shape, const Vec3<double>& slope) {
+                             double* to = contributions + node_doubles * node;
+                             for (int a = 0; a < 3; ++a) to[a] += volume * slope[a];
+                             to[node_field::mass.first] += volume * shape;
+                           });
+        }
+      }
+    }
+    fold(mapped::implicit_surface, s, contributions);
+  });
+}
+
+template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_lag() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   for_bricks([&](Slot s, Scratch&) {

@@ -12,7 +12,8 @@ void ImplicitPassesWith<S>::find_motion(const ParticleTile& tile, const Body& bo
   const Batch& batch = at.batch;
   const ColumnLayout& layout = *batch.layout;
   const GridGeometry& g = model_.grid->geometry();
-  const bool moved = prescribed(tile.body);
+  const int rigid = this->rigid(tile.body);
+  const bool moved = rigid < 0 && prescribed(tile.body), bounded = rigid < 0 && !moved;
   for (int i = 0; i < batch.particles; ++i) {
     const int l = i % block_lanes;
     double* const block = batch.block[i / block_lanes];
@@ -20,7 +21,10 @@ void ImplicitPassesWith<S>::find_motion(const ParticleTile& tile, const Body& bo
     Vec3<double> first{}, travel{};
     if (l == 0) {
       std::copy_n(x, 3 * block_lanes, at.old);
-      if (!moved) MotionOfBlock<S>{at.places[i / block_lanes], at.displacements}.move(layout, 1.0, block);
+      if (rigid >= 0)
+        rigid_->move(rigid, layout, block);
+      else if (!moved)
+        MotionOfBlock<S>{at.places[i / block_lanes], at.displacements}.move(layout, 1.0, block);
     }
     if (moved) travel = dt_ * loads_.motion(tile.body).velocity.velocity(block + l);
     for (int a = 0; a < 3; ++a) {
@@ -29,8 +33,8 @@ void ImplicitPassesWith<S>::find_motion(const ParticleTile& tile, const Body& bo
       travel[a] = per_cell * (moved ? travel[a] : x[block_lanes * a + l] - from);
       const auto face = static_cast<std::size_t>(2 * a);
       const double last = first[a] + travel[a];
-      if (!moved && is_constrained(g.boundary[face])) at.motion.add_beyond_wall(-last);
-      if (!moved && is_constrained(g.boundary[face + 1]))
+      if (bounded && is_constrained(g.boundary[face])) at.motion.add_beyond_wall(-last);
+      if (bounded && is_constrained(g.boundary[face + 1]))
         at.motion.add_beyond_wall(last - static_cast<double>(g.cells[static_cast<std::size_t>(a)]));
     }
     at.motion.add_particle(tile.body, first, travel);

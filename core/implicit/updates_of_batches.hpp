@@ -26,6 +26,7 @@ void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTi
                                        double* block, int used, bool dynamic, bool lags, Scratch& at) {
   const ColumnLayout& layout = *at.batch.layout;
   const Place& place = at.places[b];
+  if (const int number = rigid(tile.body); number >= 0) return rigid_->move(number, layout, block);
   const auto velocity = [&](int a) { return block + layout.offset(next(Column::velocity_x, a)); };
   const bool moved = prescribed(tile.body);
   if (moved) {

@@ -2,6 +2,7 @@
 // (core/setup/prepare_model.cpp).
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,44 @@ void check_faces(const Node& root, const core::GridInput& grid, const BuildConte
         "(fixed) or 2 (symmetry)");
 }
 
+/// Nodes have one displacement: that of the material, which touches rigid bodies
+/// (core/implicit/rigid_contact.hpp).
+void check_rigid_contact(const Node& root, const core::Scene& scene, const BuildContext& context) {
+  const auto contact = root.child("Contact");
+  if (!contact) return;
+  const auto refuse = [&](std::string_view attribute, std::string why) {
+    contact->report(context.diagnostics, attribute, std::move(why));
+  };
+  std::set<std::size_t> deformable;
+  bool rigid = false;
+  for (std::size_t c = 0; c < scene.components.size(); ++c) {
+    for (const core::BodyInput& body : scene.components[c].bodies) {
+      if (body.deactivated || body.for_bool || body.material >= scene.materials.size()) continue;
+      const bool is_rigid = scene.materials[body.material].strength.type == "Rigid";
+      rigid |= is_rigid;
+      if (!is_rigid) deformable.insert(c);
+    }
+  }
+  if (deformable.size() > 1 || !rigid)
+    refuse("enable",
+           "with implicit steps contact is between one deformable component and rigid bodies: join the "
+           "deformable bodies in one component, in which they stick to each other, give the others the "
+           "material Rigid, or set it to 0");
+  const core::ContactInput& input = scene.contact;
+  const std::string one = " is not available with implicit steps: ";
+  if (scene.solution.implicit && scene.solution.implicit->linearised())
+    refuse("enable",
+           "is not available with semi-implicit steps: use type dynamic or quasistatic, or set it to 0");
+  if (input.distance != core::ContactInput::Distance::shared_node)
+    refuse("distance_type", "must be 0 with implicit steps, which find contact at nodes that both reach");
+  if (input.regression)
+    refuse("contact_normal", "regression" + one + "normals are those of the rigid body; remove it");
+  if (input.limits_time_step)
+    refuse("contact_time_step", "must be 0 with implicit steps, whose length Newton's method decides");
+  if (input.failed_to_component)
+    refuse("failure_to_component", "must be 0 with implicit steps, which have one deformable component");
+}
+
 }  // namespace
 
 void check_implicit(const Node& root, const core::Scene& scene, const BuildContext& context) {
@@ -51,10 +90,7 @@ void check_implicit(const Node& root, const core::Scene& scene, const BuildConte
   if (!solution || scene.solution.integration != core::Integration::implicit) return;
   check_settings(*solution, scene.solution, context);
   check_faces(root, scene.grid, context);
-  if (scene.contact.enable)
-    if (const auto contact = root.child("Contact"))
-      contact->report(context.diagnostics, "enable",
-                      "is not available with implicit steps: bodies stick to each other; set it to 0");
+  if (scene.contact.enable) check_rigid_contact(root, scene, context);
 }
 
 }  // namespace mpm::io
