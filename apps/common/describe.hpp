@@ -2,7 +2,7 @@
 // states that were corrected.
 #pragma once
 
-#include "core/communication/communication.hpp"
+#include "core/communication/reductions.hpp"
 #include "core/model.hpp"
 #include "core/step/stepper.hpp"
 #include "io/output/log.hpp"
