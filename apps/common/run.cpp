@@ -114,9 +114,9 @@ class Run {
       }
       if (code == stopped_early) save();
       outputs_->finish(model_, communication_);
-    } catch (const parallel::UnknownSolverOptions& unknown) {
+    } catch (const parallel::WrongSolverOptions& wrong) {
       status = "failed";
-      reason = unknown.what();
+      reason = wrong.what();
       code = input_error;
     } catch (const core::NumericalFailure& failure) {
       status = "failed";

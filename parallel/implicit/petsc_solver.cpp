@@ -155,7 +155,9 @@ void PetscSolver::refuse_unused_options() {
     if (std::string(names[i]) != "options_left" && std::string(names[i]) != "no_signal_handler")
       unused += fmt::format("{}-{}", unused.empty() ? "" : ", ", names[i]);
   check_petsc(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
-  if (!unused.empty()) throw UnknownSolverOptions(unused);
+  if (!unused.empty())
+    throw WrongSolverOptions("unknown or unused options of PETSc after --: " + unused +
+                             "; check their spelling, or remove them");
 }
 
 std::string why_not_converged(SNES snes, PetscErrorCode code, SNESConvergedReason reason, bool linear) {
@@ -198,7 +200,9 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
     choose_linear_solver(snes, 3 * problem.all_nodes(), of_->slender);
     choose_full_steps(snes, now_);
   }
-  check_petsc(SNESSetFromOptions(snes));
+  if (SNESSetFromOptions(snes) != 0)
+    throw WrongSolverOptions("options of PETSc after --: " + take_petsc_error() +
+                             "; check their values, or remove them");
   description_ = description_of(snes);
   report.structure_seconds = MPI_Wtime() - start;
 

@@ -12,12 +12,9 @@ namespace mpm::parallel {
 
 class Communicator;
 
-/// Options after -- on the command line that the solver does not know.
-class UnknownSolverOptions : public std::runtime_error {
- public:
-  explicit UnknownSolverOptions(const std::string& names)
-      : std::runtime_error("unknown or unused options of PETSc after --: " + names +
-                           "; check their spelling, or remove them") {}
+/// Options after -- on the command line that the solver does not know, or values that they cannot have.
+class WrongSolverOptions : public std::runtime_error {
+  using runtime_error::runtime_error;
 };
 
 /// Why implicit steps are not available in this build or installation; empty if they are.

@@ -11,6 +11,7 @@ COHESION, YOUNG, POISSON = 1.0, 500.0, 0.3
 PRANDTL = (2 + np.pi) * COHESION
 PRESSED, STEPS = 0.08, 40
 WAVE = (YOUNG * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON))) ** 0.5  # the density is 1
+FRICTION = 1.0  # of a rough footing
 EXPLICIT_SPEEDS = (1e-3, 1e-4)  # of the footing, over that of waves
 # Von Mises with the cohesion as shear strength, which is Tresca's criterion in plane strain.
 LAWS = {"DruckerPrager": f'type="DruckerPrager" qfai="0" kfai="{COHESION}" qpsi="0" ten_f="1e6"',
@@ -21,12 +22,13 @@ class Footing(study.Study):
     name = "footing"
     title = "Strip footing"
     about = f"""Half of a strip of half width {HALF:g} on weightless soil, {WIDTH:g} wide and {DEPTH:g} deep, in plane
-strain (cohesion {COHESION:g}, friction 0, E = {YOUNG:g}, Poisson's ratio {POISSON:g}); a rough rigid body with
+strain (cohesion {COHESION:g}, friction 0, E = {YOUNG:g}, Poisson's ratio {POISSON:g}); a rigid body with
 `PrescribedVelocity` presses it by {PRESSED:g} in {STEPS} load steps. L. Prandtl's load is (2 + pi) c = {PRANDTL:.3f} over
 the width. The load is the mean over the depth of the vertical stress over the soil, which equilibrium makes the same at
 every depth. *load*: the largest over Prandtl's, less 1; *last*: at the end; *growth*: of the load over the
-last quarter, relative; a method that locks finds no limit load. In the implicit runs the body holds the nodes that its
-particles reach, and the surface's velocity falls from the body's to that of free soil over the cell behind the last of them; so
+last quarter, relative; a method that locks finds no limit load. *implicit, contact*: the body ends at the strip's edge and is in contact with the
+soil, with a coefficient of friction of {FRICTION:g} (*rough*) or without friction; both have Prandtl's load. *implicit, held*: without
+contact the body holds the nodes that its particles reach, and the surface's velocity falls from the body's to that of free soil over the cell behind the last of them; so
 the body ends half a cell inside the strip, with half a cell to its edge (*cells*: 2.5, 4.5 and 8.5 along the half width). A body
 that ends at the strip's edge presses a strip half a cell wider on each side: 26, 15 and 8 % too much with splines and 2, 4
 and 8 cells. In the explicit runs (density 1, the default artificial
@@ -43,7 +45,12 @@ moves at the stated part of the speed of waves, {WAVE:.1f}."""
                     continue
                 for cells in (2.5, 4.5, 8.5) if law == "DruckerPrager" else (2.5, 4.5):  # the same criterion
                     quick = law == "DruckerPrager" and shape == "QuadraticBSpline" and cells == 2.5
-                    found.append(self.one("implicit", law, shape, cells, quick))
+                    found.append(self.one("implicit, held", law, shape, cells, quick))
+        for shape in scenes.SHAPES:
+            for by in ("rough", "smooth") if shape in ("linear", "QuadraticBSpline") else ("rough",):
+                for cells in (2, 4, 8):
+                    quick = shape == "QuadraticBSpline" and cells == 2
+                    found.append(self.one(f"implicit, contact, {by}", "DruckerPrager", shape, cells, quick))
         for shape in ("linear", "QuadraticBSpline"):
             for speed in EXPLICIT_SPEEDS:
                 for cells in (2, 4, 8):
@@ -53,19 +60,20 @@ moves at the stated part of the speed of waves, {WAVE:.1f}."""
 
     @staticmethod
     def one(by, law, shape, cells, quick):
-        h, is_implicit = HALF / cells, by == "implicit"
+        h, is_implicit, is_held = HALF / cells, by.startswith("implicit"), by == "implicit, held"
         speed = PRESSED if is_implicit else float(by.split()[1]) * WAVE
         end = PRESSED / speed
         solution = scenes.implicit(end, end / STEPS) if is_implicit else scenes.explicit(end)
         soil = scenes.block("soil", (0, 0, 0), (WIDTH, h, DEPTH), h / 2)
-        footing = scenes.block("footing", (0, 0, DEPTH), (HALF - h / 2 if is_implicit else HALF, h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
+        footing = scenes.block("footing", (0, 0, DEPTH), (HALF - h / 2 if is_held else HALF, h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
         strength = f'{LAWS[law]} Young="{YOUNG}" Poisson="{POISSON}"'
         parts = (scenes.grid(shape, (0, 0, 0), (WIDTH, h, DEPTH + 4 * h), "222210", h), solution,
                  [scenes.material("solid", 1.0, strength), scenes.rigid()], scenes.pictures(end / 20, ("SigmaZ", "density")))
-        if is_implicit:
+        rough = f'<Friction><Coefficient mat1="solid" mat2="rigid" value="{FRICTION}"/></Friction>' if by.endswith("rough") else ""
+        if is_held:
             text = scenes.scene([soil, footing], *parts)
         else:
-            text = scenes.two_components([soil], [footing], *parts, more='<Contact enable="1"/>')
+            text = scenes.two_components([soil], [footing], *parts, more='<Contact enable="1"/>' + rough)
 
         def measure(result):
             mine = result.column("z", 0) < DEPTH
@@ -81,7 +89,7 @@ moves at the stated part of the speed of waves, {WAVE:.1f}."""
         return Run({"steps by": by, "law": law, "shape": shape, "cells": cells}, text, measure, quick)
 
     def block(self, rows):
-        kinds = [[r for r in rows if (r["steps by"] == "implicit") == is_implicit] for is_implicit in (True, False)]
+        kinds = [[r for r in rows if (r["steps by"] == "implicit, held") == is_held] for is_held in (True, False)]
         text = ["*last*, per cent, over the cells along the half width"]
         text += [study.convergence(mine, "last", "cells", ("steps by", "law", "shape"), ".2f", 100) for mine in kinds if mine]
         lines = [[r["steps by"], r["law"], r["shape"], f"{r['cells']:g}", *(study.shown(r, n, ".2f", 100) for n in self.measured),
