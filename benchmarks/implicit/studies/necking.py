@@ -2,6 +2,7 @@
 
 import numpy as np
 
+import necked_bar
 import scenes
 import study
 from run_one import Run
@@ -36,6 +37,17 @@ def particles(lower, upper, h, fine=False):
     return "\n".join(lines) + "\n"
 
 
+def flow(plastic):
+    left = SATURATION * np.exp(-EXPONENT * plastic)
+    return YIELD + SATURATION + LINEAR * plastic - left, LINEAR + EXPONENT * left
+
+
+def bar(radial, axial, held=True):
+    """The reference, by finite elements."""
+    return necked_bar.Bar(necked_bar.Metal(BULK, SHEAR, flow), lambda z: RADIUS * (NECK + (1 - NECK) * z / HALF), HALF, radial, axial,
+                          held=held)
+
+
 class Necking(study.Study):
     name = "necking"
     title = "Necking of a bar"
@@ -53,13 +65,13 @@ class Necking(study.Study):
         speed = PULLED if is_implicit else float(by.split()[1]) * WAVE
         end = PULLED / speed
         bodies = [f'<Body name="{name}" material="{of}" type="Point"><Geometry file="{name}.txt"/>{more}</Body>'
-                  for name, of, more in (("bar", "metal", ""), ("head", "stiff", ""), ("grip", "rigid", scenes.moved(vz=speed)))]
+                  for name, of, more in (("bar", "metal", ""), ("head", "elastic", ""), ("grip", "rigid", scenes.moved(vz=speed)))]
         width = (np.ceil(RADIUS / h) + 1) * h
         top = (cells + 5 + np.ceil(PULLED / h) + 2) * h
         law = (f'type="Voce" Young="{YOUNG!r}" Poisson="{POISSON!r}" Yield0="{YIELD}" Q="{SATURATION}" b="{EXPONENT}" '
                f'H="{LINEAR}" bq1="0" bq2="0"')
         metals = [scenes.material("metal", DENSITY, law), scenes.rigid(DENSITY),
-                  scenes.material("stiff", DENSITY, f'type="IsoElastic" Young="{10 * YOUNG!r}" Poisson="{POISSON!r}" bq1="0" bq2="0"')]
+                  scenes.material("elastic", DENSITY, f'type="IsoElastic" Young="{YOUNG!r}" Poisson="{POISSON!r}" bq1="0" bq2="0"')]
         averages = f'<Volumetric averaging="{averaging}"/>'
         solution = (scenes.implicit(end, end / steps, children=averages) if is_implicit
                     else scenes.explicit(end, more=averages))
