@@ -17,6 +17,7 @@ LAWS = {
     "IsoElastic": "", "CauchyElastic": "", "NeoHookean": "", "Corotated": "",
     "ElaPlastic": 'Yield0="20"',
     "IsoHarden": 'Yield0="20" TangMod="100"',
+    "Voce": 'Yield0="20" Q="5" b="20" H="100"',
     "SimJohnsonCook": 'Yield0="20" B="30" n="0.4" C="0.02" epso="1"',
 }
 
