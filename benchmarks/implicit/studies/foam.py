@@ -20,6 +20,7 @@ CELLS = (8, 16, 32)
 EXPLICIT_SPEEDS = (0.01, 0.001)  # of the platen, over that of elastic waves
 PICTURES = 48
 NEWTON = 100
+TANGENTS = ("differences", "matrixfree")  # beside assembled
 PLATEAU = 0.8
 PARTS = {"a cell": 1, "half a cell": 2}  # steps for each cell of the way
 
@@ -78,7 +79,7 @@ the end, where the stress is {exact(-np.log(SHARE)):.1f} MPa. *steps by*: a load
 last stress less the block's, in cells, since the stress of a locked foam tells no more; *iterations*: of Newton's method per step,
 on the plateau and from there on; *cuts*: steps taken again. In the explicit runs (without artificial viscosity) the platen is in contact, and
 moves at the stated part of the speed of elastic waves, {WAVE:.0f} m/s."""
-    labels = ("steps by", "shape", "cells")
+    labels = ("steps by", "shape", "jacobian", "cells")
     measured = ("plateau", "gap", "stress", "early", "late")
 
     def runs(self):
@@ -87,6 +88,7 @@ moves at the stated part of the speed of elastic waves, {WAVE:.0f} m/s."""
             for by in (*PARTS, *(f"explicit {speed:g}" for speed in EXPLICIT_SPEEDS)):
                 found += [self.one(by, shape, cells, cells == 8 and by in ("a cell", "explicit 0.01") and shape == "CPDI2")
                           for cells in CELLS]
+        found += [self.one("a cell", "CPDI2", cells, tangent=tangent) for tangent in TANGENTS for cells in CELLS[:2]]
         return found
 
     @staticmethod
@@ -119,15 +121,15 @@ moves at the stated part of the speed of elastic waves, {WAVE:.0f} m/s."""
             early = [len(s.norms) - 1 for s, end in zip(result.steps, ends(result.steps)) if HEIGHT - speed * end > HEIGHT * np.exp(-knee)]
             late = [len(s.norms) - 1 for s in result.steps[len(early):]]
             gap = HEIGHT * np.exp(-strain_at(stress[-1])) - heights[-1]
-            found = {"plateau": np.abs(stress / exact(strain) - 1)[flat].max(), "gap": gap / h, "stress": stress[-1] / exact(strain[-1])}
+            found = {"plateau": np.abs(stress[flat] / exact(strain[flat]) - 1).max(), "gap": gap / h, "stress": stress[-1] / exact(strain[-1])}
             return found | ({"early": np.mean(early), "late": np.mean(late)} if is_implicit else {})
 
-        return Run({"steps by": by, "shape": shape, "cells": cells}, text, measure, quick)
+        return Run({"steps by": by, "shape": shape, "jacobian": tangent if is_implicit else "none", "cells": cells}, text, measure, quick)
 
     def block(self, rows):
-        heads = ["steps by", "shape", "cells", "plateau", "gap, cells", "last stress over exact", "steps", "cuts", "iterations, plateau",
+        heads = ["steps by", "shape", "Jacobian", "cells", "plateau", "gap, cells", "last stress over exact", "steps", "cuts", "iterations, plateau",
                  "iterations, locking", "seconds"]
-        lines = [[r["steps by"], r["shape"], f"{r['cells']:g}", *(study.shown(r, n, how) for n, how in
+        lines = [[r["steps by"], r["shape"], "–" if r["jacobian"] == "none" else r["jacobian"], f"{r['cells']:g}", *(study.shown(r, n, how) for n, how in
                   (("plateau", ".1e"), ("gap", "+.2f"), ("stress", ".2f"))),
                   *("–" if r[n] == "" else f"{r[n]:g}" for n in ("steps", "cuts")),
                   *(study.shown(r, n, ".1f") for n in ("early", "late")), study.shown(r, "seconds", ".2g")] for r in rows]
