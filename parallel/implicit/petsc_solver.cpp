@@ -316,7 +316,11 @@ void PetscSolver::choose_linear_solver(SNES snes, std::int64_t unknowns) {
   if (unknowns <= direct_up_to || of_->slender) {
     check(KSPSetType(ksp, KSPPREONLY));
     check(PCSetType(pc, PCLU));
-    check(PCFactorSetMatSolverType(pc, of_->slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
+    // A package that the user has named is not changed: in a later solution PETSc refuses that.
+    PetscBool named = PETSC_FALSE;
+    check(PetscOptionsHasName(nullptr, nullptr, "-pc_factor_mat_solver_type", &named));
+    if (named == PETSC_FALSE)
+      check(PCFactorSetMatSolverType(pc, of_->slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
     if (of_->slender) check(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
   } else {
     check(KSPSetType(ksp, KSPGMRES));
