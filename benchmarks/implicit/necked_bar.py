@@ -1,10 +1,9 @@
 """A circular bar that necks, by axisymmetric finite elements: the reference of studies/necking.py.
 
-Quadrilaterals of four nodes with the determinant of F from the element's middle (F-bar: E. A. de Souza Neto et al., Int. J.
-Solids Struct. 33 (1996) 3277) so that they do not lock; von Mises plasticity in logarithmic elastic strains with the
-increment e_e <- exp, which is exact in the volume (J. C. Simo, Comput. Methods Appl. Mech. Eng. 99 (1992) 61). Newton's
-method; the elements' matrices by differences. tests/system/benchmarks_implicit.py compares uniform tension with the
-closed form.
+Quadrilaterals of four nodes with the determinant of F from the element's middle (F-bar), so that they do not lock; von Mises
+plasticity in the logarithms of the principal elastic stretches, in which the radial return is that of small strains and
+plastic flow keeps the volume; the yield stress is Kirchhoff's. Newton's method; the elements' matrices by differences.
+tests/system/benchmarks_implicit.py compares uniform tension with the closed form.
 
   necked_bar.py [RADIAL AXIAL]     the table of studies/necking.py: elongation, ratio of radii, force"""
 

@@ -1,5 +1,4 @@
-// Von Mises plasticity with hardening that saturates (E. Voce, J. Inst. Metals 74 (1948) 537), and a linear
-// part:
+// Von Mises plasticity with Voce's hardening, which saturates, and a linear part:
 //   sigma_y = Yield0 + H epef + Q (1 - exp(-b epef))
 // Radial return with the increment of the consistency condition; exact for one step of any size along a fixed
 // direction. Tested by tests/physics/j2_test.cpp; a bar that necks: benchmarks/implicit/studies/necking.py.

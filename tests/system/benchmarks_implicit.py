@@ -74,14 +74,16 @@ class Solutions(unittest.TestCase):
 
     def test_necked_bar(self):
         # Without an imperfection and with ends free to narrow it stays uniform: Kirchhoff's stress of the logarithmic strain.
-        even = necked_bar.Bar(necked_bar.Metal(necking.BULK, necking.SHEAR, necking.flow), lambda z: 1.0 + 0 * z, 2.0, 2, 3, held=False)
+        metal = necked_bar.Metal(necking.BULK, necking.SHEAR, necking.flow)
+        even = necked_bar.Bar(metal, lambda z: 1.0 + 0 * z, 2.0, 2, 3, held=False)
         rows = necked_bar.curve(even, 0.2, 10)
         stretch = 1 + rows[1:, 0] / 4
         strain, stress = np.log(stretch), rows[1:, 2] / np.pi * stretch
         np.testing.assert_allclose(stress, necking.flow(strain - stress / necking.YOUNG)[0], rtol=1e-9)
         # A coarse mesh up to 8 mm, beyond the largest force, against the table, of a fine one.
         rows = necked_bar.curve(necking.bar(4, 8), 4.0, 40)
-        ratio, force = (np.interp(necking.REFERENCE[:17, 0], rows[:, 0], v) for v in (rows[:, 1] / necking.RADIUS, rows[:, 2] / 1e3))
+        ratio, force = (np.interp(necking.REFERENCE[:17, 0], rows[:, 0], v)
+                        for v in (rows[:, 1] / necking.RADIUS, rows[:, 2] / 1e3))
         np.testing.assert_allclose(ratio, necking.REFERENCE[:17, 1], atol=0.03)  # measured 0.023; 0.007 with 6 by 16
         self.assertAlmostEqual(force.max() / necking.PEAK, 1, delta=3e-3)
         # Considere's force, with the smallest and with the largest radius.
@@ -90,12 +92,12 @@ class Solutions(unittest.TestCase):
 
     def test_foam(self):
         """The closed form is what the law computes."""
-        steps_, end = 4000, -math.log(foam.SHARE)
+        path = f"uniaxial_strain {math.log(foam.SHARE)!r} steps 4000"
         with tempfile.TemporaryDirectory() as folder:
             case = pathlib.Path(folder) / "case.xmp"
             case.write_text(f'<PeneBlast version="1.0">{scenes.material("foam", foam.DENSITY, foam.LAW)}</PeneBlast>')
-            said = subprocess.run([_mpm.BIN / "mpm_point", case, "--path", f"uniaxial_strain {-end!r}", "-n", str(steps_), "--every", "100"],
-                                  capture_output=True, text=True, check=True)
+            said = subprocess.run([_mpm.BIN / "mpm_point", case, "--path", path, "--every", "100"], capture_output=True, text=True,
+                                  check=True)
         rows = list(csv.DictReader(said.stdout.splitlines()))[1:]
         strain, stress = (np.array([-float(r[name]) for r in rows]) for name in ("strain_xx", "stress_xx"))
         np.testing.assert_allclose(foam.exact(strain), stress, rtol=1e-6)

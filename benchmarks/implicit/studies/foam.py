@@ -62,23 +62,21 @@ def slope(plastic):
     return MODULUS * hardening / (MODULUS + hardening)
 
 
-def ends(steps):
-    return np.cumsum([s.length for s in steps])
-
-
 class Foam(study.Study):
     name = "foam"
     title = "Foam that locks"
-    about = f"""A block of metal foam (`DFFoam`: E = {YOUNG:g} MPa, Poisson's ratio {POISSON:g}, alfa {ALPHA:g}, yield at {YIELD:g} MPa;
-gama {LINEAR:g}, alal {LOGARITHMIC:g}, bebe {EXPONENT:g}, epsud {LOCKING:g}), {HEIGHT:g} mm high and two by two cells wide between symmetry planes, that a
-rigid platen compresses to {SHARE:g} of its height. With these constants elastic and plastic strain have the same direction, so that
-the law in uniaxial strain has a closed form, which `mpm_point` reproduces. The slope of stress over logarithmic strain is {slope(0.0):.2f}
-MPa where the plateau begins, 1/{MODULUS / slope(0.0):.0f} of the elastic one, and {slope(solved(lambda p: p + strength(p) / MODULUS, -np.log(SHARE), LOCK)):.0f} MPa at
-the end, where the stress is {exact(-np.log(SHARE)):.1f} MPa. *steps by*: a load step moves the platen by so much; Newton's method may take
-{NEWTON} iterations. *plateau*: the largest error of the stress up to r = {PLATEAU:g} of the locking strain, relative; *gap*: the exact height at the
-last stress less the block's, in cells, since the stress of a locked foam tells no more; *iterations*: of Newton's method per step,
-on the plateau and from there on; *cuts*: steps taken again. In the explicit runs (without artificial viscosity) the platen is in contact, and
-moves at the stated part of the speed of elastic waves, {WAVE:.0f} m/s."""
+    about = f"""A block of metal foam (`DFFoam`: E = {YOUNG:g} MPa, Poisson's ratio {POISSON:g}, alfa {ALPHA:g}, yield at
+{YIELD:g} MPa; gama {LINEAR:g}, alal {LOGARITHMIC:g}, bebe {EXPONENT:g}, epsud {LOCKING:g}), {HEIGHT:g} mm high and two by two
+cells wide between symmetry planes, that a rigid platen compresses to {SHARE:g} of its height. With these constants elastic
+and plastic strain have the same direction, so that the law in uniaxial strain has a closed form, which `mpm_point`
+reproduces. The slope of stress over logarithmic strain is {slope(0.0):.2f} MPa where the plateau begins,
+1/{MODULUS / slope(0.0):.0f} of the elastic one, and
+{slope(solved(lambda p: p + strength(p) / MODULUS, -np.log(SHARE), LOCK)):.0f} MPa at the end, where the stress is
+{exact(-np.log(SHARE)):.1f} MPa. *steps by*: a load step moves the platen by so much; Newton's method may take {NEWTON}
+iterations. *plateau*: the largest error of the stress up to r = {PLATEAU:g} of the locking strain, relative; *gap*: the exact
+height at the last stress less the block's, in cells, since the stress of a locked foam tells no more; *iterations*: of
+Newton's method per step, on the plateau and from there on; *cuts*: steps taken again. In the explicit runs (without
+artificial viscosity) the platen is in contact, and moves at the stated part of the speed of elastic waves, {WAVE:.0f} m/s."""
     labels = ("steps by", "shape", "jacobian", "cells")
     measured = ("plateau", "gap", "stress", "early", "late")
 
@@ -98,7 +96,8 @@ moves at the stated part of the speed of elastic waves, {WAVE:.0f} m/s."""
         speed = 1.0 if is_implicit else float(by.split()[1]) * WAVE
         end = (1 - SHARE) * HEIGHT / speed
         steps = round((1 - SHARE) * cells) * PARTS[by] if is_implicit else PICTURES
-        solution = scenes.implicit(end, end / steps, more=f'jacobian="{tangent}" max_newton="{NEWTON}"') if is_implicit else scenes.explicit(end)
+        solution = (scenes.implicit(end, end / steps, more=f'jacobian="{tangent}" max_newton="{NEWTON}"') if is_implicit
+                    else scenes.explicit(end))
         body = scenes.block("block", (0, 0, 0), (2 * h, 2 * h, HEIGHT), h / 2)
         platen = scenes.block("platen", (0, 0, HEIGHT), (2 * h, 2 * h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
         parts = (scenes.grid(shape, (0, 0, 0), (2 * h, 2 * h, HEIGHT + 4 * h), "222220", h), solution,
@@ -118,21 +117,25 @@ moves at the stated part of the speed of elastic waves, {WAVE:.0f} m/s."""
             stress = np.array([-(v * result.column("SigmaZ", i)[mine]).sum() / v.sum() for i, v in enumerate(volumes)])
             strain = np.log(HEIGHT / heights)
             flat = (strain > 0) & (strain < knee)
-            early = [len(s.norms) - 1 for s, end in zip(result.steps, ends(result.steps)) if HEIGHT - speed * end > HEIGHT * np.exp(-knee)]
-            late = [len(s.norms) - 1 for s in result.steps[len(early):]]
+            iterations, ends = [len(s.norms) - 1 for s in result.steps], np.cumsum([s.length for s in result.steps])
+            turn = int((HEIGHT - speed * ends > HEIGHT * np.exp(-knee)).sum())
             gap = HEIGHT * np.exp(-strain_at(stress[-1])) - heights[-1]
-            found = {"plateau": np.abs(stress[flat] / exact(strain[flat]) - 1).max(), "gap": gap / h, "stress": stress[-1] / exact(strain[-1])}
-            return found | ({"early": np.mean(early), "late": np.mean(late)} if is_implicit else {})
+            found = {"plateau": np.abs(stress[flat] / exact(strain[flat]) - 1).max(), "gap": gap / h,
+                     "stress": stress[-1] / exact(strain[-1])}
+            if is_implicit:
+                found.update(early=np.mean(iterations[:turn]), late=np.mean(iterations[turn:]))
+            return found
 
-        return Run({"steps by": by, "shape": shape, "jacobian": tangent if is_implicit else "none", "cells": cells}, text, measure, quick)
+        labels = {"steps by": by, "shape": shape, "jacobian": tangent if is_implicit else "none", "cells": cells}
+        return Run(labels, text, measure, quick)
 
     def block(self, rows):
-        heads = ["steps by", "shape", "Jacobian", "cells", "plateau", "gap, cells", "last stress over exact", "steps", "cuts", "iterations, plateau",
-                 "iterations, locking", "seconds"]
-        lines = [[r["steps by"], r["shape"], "–" if r["jacobian"] == "none" else r["jacobian"], f"{r['cells']:g}", *(study.shown(r, n, how) for n, how in
-                  (("plateau", ".1e"), ("gap", "+.2f"), ("stress", ".2f"))),
-                  *("–" if r[n] == "" else f"{r[n]:g}" for n in ("steps", "cuts")),
-                  *(study.shown(r, n, ".1f") for n in ("early", "late")), study.shown(r, "seconds", ".2g")] for r in rows]
+        heads = ["steps by", "shape", "Jacobian", "cells", "plateau", "gap, cells", "last stress over exact", "steps", "cuts",
+                 "iterations, plateau", "iterations, locking", "seconds"]
+        lines = [[r["steps by"], r["shape"], "–" if r["jacobian"] == "none" else r["jacobian"], f"{r['cells']:g}",
+                  *(study.shown(r, *how) for how in (("plateau", ".1e"), ("gap", "+.2f"), ("stress", ".2f"))),
+                  *("–" if r[name] == "" else f"{r[name]:g}" for name in ("steps", "cuts")),
+                  *(study.shown(r, *how) for how in (("early", ".1f"), ("late", ".1f"), ("seconds", ".2g")))] for r in rows]
         failed = study.failures(rows)
         return study.table(heads, lines) + (f"\n\nNot done:\n\n{failed}" if failed else "")
 
