@@ -318,8 +318,8 @@ void ImplicitIntegrator::settle_friction(std::span<double> u, const NewtonOption
     report.converged = next.converged;
     report.reason = next.reason;
     report.linear_iterations += next.linear_iterations;
-    report.iterations = std::max(report.iterations, next.iterations);
-    report.norms = next.norms;
+    report.iterations = std::max(report.iterations, next.iterations);  // of a solution
+    report.norms.insert(report.norms.end(), next.norms.begin() + 1, next.norms.end());
   }
 }
 

@@ -21,7 +21,11 @@ void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender) {
   if (unknowns <= direct_up_to || slender) {
     check_petsc(KSPSetType(ksp, KSPPREONLY));
     check_petsc(PCSetType(pc, PCLU));
-    check_petsc(PCFactorSetMatSolverType(pc, slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
+    // A package that the user has named is not changed: in a later solution PETSc refuses that.
+    PetscBool named = PETSC_FALSE;
+    check_petsc(PetscOptionsHasName(nullptr, nullptr, "-pc_factor_mat_solver_type", &named));
+    if (named == PETSC_FALSE)
+      check_petsc(PCFactorSetMatSolverType(pc, slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
     if (slender) check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
   } else {
     check_petsc(KSPSetType(ksp, KSPGMRES));

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/simd/dual.hpp"
 #include "physics/strength/johnson_cook_flow.hpp"
 #include "physics/strength/plasticity.hpp"
 
@@ -19,6 +20,7 @@ namespace mpm::physics {
 struct DFFoam : MisesPlasticity {  // yield0 is sigma_p
   static constexpr std::string_view name = "DFFoam";
   static constexpr std::string_view summary = "metal foam of Deshpande and Fleck";
+  using has_tangent = DFFoam;
   static constexpr std::array state{core::Column::effective_plastic_strain, core::Column::damage};
   static constexpr bool sets_pressure = true;
 
@@ -113,13 +115,41 @@ struct DFFoam : MisesPlasticity {  // yield0 is sigma_p
 
   /// The increment d of hat_eps: hat(d) - Y = 0, where the radial flow reduces the trial stress to
   ///   sigma_e/(1 + 3 G d/(k Y)),  sigma_m/(1 + K alfa^2 d/(k Y)),  k = 1 + (alfa/3)^2.
-  /// Newton's method in a shrinking bracket, independently per lane, as plastic_increment.
+  /// Its derivatives follow from the equation at the result.
   template <class T>
   T flow(const T& trial_e, const T& trial_m, const T& strain, const T& start) const {
+    const T ee = trial_e * trial_e * (1 / shape()), mm = trial_m * trial_m * (alpha * alpha / shape());
+    if constexpr (core::derivatives_of < T >> 0) {
+      const auto d = increment(ee.v, mm.v, strain.v, start.v);
+      const Excess<T> at = excess(ee, mm, strain, T(d));
+      return core::select(d > 0.0, core::implicit_root(T(d), at.value, -at.slope), T(d));
+    } else {
+      return increment(ee, mm, strain, start);
+    }
+  }
+
+  template <class T>
+  struct Excess {
+    T value, slope, yield;
+  };
+  /// hat(d) - Y, its derivative with respect to d, and Y.
+  template <class T>
+  Excess<T> excess(const T& ee, const T& mm, const T& strain, const T& d) const {
+    const double stiff_e = 3 * shear / shape(), stiff_m = bulk * alpha * alpha / shape();
+    const FlowStress<T> y = yield(strain + d);
+    const T u = d / y.value, du = (1.0 - u * y.slope) / y.value;
+    const T pe = 1.0 / (1.0 + stiff_e * u), pm = 1.0 / (1.0 + stiff_m * u);
+    const T hat = sqrt(ee * pe * pe + mm * pm * pm);
+    return {hat - y.value, -(stiff_e * ee * pe * pe * pe + stiff_m * mm * pm * pm * pm) * du / hat - y.slope,
+            y.value};
+  }
+
+  /// Newton's method in a shrinking bracket, independently per lane, as plastic_increment.
+  template <class T>
+  T increment(const T& ee, const T& mm, const T& strain, const T& start) const {
     using core::abs;
     using core::select;
-    const double k = shape(), stiff_e = 3 * shear / k, stiff_m = bulk * alpha * alpha / k;
-    const T ee = trial_e * trial_e * (1 / k), mm = trial_m * trial_m * (alpha * alpha / k);
+    const double stiff_e = 3 * shear / shape(), stiff_m = bulk * alpha * alpha / shape();
     const T trial = sqrt(ee + mm);
     const core::MaskOf<T> plastic = trial > start;
     T d = 0.0;
@@ -129,17 +159,12 @@ struct DFFoam : MisesPlasticity {  // yield0 is sigma_p
     d = select(plastic, (trial - start) * trial / (stiff_e * ee + stiff_m * mm) * start, 0.0);
     d = select(d < high, d, 0.5 * high);
     for (int iteration = 0; iteration < 100; ++iteration) {
-      const FlowStress<T> y = yield(strain + d);
-      const T u = d / y.value, du = (1.0 - u * y.slope) / y.value;
-      const T pe = 1.0 / (1.0 + stiff_e * u), pm = 1.0 / (1.0 + stiff_m * u);
-      const T hat = sqrt(ee * pe * pe + mm * pm * pm);
-      const T f = hat - y.value;
-      const core::MaskOf<T> open = plastic & (abs(f) > 1e-13 * y.value) & (high - low > 1e-16 * high);
+      const Excess<T> f = excess(ee, mm, strain, d);
+      const core::MaskOf<T> open = plastic & (abs(f.value) > 1e-13 * f.yield) & (high - low > 1e-16 * high);
       if (!core::any(open)) break;
-      low = select(f > 0.0, d, low);
-      high = select(f > 0.0, high, d);
-      const T slope = -(stiff_e * ee * pe * pe * pe + stiff_m * mm * pm * pm * pm) * du / hat - y.slope;
-      T next = d - f / slope;
+      low = select(f.value > 0.0, d, low);
+      high = select(f.value > 0.0, high, d);
+      T next = d - f.value / f.slope;
       next = select((next > low) & (next < high), next, 0.5 * (low + high));
       d = select(open, next, d);
     }

@@ -21,12 +21,13 @@
 #include "physics/strength/rigid.hpp"
 #include "physics/strength/sim_johnson_cook.hpp"
 #include "physics/strength/uniaxial.hpp"
+#include "physics/strength/voce.hpp"
 
 namespace mpm::physics {
 
 using StrengthModels =
-    LawList<IsoElastic, CauchyElastic, Elastic1D, ElaPlastic, IsoHarden, LinHarElaPlastic1D, JohnsonCook,
-            SimJohnsonCook, Null, HighExpBurn, HolmquistJohnsonCook, MooneyRivlin, Rigid, RHT, JH2,
-            DruckerPrager, DFFoam, Gurson, NeoHookean, Corotated>;
+    LawList<IsoElastic, CauchyElastic, Elastic1D, ElaPlastic, IsoHarden, Voce, LinHarElaPlastic1D,
+            JohnsonCook, SimJohnsonCook, Null, HighExpBurn, HolmquistJohnsonCook, MooneyRivlin, Rigid, RHT,
+            JH2, DruckerPrager, DFFoam, Gurson, NeoHookean, Corotated>;
 
 }  // namespace mpm::physics

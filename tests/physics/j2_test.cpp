@@ -61,6 +61,52 @@ TEST_CASE("simple shear of a hardening material in one step and in many", "[phys
   }
 }
 
+TEST_CASE("hardening that saturates, in simple shear in one step and in many, and in a bar",
+          "[physics][j2]") {
+  constexpr double saturation = 120e6, rate = 60, linear = 1e9;
+  const auto yields = [](double plastic) {
+    return yield + linear * plastic + saturation * (1 - std::exp(-rate * plastic));
+  };
+  core::MaterialInput input = copper("IsoHarden");
+  input.strength.type = "Voce";
+  input.strength.values.erase("TangMod");
+  for (const auto& [name, value] : core::ParameterValues{{"Q", saturation}, {"b", rate}, {"H", linear}})
+    input.strength.values[name] = value;
+  const auto material = make(input);
+  const double gamma = 0.05;  // engineering
+  for (const int steps : {1, 7, 100}) {
+    PointDriver point(*material, {});
+    drive(point,
+          {.kind = PathKind::gradient,
+           .targets = {gamma},
+           .steps = steps,
+           .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
+          [](double) {});
+    // Consistency: the elastic rest of the strain carries the yield stress.
+    const double plastic = point.value(Column::effective_plastic_strain);
+    CHECK(plastic > 0.02);
+    CHECK(std::sqrt(3.0) * shear * gamma - 3 * shear * plastic == Approx(yields(plastic)).epsilon(1e-11));
+    CHECK(std::sqrt(3.0) * point.stress().xy == Approx(yields(plastic)).epsilon(1e-11));
+  }
+  PointDriver bar(*material, {});
+  REQUIRE(drive(bar, {.kind = PathKind::uniaxial_stress, .targets = {0.1}, .steps = 200}, [](double) {}));
+  const double plastic = bar.value(Column::effective_plastic_strain);
+  CHECK(bar.stress().xx == Approx(yields(plastic)).epsilon(1e-9));
+  // The step that crosses yield mixes elastic and plastic lateral strain.
+  CHECK(plastic == Approx(0.1 - bar.stress().xx / young).epsilon(1e-3));
+
+  // Without the saturating part it is linear hardening, H = E Et/(E - Et).
+  core::MaterialInput straight = input;
+  straight.strength.values["Q"] = 0;
+  straight.strength.values["H"] = young * tangent / (young - tangent);
+  const auto a = make(straight), b = make(copper("IsoHarden"));
+  PointDriver first(*a, {}), second(*b, {});
+  for (PointDriver* point : {&first, &second})
+    REQUIRE(drive(*point, {.kind = PathKind::uniaxial_stress, .targets = {0.02, -0.02}, .steps = 200},
+                  [](double) {}));
+  CHECK(first.stress().xx == Approx(second.stress().xx).epsilon(1e-9));
+}
+
 TEST_CASE("a perfectly plastic bar stays at its yield stress", "[physics][j2]") {
   const auto material = make(copper("ElaPlastic"));
   PointDriver point(*material, {.extra_columns = {Column::yield_stress}});

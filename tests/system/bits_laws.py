@@ -42,6 +42,7 @@ MATERIALS = {
     "hardening": (8960, f'type="IsoHarden" {HARDENING}', GRUNEISEN, '<FailureModel type="PlaStrain" epmax="0.05"/>'),
     "expanding": (8960, f'type="IsoHarden" {HARDENING} SpecHeat="383" TemperatureCoefficient="17e-6"', None,
                   '<FailureModel type="InstGeoStrain" ErosionStrain="0.2" Erosion="1"/>'),
+    "saturating": (8960, f'type="Voce" {ELASTIC} Yield0="200e6" Q="120e6" b="60" H="1e9"', POLYNOMIAL, ""),
     "simple": (8960, f'type="SimJohnsonCook" {JOHNSON_COOK}', POLYNOMIAL2,
                '<FailureModel type="PriStrain" PriStrainMax="0.05" PriStrainMin="0" ShearStrainMax="0.1"/>'),
     "hot": (8960, f'type="JohnsonCook" {JOHNSON_COOK} {HEAT} D1="0.54" D2="4.89" D3="-3.03" D4="0.014" D5="1.12"',

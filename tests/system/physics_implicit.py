@@ -17,6 +17,7 @@ LAWS = {
     "IsoElastic": "", "CauchyElastic": "", "NeoHookean": "", "Corotated": "",
     "ElaPlastic": 'Yield0="20"',
     "IsoHarden": 'Yield0="20" TangMod="100"',
+    "Voce": 'Yield0="20" Q="5" b="20" H="100"',
     "SimJohnsonCook": 'Yield0="20" B="30" n="0.4" C="0.02" epso="1"',
 }
 
@@ -439,6 +440,7 @@ class Refused(_mpm.Case):
         path = self.write(column(steps=2))
         explicit = self.write(_mpm.bounce(0.1), "explicit.xmp")
         for job, options, code in ((path, ("-ksp_type", "gmres", "-pc_type", "bjacobi"), _mpm.DONE),
+                                   (path, ("-pc_factor_mat_solver_type", "mumps"), _mpm.DONE),
                                    (path, ("-ksp_typo", "gmres"), _mpm.INPUT_ERROR),
                                    (explicit, ("-ksp_type", "cg"), _mpm.INPUT_ERROR)):
             with self.subTest(options=options, job=job.name):

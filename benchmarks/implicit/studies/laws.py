@@ -18,10 +18,12 @@ LAWS = {
     "MooneyRivlin": ('Mr_A2="200" Mr_B2="50" Poisson="0.45"', "", 0.1),
     "ElaPlastic": (METAL + ' Yield0="200"', "", 0.02),
     "IsoHarden": (METAL + ' Yield0="200" TangMod="3000"', "", 0.02),
+    "Voce": (METAL + ' Yield0="200" Q="120" b="100" H="1000"', "", 0.02),
     "SimJohnsonCook": (METAL + ' Yield0="90" B="292" n="0.31" C="0.025" epso="1"', "", 0.02),
     "JohnsonCook": (METAL + ' Yield0="90" B="292" n="0.31" C="0.025" epso="1"'
                     ' m="1.09" melt="1356" roomt="293" SpecHeat="383e6"', "", 0.02),
     "DruckerPrager": ('Young="70" Poisson="0.3" qfai="0.4" kfai="0.2" qpsi="0.1" ten_f="0.1"', "", 0.02),
+    "DFFoam": ('Young="1000" Poisson="0.2" Yield0="5" alfa="1.5" epsud="1.4" alal="4" gama="10" bebe="2.5" vole="0"', "", 0.02),
 }
 
 

@@ -59,6 +59,7 @@ std::string materials() {
       "<StrengthModel type='IsoElastic' Young='1' Poisson='0.3'/></Material>\n";
   text += material("type='CauchyElastic'" + common) + material("type='Elastic_1D'" + common);
   text += material("type='ElaPlastic'" + plastic) + material("type='IsoHarden' TangMod='100'" + plastic);
+  text += material("type='Voce' Q='100' b='20' H='10'" + plastic);
   text += material("type='LinHarElaPlastic_1D' TangMod='100' Young='1' Yield0='2'");
   text += material(
       "type='JohnsonCook' B='1' n='0.3' C='0.01' m='1' melt='1300' epso='1' D1='1' D2='2' D3='-3' D4='0' "
@@ -295,7 +296,7 @@ TEST_CASE("every keyword reaches the scene, and the echo keeps it") {
   const std::string echo = io::to_text(scene);
   CHECK(io::to_text(io::parse_scene(echo, "all.xmp", physics::catalogue(), options)) == echo);
 
-  CHECK(scene.materials.size() == 28);
+  CHECK(scene.materials.size() == 29);
   CHECK(scene.materials[0].limiter == core::ViscosityLimiter::shock);
   CHECK(scene.materials[7].limiter == core::ViscosityLimiter::none);  // unsaid
   CHECK(scene.components[0].bodies.size() == 24);
