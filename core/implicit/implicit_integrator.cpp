@@ -319,7 +319,7 @@ void ImplicitIntegrator::settle_friction(std::span<double> u, const NewtonOption
     report.reason = next.reason;
     report.linear_iterations += next.linear_iterations;
     report.iterations = std::max(report.iterations, next.iterations);  // of a solution
-    report.norms.insert(report.norms.end(), next.norms.begin() + 1, next.norms.end());
+    for (std::size_t n = 1; n < next.norms.size(); ++n) report.norms.push_back(next.norms[n]);
   }
 }
 
