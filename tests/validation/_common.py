@@ -50,6 +50,11 @@ def machine():
     return f"{cpu}, {os.cpu_count()} cores, {platform.system()}, {datetime.date.today()}"
 
 
+def cell(value, how):
+    """A number that a row does not have, not-a-number, is a dash."""
+    return "–" if value != value else format(value, how)
+
+
 def write(folder, name, rows, columns):
     """NAME.csv and NAME.md; columns: {key: (heading, format)} for the Markdown, all keys go into the CSV."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -58,7 +63,7 @@ def write(folder, name, rows, columns):
         out.writeheader()
         out.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
     lines = ["| " + " | ".join(heading for heading, _ in columns.values()) + " |", "|" + " --- |" * len(columns)]
-    lines += ["| " + " | ".join(format(row[key], how) for key, (_, how) in columns.items()) + " |" for row in rows]
+    lines += ["| " + " | ".join(cell(row[key], how) for key, (_, how) in columns.items()) + " |" for row in rows]
     (folder / f"{name}.md").write_text("\n".join(lines) + "\n")
     print("\n".join(lines), flush=True)
 

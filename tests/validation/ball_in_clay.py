@@ -13,6 +13,7 @@ COLUMNS = {"ball": ("ball", ""), "cells": ("cells over R", "d"), "inset": ("body
            "travel": ("way, R", ".2f"),
            "particles": ("particles", "d"), "steps": ("steps", "d"), "factor": ("N", ".2f"), "error": ("error %", "+.1f"), "growth": ("growth %", "+.1f"),
            "scatter": ("scatter %", ".1f"), "drift": ("energy drift %", "+.2f"), "cpu_seconds": ("processor s", ".1f")}
+SAME = ("shape", "averaging", "contact", "mapped")  # in all rows of the first table
 
 # What a case has unless it says otherwise.
 CHOICE = {"width": 4, "speed": 0.01, "shape": "QuadraticBSpline", "averaging": "cell", "normal": "regression", "kind": 1, "transfer": "FLIP", "flip": 1}
@@ -66,7 +67,8 @@ def main():
     for name, cases, chosen in (("cells", CELLS, options.cells), ("choices", CHOICES, options.choices)):
         rows = [run(options.out / f"{name}-{i}", cases[i]) for i in chosen]
         if rows:
-            _common.write(options.out, name, rows, COLUMNS)
+            columns = {key: how for key, how in COLUMNS.items() if name != "cells" or key not in SAME}
+            _common.write(options.out, name, rows, columns)
         if name == "cells":
             judge(rows, verdict)
     verdict.finish()

@@ -21,7 +21,8 @@ LAWS = {"table 3.5": {}, "C0 2050, S1 1.46, gamma0 2.8": {".//EquationOfState": 
 COARSE = {"cell": 2.12, "spacing": 1.06}
 CASES = [{**COARSE, "factor": 0.4}, {**COARSE, "factor": 0.4, "full": True}, {"cell": 2.12, "plate": 140}, {"factor": 0.3}, {}, {"plate": 140},
          {"cell": 1, "spacing": 0.21}, {"cell": 0.53, "spacing": 0.265}, {**COARSE, "shape": "linear", "factor": 0.4}, {"shape": "linear", "factor": 0.4},
-         {"cell": 1.59, "shape": "linear", "factor": 0.9}, {"cell": 1, "spacing": 0.21, "shape": "linear", "factor": 0.4}, {"shape": "cpGIMP"},
+         {"cell": 1.59, "shape": "linear", "factor": 0.9}, {"cell": 1.59, "shape": "linear", "factor": 0.4}, {"cell": 1.59},
+         {"cell": 1, "spacing": 0.21, "shape": "linear", "factor": 0.4}, {"shape": "cpGIMP"},
          {"shape": "QuadraticBSpline"}, {"law": "C0 2050, S1 1.46, gamma0 2.8"}, {"law": "no failure by strain"}, {"law": "pmin -150"},
          {"law": "failed: no pressure"}, {**COARSE, "law": "no failure"}]
 
