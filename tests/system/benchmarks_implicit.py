@@ -172,7 +172,9 @@ class Quick(_mpm.RunOnce):
         self.assertLess(self.one("inside", "cylinder", body="plastic", shape="QuadraticBSpline"), 0.05)
 
     def test_footing(self):
-        self.assertLess(abs(self.one("last", "footing", **{"steps by": "implicit"})), 0.05)
+        self.assertLess(abs(self.one("last", "footing", **{"steps by": "implicit, held"})), 0.05)
+        self.assertLess(abs(self.one("last", "footing", **{"steps by": "implicit, contact, rough"})), 0.01)
+        self.assertLess(self.one("last", "footing", **{"steps by": "implicit, contact, smooth"}), 0)  # slides off its edge
         self.assertLess(abs(self.one("last", "footing", **{"steps by": "explicit 0.001"})), 0.05)
 
     def test_necking(self):
