@@ -1,8 +1,8 @@
 // Contact of the material with rigid bodies of prescribed motion in implicit steps, with Coulomb's friction.
 //
-// Nodes touch a body as they would be held by it without contact (node_unknowns.hpp): at its
-// surface, by the part of a cell around them that it fills. With d, the displacement of such a node in the
-// step less that of the body there, and n, the normal out of the body, the body exerts on the node
+// A node touches a body that fills at least a tenth of a cell around it. With d, the displacement of the node
+// in the step less that of the body there, n, the normal out of the body, and mu, the coefficient of
+// friction, the body exerts on it
 //   f = p n - t   p = k max(0, -d.n)   t = k d_t where the material sticks, mu p d_t/|d_t| where it slides
 // with d_t = d - (d.n) n: the node may leave the body and slide along it. k is `rigidity` times the stiffness
 // of a cell, so that in a step the material enters the body, and creeps where it sticks, by the part
