@@ -84,11 +84,12 @@ class ImplicitPassesWith final : public ImplicitPasses {
       f(static_cast<Slot>(s), *scratch_[static_cast<std::size_t>(omp_get_thread_num())]);
     });
   }
-  /// f(tile, layout, block, lanes in use), without rigid bodies in contact.
+  /// f(tile, layout, block, lanes in use) of the material (no_body), which is all but the rigid bodies in
+  /// contact, or of one of these.
   template <class F>
-  void for_each_block(Slot s, F f) {
+  void for_each_block(Slot s, F f, int body = no_body) {
     for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
-      if (rigid(tile.body) >= 0) continue;
+      if (body == no_body ? rigid(tile.body) >= 0 : tile.body != body) continue;
       BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
       for (std::size_t b = 0; b < tile.blocks.size(); ++b)
         f(tile, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));

@@ -76,23 +76,19 @@ void ImplicitPassesWith<S>::map_surface(int body) {
   for_bricks([&](Slot s, Scratch&) {
     const BrickFrame frame(*model_.grid, s);
     double* const contributions = clear_contributions(s);
-    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
-      if (body == no_body ? rigid(tile.body) >= 0 : tile.body != body) continue;
-      const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
-      for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-        const double* block = pool.block(tile.blocks[b]);
-        const Place place(frame, pool.layout(), block);
-        for (int l = 0; l < tile.used_lanes(b); ++l) {
-          const double volume = block[pool.layout().offset(Column::volume) + l];
-          S::for_each_node(place, l, inverse_cell,
-                           [&](int node, const NodeOffset&, double shape, const Vec3<double>& slope) {
-                             double* to = contributions + node_doubles * node;
-                             for (int a = 0; a < 3; ++a) to[a] += volume * slope[a];
-                             to[node_field::mass.first] += volume * shape;
-                           });
-        }
+    const auto map = [&](const ParticleTile&, const ColumnLayout& layout, const double* block, int used) {
+      const Place place(frame, layout, block);
+      for (int l = 0; l < used; ++l) {
+        const double volume = block[layout.offset(Column::volume) + l];
+        S::for_each_node(place, l, inverse_cell,
+                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& slope) {
+                           double* to = contributions + node_doubles * node;
+                           for (int a = 0; a < 3; ++a) to[a] += volume * slope[a];
+                           to[node_field::mass.first] += volume * shape;
+                         });
       }
-    }
+    };
+    for_each_block(s, map, body);
     fold(mapped::implicit_surface, s, contributions);
   });
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/contact/component_contact.hpp"
 #include "io/input/build.hpp"
 #include "io/input/text.hpp"
 
@@ -208,7 +209,7 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
                  const core::Scene& scene, const BuildContext& context) {
   const auto takes_part = [](const core::BodyInput& b) { return !b.deactivated && !b.for_bool; };
   const auto rigid = [&](const core::BodyInput& b) {
-    return b.material < scene.materials.size() && scene.materials[b.material].strength.type == "Rigid";
+    return b.material < scene.materials.size() && core::is_rigid(scene.materials[b.material]);
   };
   const core::BodyInput* deformable = nullptr;
   for (const core::BodyInput* b : bodies)

@@ -58,7 +58,7 @@ void check_rigid(const Node& node, const Bodies& bodies, const core::Scene& scen
   for (const core::BodyInput* body : bodies) {
     if (body->material >= scene.materials.size()) continue;
     ++known;
-    if (scene.materials[body->material].strength.type == "Rigid") ++rigid;
+    if (core::is_rigid(scene.materials[body->material])) ++rigid;
   }
   if (rigid > 0 && known > 1)
     node.report(context.diagnostics,

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/contact/component_contact.hpp"
 #include "io/input/build.hpp"
 
 namespace mpm::io {
@@ -53,30 +54,29 @@ void check_rigid_contact(const Node& root, const core::Scene& scene, const Build
   const auto refuse = [&](std::string_view attribute, std::string why) {
     contact->report(context.diagnostics, attribute, std::move(why));
   };
-  std::set<std::size_t> deformable;
+  std::set<int> deformable;
   bool rigid = false;
-  for (std::size_t c = 0; c < scene.components.size(); ++c) {
-    for (const core::BodyInput& body : scene.components[c].bodies) {
-      if (body.deactivated || body.for_bool || body.material >= scene.materials.size()) continue;
-      const bool is_rigid = scene.materials[body.material].strength.type == "Rigid";
-      rigid |= is_rigid;
-      if (!is_rigid) deformable.insert(c);
-    }
-  }
+  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
+    if (body.material >= scene.materials.size()) return;
+    if (core::is_rigid(scene.materials[body.material]))
+      rigid = true;
+    else
+      deformable.insert(component);
+  });
   if (deformable.size() > 1 || !rigid)
     refuse("enable",
            "with implicit steps contact is between one deformable component and rigid bodies: join the "
            "deformable bodies in one component, in which they stick to each other, give the others the "
            "material Rigid, or set it to 0");
   const core::ContactInput& input = scene.contact;
-  const std::string one = " is not available with implicit steps: ";
   if (scene.solution.implicit && scene.solution.implicit->linearised())
     refuse("enable",
            "is not available with semi-implicit steps: use type dynamic or quasistatic, or set it to 0");
   if (input.distance != core::ContactInput::Distance::shared_node)
     refuse("distance_type", "must be 0 with implicit steps, which find contact at nodes that both reach");
   if (input.regression)
-    refuse("contact_normal", "regression" + one + "normals are those of the rigid body; remove it");
+    refuse("contact_normal",
+           "regression is not available with implicit steps: normals are those of the rigid body; remove it");
   if (input.limits_time_step)
     refuse("contact_time_step", "must be 0 with implicit steps, whose length Newton's method decides");
   if (input.failed_to_component)

@@ -14,7 +14,7 @@ namespace mpm::io {
 namespace {
 
 bool is_rigid(const core::Scene& scene, const core::BodyInput& body) {
-  return scene.materials[body.material].strength.type == "Rigid";
+  return core::is_rigid(scene.materials[body.material]);
 }
 
 /// Contact cannot change the motion of driven rigid bodies.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "core/contact/component_contact.hpp"
+
 namespace mpm::io {
 
 namespace {
@@ -36,8 +38,6 @@ bool unused_plane(const Place& at) {
     return body.work_plane && at.scene.work_planes[*body.work_plane].name == name;
   });
 }
-
-bool rigid(const MaterialInput& material) { return material.strength.type == "Rigid"; }
 
 /// Whether the law itself has damage.
 bool has_damage(const Place& at) {
@@ -85,7 +85,7 @@ bool no_free_face(const Place& at) {
 
 bool all_rigid(const Place& at) {
   return !any_body(at.scene,
-                   [&](const core::BodyInput& body) { return !rigid(material_of(at.scene, body)); });
+                   [&](const core::BodyInput& body) { return !core::is_rigid(material_of(at.scene, body)); });
 }
 
 bool no_pictures(const Place& at) {
@@ -170,7 +170,7 @@ const std::vector<IdleRule>& idle_rules() {
        "nothing heats this material"},
       {"Material/StrengthModel",
        {"*"},
-       [](const Place& at) { return rigid(*at.material); },
+       [](const Place& at) { return core::is_rigid(*at.material); },
        "a rigid body has neither stress nor heat"},
       {"Material/StrengthModel",
        {"Young", "Poisson"},
@@ -182,13 +182,13 @@ const std::vector<IdleRule>& idle_rules() {
       {"Material/StrengthModel",
        {"limiter"},
        [](const Place& at) {
-         return !rigid(*at.material) && at.strength().value_or("bq1", 0) == 0 &&
+         return !core::is_rigid(*at.material) && at.strength().value_or("bq1", 0) == 0 &&
                 at.strength().value_or("bq2", 0) == 0;
        },
        "bq1 and bq2 are 0: there is no artificial viscosity to limit"},
       {"Material/StrengthModel",
        {"limiter"},
-       [](const Place& at) { return !rigid(*at.material) && steps_are_implicit(at); },
+       [](const Place& at) { return !core::is_rigid(*at.material) && steps_are_implicit(at); },
        "implicit steps have no artificial viscosity"},
       {"Material/EquationOfState",
        {"c0", "c1", "c2", "c3", "c4", "c5", "c6"},
