@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/particle_range.hpp"
+#include "core/threads.hpp"
 
 namespace mpm::core {
 
@@ -189,14 +190,24 @@ void RigidBodies::move(int number, const ColumnLayout& layout, double* block) co
   }
 }
 
-void RigidBodies::set_velocities(int number, const ColumnLayout& layout, double* block) const {
-  const RigidState& s = state(number);
-  const double* x = block + layout.offset(Column::position_x);
-  double* v = block + layout.offset(Column::velocity_x);
-  for (int i = 0; i < block_lanes; ++i) {
-    const Vec3<double> at = velocity_at(s, {x[i], x[block_lanes + i], x[2 * block_lanes + i]});
-    for (int a = 0; a < 3; ++a) v[block_lanes * a + i] = at[a];
-  }
+void RigidBodies::set_velocities() {
+  for_each_by_threads(0, model_.grid->owned(), 1, [&](int slot) {
+    for (const ParticleTile& tile : model_.grid->brick(static_cast<Slot>(slot)).tiles) {
+      const int number = of_body(tile.body);
+      if (number < 0) continue;
+      const RigidState& s = state(number);
+      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+      for (const BlockIndex index : tile.blocks) {
+        double* const block = pool.block(index);
+        const double* x = block + pool.layout().offset(Column::position_x);
+        double* v = block + pool.layout().offset(Column::velocity_x);
+        for (int i = 0; i < block_lanes; ++i) {
+          const Vec3<double> at = velocity_at(s, {x[i], x[block_lanes + i], x[2 * block_lanes + i]});
+          for (int a = 0; a < 3; ++a) v[block_lanes * a + i] = at[a];
+        }
+      }
+    }
+  });
 }
 
 void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, ContactRecord& contact) {

@@ -54,7 +54,8 @@ class RigidBodies {
   /// With the impulses of all threads, per body: the motion at the end of the step. The work of loads and
   /// drives is added to `work`, what contact has dissipated beyond the nodes' sums to `contact`. Collective.
   void end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, ContactRecord& contact);
-  void set_velocities(int number, const ColumnLayout& layout, double* block) const;
+  /// Sets the velocities of the bodies' particles, which have been moved, after end_step().
+  void set_velocities();
 
  private:
   struct Rigid {

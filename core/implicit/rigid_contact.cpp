@@ -169,15 +169,7 @@ void RigidContact::end_step(std::span<const double> u, std::span<const Exerted> 
     if (pair >= 0) to.contact.add_impulse(pair, second == component ? impulse : -1.0 * impulse);
   }
   rigid_.end_step(impulses_, to.work, to.contact);
-  for (const Brick& brick : model_.grid->bricks()) {
-    for (const ParticleTile& tile : brick.tiles) {
-      const int number = rigid_.of_body(tile.body);
-      if (number < 0) continue;
-      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
-      for (const BlockIndex block : tile.blocks)
-        rigid_.set_velocities(number, pool.layout(), pool.block(block));
-    }
-  }
+  rigid_.set_velocities();
 }
 
 std::unique_ptr<RigidContact> make_rigid_contact(Model& model, RigidBodies* rigid, double stiffness) {

@@ -209,14 +209,7 @@ void PassesWith<S, T>::move_rigid_bodies() {
     w.contact.rigid.clear();
   }
   rigid_->end_step(impulses, scratch_[0].statistics.work, scratch_[0].contact.record);
-  for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch&) {
-    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
-      const int number = rigid(tile.body);
-      if (number < 0) continue;
-      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
-      for (const auto block : tile.blocks) rigid_->set_velocities(number, pool.layout(), pool.block(block));
-    }
-  });
+  rigid_->set_velocities();
 }
 
 }  // namespace mpm::core
