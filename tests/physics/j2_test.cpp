@@ -17,6 +17,16 @@ using physics::PointDriver;
 namespace {
 constexpr double young = 124e9, poisson = 0.34, yield = 200e6, tangent = 3e9;
 constexpr double shear = young / (2 * (1 + poisson));
+
+/// Pure shear by D_xy alone, without spin; `gamma`: engineering strain.
+void shear_by(double gamma, int steps, PointDriver& point) {
+  drive(point,
+        {.kind = PathKind::gradient,
+         .targets = {gamma},
+         .steps = steps,
+         .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
+        [](double) {});
+}
 }  // namespace
 
 TEST_CASE("a bar beyond yield follows the tangent modulus, and unloads elastically", "[physics][j2]") {
@@ -49,12 +59,7 @@ TEST_CASE("simple shear of a hardening material in one step and in many", "[phys
   const double gamma = 0.05;  // engineering
   for (const int steps : {1, 7, 100}) {
     PointDriver point(*material, {});
-    drive(point,
-          {.kind = PathKind::gradient,
-           .targets = {gamma},
-           .steps = steps,
-           .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
-          [](double) {});
+    shear_by(gamma, steps, point);
     const double plastic = (std::sqrt(3.0) * shear * gamma - yield) / (3 * shear + hardening);
     CHECK(point.value(Column::effective_plastic_strain) == Approx(plastic).epsilon(1e-12));
     CHECK(point.stress().xy == Approx((yield + hardening * plastic) / std::sqrt(3.0)).epsilon(1e-12));
@@ -76,12 +81,7 @@ TEST_CASE("hardening that saturates, in simple shear in one step and in many, an
   const double gamma = 0.05;  // engineering
   for (const int steps : {1, 7, 100}) {
     PointDriver point(*material, {});
-    drive(point,
-          {.kind = PathKind::gradient,
-           .targets = {gamma},
-           .steps = steps,
-           .gradient = {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}},
-          [](double) {});
+    shear_by(gamma, steps, point);
     // Consistency: the elastic rest of the strain carries the yield stress.
     const double plastic = point.value(Column::effective_plastic_strain);
     CHECK(plastic > 0.02);

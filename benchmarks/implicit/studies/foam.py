@@ -98,15 +98,9 @@ artificial viscosity) the platen is in contact, and moves at the stated part of 
         steps = round((1 - SHARE) * cells) * PARTS[by] if is_implicit else PICTURES
         solution = (scenes.implicit(end, end / steps, more=f'jacobian="{tangent}" max_newton="{NEWTON}"') if is_implicit
                     else scenes.explicit(end))
-        body = scenes.block("block", (0, 0, 0), (2 * h, 2 * h, HEIGHT), h / 2)
-        platen = scenes.block("platen", (0, 0, HEIGHT), (2 * h, 2 * h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
-        parts = (scenes.grid(shape, (0, 0, 0), (2 * h, 2 * h, HEIGHT + 4 * h), "222220", h), solution,
-                 [scenes.material("solid", DENSITY, LAW), scenes.rigid(DENSITY)],
-                 scenes.pictures(end / min(steps, PICTURES), ("SigmaZ", "density")))
-        if is_implicit:
-            text = scenes.scene([body, platen], *parts)
-        else:
-            text = scenes.two_components([body], [platen], *parts, more='<Contact enable="1"/>')
+        text = scenes.pressed_block(shape, h, HEIGHT, speed, is_implicit, solution,
+                                    [scenes.material("solid", DENSITY, LAW), scenes.rigid(DENSITY)],
+                                    scenes.pictures(end / min(steps, PICTURES), ("SigmaZ", "density")))
 
         def measure(result):
             mine = result.column("z", 0) < HEIGHT

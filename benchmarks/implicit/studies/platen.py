@@ -55,14 +55,9 @@ the run."""
         end = (1 - SHARE) * HEIGHT / speed
         steps = int(by.split()[1]) if by != "implicit" and is_implicit else cells
         solution = scenes.implicit(end, end / steps) if is_implicit else scenes.explicit(end)
-        body = scenes.block("block", (0, 0, 0), (2 * h, 2 * h, HEIGHT), h / 2)
-        platen = scenes.block("platen", (0, 0, HEIGHT), (2 * h, 2 * h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
-        parts = (scenes.grid(shape, (0, 0, 0), (2 * h, 2 * h, HEIGHT + 4 * h), "222220", h), solution,
-                 [scenes.neo_hookean(YOUNG, POISSON, DENSITY), scenes.rigid()], scenes.pictures(end, ("SigmaZ", "body")))
-        if is_implicit:
-            text = scenes.scene([body, platen], *parts)
-        else:
-            text = scenes.two_components([body], [platen], *parts, more='<Contact enable="1"/>')
+        text = scenes.pressed_block(shape, h, HEIGHT, speed, is_implicit, solution,
+                                    [scenes.neo_hookean(YOUNG, POISSON, DENSITY), scenes.rigid()],
+                                    scenes.pictures(end, ("SigmaZ", "body")))
 
         def measure(result):
             mine = result.column("z", 0) < HEIGHT
