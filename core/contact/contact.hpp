@@ -30,6 +30,7 @@
 #include "core/exact_sum.hpp"
 #include "core/model.hpp"
 #include "core/step/node_update.hpp"
+#include "core/step/shared_nodes.hpp"
 
 namespace mpm::core {
 

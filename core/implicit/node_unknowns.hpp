@@ -19,6 +19,7 @@
 #include "core/communication/communication.hpp"
 #include "core/model.hpp"
 #include "core/step/node_update.hpp"
+#include "core/step/shared_nodes.hpp"
 
 namespace mpm::core {
 

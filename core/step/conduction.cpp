@@ -5,6 +5,7 @@
 #include "core/particle_range.hpp"
 #include "core/shape/list.hpp"
 #include "core/step/node_update.hpp"
+#include "core/step/shared_nodes.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {

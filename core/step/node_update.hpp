@@ -1,109 +1,13 @@
-// Nodal sums and update of one brick: sums the contributions of all bricks that share a node, and solves the
-// equation of motion with its boundary conditions (thesis 2-26, 2-33, 2-41).
-//
-// Every brick has its own copy of shared nodes. All copies are summed in the order of the neighbours'
-// coordinates and updated by the same instructions, so they agree bit for bit on any rank.
+// Nodal update of one brick: solves the equation of motion of its nodes with their boundary conditions
+// (thesis 2-26, 2-33, 2-41), from the sums of all bricks that share a node (shared_nodes.hpp). All copies of
+// a node are updated by the same instructions, so they agree bit for bit on any rank.
 #pragma once
 
 #include <functional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "core/grid/brick_grid.hpp"
 
 namespace mpm::core {
-
-/// Which bricks share each node of a brick, in summation order; built once per node block shape.
-class SharedNodes {
- public:
-  /// Throws std::logic_error for more than most_layers of nodes beyond the brick.
-  explicit SharedNodes(const NodeBlockShape& shape) : SharedNodes(shape, shape) {}
-  /// A brick contributes to the nodes of the smaller block `reached` alone.
-  SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached);
-
-  struct Share {
-    int neighbour;  ///< 0..26
-    int node;       ///< its number in that brick
-  };
-  int nodes() const { return nodes_; }
-  /// What to prefetch for a brick's sums, for records of `width` doubles: a record in each of their cache
-  /// lines, brick by brick. `after_lower_x`: without those that the sums of its lower neighbour along x have
-  /// read.
-  std::span<const Share> lines(int width, bool after_lower_x) const {
-    const Lines& of = lines_[width < node_doubles ? 1 : 0];
-    const std::span<const Share> all = of.shares;
-    return after_lower_x ? all.first(of.new_after_lower_x) : all;
-  }
-  /// Nodes that the lower neighbour along x has too, by their numbers here and there.
-  struct Common {
-    int here, there;
-  };
-  std::span<const Common> common() const { return common_; }
-  /// f(node, shares), nodes in the order of their numbers of shares, which are compile-time constants in f.
-  /// First those that the lower neighbour along x does not have, then the others unless `new_only`.
-  template <class F>
-  void for_each_node(F f, bool new_only = false) const {
-    const Share* s = shares_.data();
-    const int* node = order_.data();
-    for (int known = 0; known < (new_only ? 1 : 2); ++known) {
-      const auto group = [&]<std::size_t n>() {
-        for (int i = 0; i < count_[known][n]; ++i, s += n) f(*node++, std::span<const Share, n>(s, n));
-      };
-      group.template operator()<1>();
-      group.template operator()<2>();
-      group.template operator()<4>();
-      group.template operator()<8>();
-    }
-  }
-
- private:
-  struct Lines {
-    std::vector<Share> shares;  ///< those that the lower neighbour along x has not read come first
-    std::size_t new_after_lower_x = 0;
-  };
-  static Lines find_lines(std::vector<std::pair<Share, bool>> shares, bool half_records);
-
-  int nodes_ = 0;
-  /// By node, in the order of for_each_node: of each half those of one brick first, then those shared by two,
-  /// four and eight.
-  std::vector<Share> shares_;
-  Lines lines_[2];  ///< of whole and of half records
-  std::vector<int> order_;
-  std::vector<Common> common_;
-  std::array<int, 9> count_[2]{};  ///< nodes by the number of their shares, of each half
-};
-
-/// Sums that the next brick along x shares, a third of them or more: kept from brick to brick by a thread
-/// that processes bricks in their order, in one pass.
-template <NodeArray of>
-class CarriedSums {
- public:
-  static constexpr int width = record_doubles(of);
-  /// Before a pass, as contributions have changed.
-  void forget() { from_ = no_slot; }
-  /// Whether `sums` begins with those of the lower neighbour along x; then sets them.
-  bool give(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums) const;
-  void keep(const SharedNodes& shared, Slot slot, const double* sums);
-
- private:
-  Slot from_ = no_slot;
-  AlignedDoubles records_;
-};
-
-/// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
-/// node_doubles for the second and third array, all components for the first. A brick that does not exist
-/// contributes zeros, so every copy of a node adds the same numbers.
-template <NodeArray of>
-void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
-/// The same with what the last brick has left in `carried`.
-template <NodeArray of>
-void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, CarriedSums<of>& carried,
-                       double* sums);
-/// The same of one component's velocity field. Where the neighbourhood holds one component, both are equal.
-template <NodeArray of>
-void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::int32_t component,
-                       double* sums);
 
 /// Forces on nodes other than the particles' internal forces.
 struct NodeForces {

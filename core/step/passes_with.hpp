@@ -23,6 +23,7 @@
 #include "core/step/particles_to_grid.hpp"
 #include "core/step/passes.hpp"
 #include "core/step/prefetch.hpp"
+#include "core/step/shared_nodes.hpp"
 #include "core/step/site_averages.hpp"
 #include "core/step/speeds.hpp"
 #include "core/step/strain_limit.hpp"

@@ -8,7 +8,7 @@
 
 #include "core/model.hpp"
 #include "core/prefetch.hpp"
-#include "core/step/node_update.hpp"
+#include "core/step/shared_nodes.hpp"
 
 namespace mpm::core {
 
