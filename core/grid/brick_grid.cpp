@@ -62,10 +62,19 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
     }
     slot.emplace(key_of(owned[s]), static_cast<Slot>(s));
   }
-  for (Brick& b : bricks) {
-    for (int n = 0; n < neighbourhood; ++n) {
-      const auto it = slot.find(key_of(b.coord + neighbour_offset(n)));
-      b.neighbour[static_cast<std::size_t>(n)] = it == slot.end() ? no_slot : it->second;
+  // Each pair of owned bricks is looked up once, from the one that is later in summation order; ghosts from
+  // the bricks beside them.
+  const auto count = static_cast<Slot>(owned.size());
+  for (Brick& b : bricks) b.neighbour.fill(no_slot);
+  for (Slot s = 0; s < count; ++s) {
+    Brick& b = bricks[static_cast<std::size_t>(s)];
+    const std::size_t looked_up = s < boundary_ ? neighbourhood : self_index + 1;
+    for (std::size_t n = 0; n < looked_up; ++n) {
+      const auto it = slot.find(key_of(b.coord + neighbour_offset(static_cast<int>(n))));
+      if (it == slot.end()) continue;
+      b.neighbour[n] = it->second;
+      if (it->second < count)
+        bricks[static_cast<std::size_t>(it->second)].neighbour[neighbourhood - 1 - n] = s;
     }
   }
   for ([[maybe_unused]] const Brick& b : bricks_)

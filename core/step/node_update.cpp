@@ -66,19 +66,33 @@ bool is_mass(NodeFields what, int c) {
 }  // namespace
 
 void BoundaryFaces::fold(NodeFields what, double* contributions) const {
-  const int width = record_doubles(what.array);
-  for_each_outer_node([&](const Face& face, int outer, int wall, int mirror) {
+  for (int i = 0; i < count_; ++i) {
+    if (record_doubles(what.array) == node_doubles)
+      fold<Record>(face_[i], what, contributions);
+    else
+      fold<Half>(face_[i], what, contributions);
+  }
+}
+
+/// Part: a record of what.array.
+template <class Part>
+void BoundaryFaces::fold(const Face& face, NodeFields what, double* contributions) const {
+  constexpr int width = LaneTraits<Part>::width;
+  const bool extrapolates = face.boundary == Boundary::rigid_wall && is_mechanics(what);
+  Part sign(1.0), kept(0.0);
+  for (int c = 0; c < width; ++c) {
+    const int axis = axis_of(what, c);
+    if (extrapolates || (axis >= 0 && (face.boundary == Boundary::fixed || axis == face.axis)))
+      sign.set(c, -1);
+    if (!extrapolates && is_mass(what, c)) kept.set(c, 1);
+  }
+  for_each_outer_node(face, [&](const Face&, int outer, int wall, int mirror) {
     double* from = contributions + width * outer;
     double *to_wall = contributions + width * wall, *to_mirror = contributions + width * mirror;
-    const bool extrapolates = face.boundary == Boundary::rigid_wall && is_mechanics(what);
-    for (int c = 0; c < width; ++c) {
-      const int axis = axis_of(what, c);
-      const bool reverses =
-          extrapolates || (axis >= 0 && (face.boundary == Boundary::fixed || axis == face.axis));
-      if (extrapolates) to_wall[c] += 2 * from[c];
-      to_mirror[c] += reverses ? -from[c] : from[c];
-      if (extrapolates || !is_mass(what, c)) from[c] = 0;
-    }
+    const Part given = load<Part>(from);
+    if (extrapolates) store(to_wall, load<Part>(to_wall) + Part(2.0) * given);
+    store(to_mirror, load<Part>(to_mirror) + sign * given);
+    store(from, select(kept > Part(0.0), given, Part(0.0)));
   });
 }
 
@@ -88,30 +102,28 @@ void BoundaryFaces::reverse_weights(const Vec3<double>& gravity, NodeArray of, c
     return has_outer_nodes(face) && face.boundary != Boundary::rigid_wall;
   };
   if (gravity == Vec3<double>{} || std::none_of(face_, face_ + count_, mirrors)) return;
-  const auto mass = [&](int n) { return masses[record_doubles(of) * n + node_field::mass.first]; };
-  std::array<Vec3<double>, NodeBlockShape{most_layers, most_layers}.nodes()> weight;
-  for (int n = 0; n < shape_.nodes(); ++n) weight[static_cast<std::size_t>(n)] = {mass(n), mass(n), mass(n)};
+  const auto mass = [&](int n) { return Half(masses[record_doubles(of) * n + node_field::mass.first]); };
+  std::array<Half, NodeBlockShape{most_layers, most_layers}.nodes()> weights;
+  const auto weight = [&](int n) -> Half& { return weights[static_cast<std::size_t>(n)]; };
+  for (int n = 0; n < shape_.nodes(); ++n) weight(n) = mass(n);
   // The masses before the folds, then the folds of the weights.
   for (int i = count_ - 1; i >= 0; --i) {
     if (!mirrors(face_[i])) continue;
-    for_each_outer_node(face_[i], [&](const Face&, int outer, int, int inside) {
-      Vec3<double>& w = weight[static_cast<std::size_t>(inside)];
-      w = w - weight[static_cast<std::size_t>(outer)];
-    });
+    for_each_outer_node(face_[i],
+                        [&](const Face&, int outer, int, int inside) { weight(inside) -= weight(outer); });
   }
   for (int i = 0; i < count_; ++i) {
     if (!mirrors(face_[i])) continue;
-    for_each_outer_node(face_[i], [&](const Face& face, int outer, int, int inside) {
-      for (int a = 0; a < 3; ++a) {
-        const double w = weight[static_cast<std::size_t>(outer)][a];
-        weight[static_cast<std::size_t>(inside)][a] +=
-            face.boundary == Boundary::fixed || a == face.axis ? -w : w;
-      }
-    });
+    Half sign(1.0);
+    for (int a = 0; a < 3; ++a)
+      if (face_[i].boundary == Boundary::fixed || a == face_[i].axis) sign.set(a, -1);
+    for_each_outer_node(
+        face_[i], [&](const Face&, int outer, int, int inside) { weight(inside) += sign * weight(outer); });
   }
+  const Half g(Half::vector{gravity.x, gravity.y, gravity.z, 0});
   for (int n = 0; n < shape_.nodes(); ++n) {
     double* force = MappedRecord<double>{forces + node_doubles * n}.force();
-    for (int a = 0; a < 3; ++a) force[a] += (weight[static_cast<std::size_t>(n)][a] - mass(n)) * gravity[a];
+    store(force, load<Half>(force) + (weight(n) - mass(n)) * g);
   }
 }
 

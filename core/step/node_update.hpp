@@ -69,6 +69,8 @@ class BoundaryFaces {
   }
   template <class F>
   void for_each_outer_node(const Face& face, F f) const;
+  template <class Part>
+  void fold(const Face& face, NodeFields what, double* contributions) const;
 
   NodeBlockShape shape_;
   Face face_[6];

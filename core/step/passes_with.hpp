@@ -46,7 +46,7 @@ class PassesWith final : public Passes {
     begin_corrections();
     begin_mass();
   }
-  double largest_strain_rate() override;
+  double largest_strain_rate(double above) override;
   void shorten_step(double length) override {
     set_step(length);
     if (rigid_ != nullptr) rigid_->shorten_step(loads_, forces_.gravity, dt);
@@ -292,11 +292,13 @@ class PassesWith final : public Passes {
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
-  AlignedDoubles corrected_;      ///< by slot; XPIC, FMPM: corrected_nodes()
-  AlignedDoubles solution_;       ///< by slot; consistent mass: solution()
-  AlignedDoubles cell_masses_;    ///< by slot; consistent mass: cell_masses()
-  bool masses_known_ = false;     ///< in this step
-  AlignedDoubles direction_;      ///< by slot; consistent mass: direction()
+  AlignedDoubles corrected_;               ///< by slot; XPIC, FMPM: corrected_nodes()
+  AlignedDoubles solution_;                ///< by slot; consistent mass: solution()
+  AlignedDoubles cell_masses_;             ///< by slot; consistent mass: cell_masses()
+  bool masses_known_ = false;              ///< in this step
+  AlignedDoubles direction_;               ///< by slot; consistent mass: direction()
+  std::vector<VelocityRange> velocities_;  ///< by owned slot, at the start of the step; of scenes below alone
+  const bool strain_may_jump_;
   std::vector<double> critical_;  ///< by slot; USF: largest critical speed of the stress pass
 };
 
@@ -317,7 +319,8 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       failed_(model),
       transfer_(model.scene->solution),
       scheme_(model.scene->solution.scheme),
-      orders_(orders_of(model.scene->solution)) {
+      orders_(orders_of(model.scene->solution)),
+      strain_may_jump_(strain_may_jump(model)) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = solution.gravity;
   forces_.damping = solution.damping;

@@ -50,3 +50,37 @@ TEST_CASE("A step is shortened to the largest strain, and not lengthened") {
   CHECK(limited < 2.0);
   CHECK(limited == Approx(10 * limited_step(2.0, 100)));
 }
+
+TEST_CASE("A brick is passed over only where the velocities around it are too close together") {
+  GridGeometry g;
+  g.cell = {2, 1, 4};
+  g.inverse_cell = {0.5, 1, 0.25};
+  g.cells = {40, 40, 40};
+  g.boundary[0] = Boundary::symmetry;
+  BrickGrid grid(g, {1, 0});
+  grid.reset({{4, 4, 4}, {5, 5, 5}, {7, 4, 4}, {8, 4, 4}, {0, 4, 4}}, {{7, 7, 7}});
+  std::vector<VelocityRange> ranges(static_cast<std::size_t>(grid.owned()));
+  const auto at = [&](BrickCoord b) -> VelocityRange& {
+    return ranges[static_cast<std::size_t>(grid.find(b))];
+  };
+  const auto faster = [&](BrickCoord b, double rate) {
+    return may_strain_faster(grid, ranges, grid.find(b), rate);
+  };
+  at({4, 4, 4}) = {{0, 0, -3}, {1, 1, 0}};
+  at({5, 5, 5}) = {{1, 0, 0}, {3, 5, 1}};
+  // Together from (0, 0, -3) to (3, 5, 1), over the shortest edge.
+  const double rate = std::sqrt(9.0 + 25 + 16);
+  for (const BrickCoord b : {BrickCoord{4, 4, 4}, BrickCoord{5, 5, 5}}) {
+    CHECK(faster(b, 0.999 * rate));
+    CHECK(faster(b, rate));  // round-off is no reason
+    CHECK_FALSE(faster(b, 1.001 * rate));
+  }
+  at({7, 4, 4}) = at({8, 4, 4}) = {{7, 7, 7}, {7, 7, 7}};
+  CHECK_FALSE(faster({8, 4, 4}, 1));
+  // Beside a wall and beside a brick of another rank.
+  at({0, 4, 4}) = {{0, 0, 0}, {0, 0, 0}};
+  CHECK(faster({0, 4, 4}, 1e9));
+  grid.reset({{4, 4, 4}}, {{5, 4, 4}});
+  ranges = {{{0, 0, 0}, {0, 0, 0}}};
+  CHECK(faster({4, 4, 4}, 1e9));
+}
