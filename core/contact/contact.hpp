@@ -77,6 +77,15 @@ struct RegressionScratch {
   LabelledPoints points;
 };
 
+/// A node at which a free rigid body touches others, for the motion of the body.
+struct RigidNode {
+  Vec3<double> place{};
+  std::vector<ContactField> fields;
+  std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
+  int moves = -1;          ///< field of the body whose motion at the end counts; -1: several rigid bodies meet
+  std::vector<ContactPair> pairs;
+};
+
 /// What contact adds to in a step, by thread.
 struct ContactSums {
   ContactRecord record;
@@ -128,6 +137,14 @@ class Contact {
   void drop_distant_pairs(const BrickGrid& grid, const SharedNodes& shared, Slot s);
   const MeetingNodes& meetings(Slot s) const { return meetings_[static_cast<std::size_t>(s)]; }
 
+  /// Free rigid bodies: the nodes at which the fields that a brick sees touch them, no later brick having
+  /// these, and the answer of such a node to a trial motion of the bodies. The fields have the motion of the
+  /// end of the step, without contact.
+  bool sees_free_body(Slot s) const;
+  void find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNodes> fields,
+                        std::vector<RigidNode>& to) const;
+  void respond(const RigidNode& node, std::span<RigidResponse> to) const;
+
   /// MUSL's strain velocity comes after that of the end of the step, which the fields' motion still has.
   enum class Velocity { of_end, of_strain, of_strain_after_end };
   /// Changes the velocities of the fields that a brick sees where they meet, and of those at the end of the
@@ -153,6 +170,8 @@ class Contact {
   static Vec3<double> outward(int field, std::span<const MeetingNodes::Pair> pairs);
   Vec3<double> outward(std::span<const FieldNodes> fields, int field, int node,
                        std::span<const MeetingNodes::Pair> pairs) const;
+  bool take_node(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
+                 const MeetingNodes::Node& node, Node& at) const;
   bool find_pairs(std::span<const FieldNodes> fields, std::span<const MeetingNodes::Pair> pairs,
                   Node& at) const;
   void hold_pairs(Node& at) const;

@@ -1,6 +1,7 @@
 // The impulses at the nodes where fields meet.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/contact/contact.hpp"
 
@@ -10,7 +11,10 @@ namespace mpm::core {
 struct Contact::Node {
   Vec3<double> place{};
   std::vector<ContactField> fields;
-  std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
+  std::vector<int> rigid;            ///< numbers of the rigid bodies; -1: deformable
+  int moves = -1;                    ///< field of the one rigid body here, a free one with its motion at the end
+  Vec3<double> change{};             ///< of its velocity by contact
+  bool free_body = false;            ///< whether there is any
   std::vector<Motion> records;
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
   std::vector<ContactPair> pairs;
@@ -18,6 +22,7 @@ struct Contact::Node {
 
   void clear() {
     fields.clear(), rigid.clear(), records.clear(), number.clear(), pairs.clear(), recorded.clear();
+    moves = -1, change = {}, free_body = false;
   }
 };
 
@@ -80,9 +85,12 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   const std::size_t count = at.fields.size();
   const auto increment = [&](std::size_t f) {
     const double* d = at.records[f].increment();
-    return at.rigid[f] < 0 ? Vec3<double>{d[0], d[1], d[2]} : Vec3<double>{};
+    if (at.rigid[f] < 0) return Vec3<double>{d[0], d[1], d[2]};
+    return static_cast<int>(f) == at.moves ? at.change : Vec3<double>{};
   };
-  const bool corrects_start = method_ != ContactInput::Method::bardenhagen;
+  // A rigid body has no stress that could give others the momentum of Pan's first impulses.
+  const ContactInput::Method method = at.free_body ? ContactInput::Method::bardenhagen : method_;
+  const bool corrects_start = method != ContactInput::Method::bardenhagen;
   std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
   std::vector<Vec3<double>> start(count);  // velocity at the start of the step, as the particles have it
   for (std::size_t f = 0; f < count; ++f)
@@ -95,7 +103,7 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
     for (std::size_t f = 0; f < count; ++f) nodal_start[f] = at.fields[f].velocity;
     for (std::size_t p = 0; p < at.pairs.size(); ++p) first_impulse[p] = at.pairs[p].impulse;
     for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.fields[f].velocity + increment(f);
-    if (method_ == ContactInput::Method::pan)
+    if (method == ContactInput::Method::pan)
       for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity;
   }
   for (const ContactPair& pair : at.pairs) {
@@ -112,12 +120,13 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   }
   if (!counts) return;
   const auto given = [&](std::size_t f) {
-    return at.rigid[f] < 0 ? increment(f) : at.fields[f].velocity - taken[f];
+    const bool known = at.rigid[f] < 0 || static_cast<int>(f) == at.moves;
+    return known ? increment(f) : at.fields[f].velocity - taken[f];
   };
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const Vec3<double> impulse = method_ == ContactInput::Method::improved_bardenhagen
+    const Vec3<double> impulse = method == ContactInput::Method::improved_bardenhagen
                                      ? pair.impulse + first_impulse[p]
                                      : pair.impulse;
     // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
@@ -126,7 +135,7 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
     // Pan's first impulses stop the approach of the nodes without stopping that of the particles, and the
     // strain follows the nodes: their approach counts.
     const Vec3<double> approach =
-        method_ == ContactInput::Method::pan ? nodal_start[a] - nodal_start[b] + half : mean;
+        method == ContactInput::Method::pan ? nodal_start[a] - nodal_start[b] + half : mean;
     const double pressing = dot(impulse, pair.normal);
     const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
     sums.record.dissipated.add(pressing * dot(approach, pair.normal) + heat);
@@ -134,7 +143,7 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
     if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
     const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
       if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
-      const double work = 0.5 * dot(on_it, taken[f] + at.fields[f].velocity);
+      const double work = 0.5 * dot(on_it, start[f] + at.fields[f].velocity);
       sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
           on_it, at.place - rigid_->state(at.rigid[f]).centre, work);
     };
@@ -143,42 +152,101 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   }
 }
 
+/// The fields with mass at a node, and their pairs that touch; false without any.
+bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
+                        const MeetingNodes::Node& node, Node& at) const {
+  const NodeBlockShape shape = grid.shape();
+  const int side = shape.side(), low = shape.lowest(), n = node.number;
+  at.clear();
+  at.place = grid.geometry().node_place(grid.brick(s).coord, n % side + low, n / side % side + low,
+                                        n / (side * side) + low);
+  int rigid_fields = 0;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const Motion record{fields[f].motion.data() + node_doubles * n};
+    if (!(record.mass() > 0)) continue;
+    const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
+    const int number = rigid(fields[f].component);
+    if (number >= 0) {
+      ++rigid_fields;
+      at.free_body = at.free_body || rigid_->is_free(number);
+      at.moves = static_cast<int>(at.fields.size());
+      at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
+    } else {
+      at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
+    }
+    at.rigid.push_back(number);
+    at.records.push_back(record);
+    at.number.push_back(f);
+  }
+  if (rigid_fields != 1 || !at.free_body || which == Velocity::of_strain) {
+    at.moves = -1;
+  } else {
+    ContactField& moves = at.fields[static_cast<std::size_t>(at.moves)];
+    const Vec3<double> end =
+        rigid_->velocity_at_end(at.rigid[static_cast<std::size_t>(at.moves)], at.place);
+    at.change = end - moves.velocity;
+    moves = {std::numeric_limits<double>::infinity(), end};
+  }
+  return find_pairs(fields, meetings(s).pairs_of(node), at);
+}
+
 void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
                       ContactSums& sums) const {
   const BoundaryFaces faces(grid, s);
   sums.record.impulses.resize(3 * pairs_.size());
   if (rigid_ != nullptr) sums.rigid.resize(rigid_->count());
   Node at;
-  const NodeBlockShape shape = grid.shape();
-  const auto place = [&](int node) {
-    const int side = shape.side(), low = shape.lowest();
-    return grid.geometry().node_place(grid.brick(s).coord, node % side + low, node / side % side + low,
-                                      node / (side * side) + low);
-  };
-  const MeetingNodes& meetings = this->meetings(s);
-  for (const MeetingNodes::Node& node : meetings.nodes) {
-    at.clear();
-    at.place = place(node.number);
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      const Motion record{fields[f].motion.data() + node_doubles * node.number};
-      if (!(record.mass() > 0)) continue;
-      const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
-      const int number = rigid(fields[f].component);
-      at.rigid.push_back(number);
-      if (number >= 0)
-        at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
-      else
-        at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
-      at.records.push_back(record);
-      at.number.push_back(f);
-    }
-    if (!find_pairs(fields, meetings.pairs_of(node), at)) continue;
+  for (const MeetingNodes::Node& node : meetings(s).nodes) {
+    if (!take_node(grid, s, which, fields, node, at)) continue;
     if (which == Velocity::of_end)
       resolve_end(at, sums, node.counts);
     else
       resolve_strain(at, which);
   }
   for (FieldNodes& field : fields) faces.fill(field.motion.data());
+}
+
+bool Contact::sees_free_body(Slot s) const {
+  return std::ranges::any_of(seen(s), [&](std::int32_t component) {
+    const int number = rigid(component);
+    return number >= 0 && rigid_->is_free(number);
+  });
+}
+
+void Contact::find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNodes> fields,
+                               std::vector<RigidNode>& to) const {
+  Node at;
+  for (const MeetingNodes::Node& node : meetings(s).nodes) {
+    if (node.counts && take_node(grid, s, Velocity::of_end, fields, node, at) && at.free_body)
+      to.push_back({at.place, at.fields, at.rigid, at.moves, at.pairs});
+  }
+}
+
+void Contact::respond(const RigidNode& node, std::span<RigidResponse> to) const {
+  std::vector<ContactField> fields = node.fields;
+  std::vector<ContactPair> pairs = node.pairs;
+  const auto at = [&](int f) { return static_cast<std::size_t>(f); };
+  if (node.moves >= 0)
+    fields[at(node.moves)].velocity = rigid_->velocity_at_end(node.rigid[at(node.moves)], node.place);
+  const std::vector<ContactField> before = fields;
+  resolve_contacts(fields, pairs);
+  for (const ContactPair& pair : pairs) {
+    for (const int f : {pair.first, pair.second}) {
+      const int number = node.rigid[at(f)], other = f == pair.first ? pair.second : pair.first;
+      if (number < 0 || !rigid_->is_free(number) || pair.impulse == Vec3<double>{}) continue;
+      double along = 0, across = 0;
+      if (f == node.moves) {
+        const Vec3<double> u = before[at(pair.first)].velocity - before[at(pair.second)].velocity;
+        const double u_n = dot(u, pair.normal), p_n = dot(pair.impulse, pair.normal);
+        const Vec3<double> u_t = u - u_n * pair.normal, p_t = pair.impulse - p_n * pair.normal;
+        const double slides = std::sqrt(dot(u_t, u_t)), mass = before[at(other)].mass;
+        along = mass;
+        across = slides > 0 ? std::min(mass, std::sqrt(dot(p_t, p_t)) / slides) : 0;
+      }
+      to[at(number)].add(f == pair.first ? -1.0 * pair.impulse : pair.impulse,
+                         node.place - rigid_->state(number).centre, pair.normal, along, across);
+    }
+  }
 }
 
 }  // namespace mpm::core
