@@ -6,8 +6,10 @@
 //   bardenhagen           the velocities at the end of the step, after all other forces; all of it
 //   pan                   first those at its start, then those that the corrected ones and the forces lead
 //                         to; the particles get the second impulses, which oppose the nodal forces. The
-//                         first change the velocities that strain and move, and not the particles' momenta
+//                         first change the velocities that strain and move, and not the particles' momenta,
+//                         unless the approach is as fast as waves
 //   improved_bardenhagen  as pan; the particles get both
+// Nodes at which a free rigid body is follow bardenhagen's.
 //
 // Bodies whose supports share a node may still be up to two cells apart. With a largest distance, two fields
 // touch only if the gap between their surfaces is not larger: the sum of the distances from the node to the
@@ -82,7 +84,7 @@ struct RigidNode {
   Vec3<double> place{};
   std::vector<ContactField> fields;
   std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
-  int moves = -1;          ///< field of the body whose motion at the end counts; -1: several rigid bodies meet
+  int moves = -1;  ///< field of the body whose motion at the end counts; -1: several rigid bodies meet
   std::vector<ContactPair> pairs;
 };
 
@@ -176,7 +178,11 @@ class Contact {
                   Node& at) const;
   void hold_pairs(Node& at) const;
   void resolve_strain(Node& at, Velocity which) const;
+  static Vec3<double> increment(const Node& at, std::size_t field);
+  double share_of_particles(const Node& at, const ContactPair& pair) const;
+  void correct_start(Node& at, ContactInput::Method method) const;
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
+  void book(const Node& at, ContactSums& sums) const;
 
   const Model& model_;
   const RigidBodies* rigid_;
@@ -186,6 +192,7 @@ class Contact {
   bool limits_time_step_ = false;
   std::vector<bool> has_failed_;  ///< by component; all false unless their normals are excluded
   std::vector<double> weight_;    ///< of normals, by component
+  std::vector<double> wave_;      ///< largest wave speed at the start, by component; 0: rigid, or failed
   std::vector<int> material_;     ///< by component; -1 without bodies
   std::vector<double> friction_;  ///< by two materials
   ContactPairs pairs_;

@@ -11,17 +11,25 @@ namespace mpm::core {
 struct Contact::Node {
   Vec3<double> place{};
   std::vector<ContactField> fields;
-  std::vector<int> rigid;            ///< numbers of the rigid bodies; -1: deformable
-  int moves = -1;                    ///< field of the one rigid body here, a free one with its motion at the end
-  Vec3<double> change{};             ///< of its velocity by contact
-  bool free_body = false;            ///< whether there is any
+  std::vector<int> rigid;    ///< numbers of the rigid bodies; -1: deformable
+  std::vector<double> wave;  ///< speeds; 0: rigid
+  int moves = -1;            ///< field of the one rigid body here, a free one with its motion at the end
+  Vec3<double> change{};     ///< of its velocity by contact
+  bool free_body = false;    ///< whether there is any
   std::vector<Motion> records;
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
   std::vector<ContactPair> pairs;
   std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
+  // At the end of the step: velocities at its start, as the particles have them and with Pan's first
+  // impulses; those before the impulses that the particles get; and of each pair the share of Pan's first
+  // impulse that the particles get, and that part.
+  std::vector<Vec3<double>> start, nodal_start, taken;
+  std::vector<double> share;
+  std::vector<Vec3<double>> first_impulse;
 
   void clear() {
-    fields.clear(), rigid.clear(), records.clear(), number.clear(), pairs.clear(), recorded.clear();
+    fields.clear(), rigid.clear(), wave.clear(), records.clear(), number.clear(), pairs.clear(),
+        recorded.clear();
     moves = -1, change = {}, free_body = false;
   }
 };
@@ -80,70 +88,99 @@ void Contact::resolve_strain(Node& at, Velocity which) const {
       at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
 }
 
+/// The increment of a field that the particles get; of a rigid body by contact, where it is known before.
+Vec3<double> Contact::increment(const Node& at, std::size_t f) {
+  const double* d = at.records[f].increment();
+  if (at.rigid[f] < 0) return {d[0], d[1], d[2]};
+  return static_cast<int>(f) == at.moves ? at.change : Vec3<double>{};
+}
+
+/// Of Pan's first impulse of a pair, the share that the particles get. What the nodes stop is stopped in the
+/// particles by the stress of a strain u/c, with the approach u and the larger wave speed c of the two. Above
+/// half of c that strain is no small one, from c on there is none: mass that is swept up has no momentum but
+/// from the impulse itself (a shell of 200 m/s in soil with waves of 50 m/s).
+double Contact::share_of_particles(const Node& at, const ContactPair& pair) const {
+  const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+  const double approach = dot(at.start[a] - at.start[b], pair.normal),
+               wave = std::max(at.wave[a], at.wave[b]);
+  return approach > 0 ? std::clamp(2 * approach / wave - 1, 0.0, 1.0) : 0.0;
+}
+
+/// The first impulses of Pan's method, and the velocities that they and the forces lead to.
+void Contact::correct_start(Node& at, ContactInput::Method method) const {
+  const std::size_t count = at.fields.size();
+  for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.start[f];
+  resolve_contacts(at.fields, at.pairs);
+  for (std::size_t f = 0; f < count; ++f) {
+    at.nodal_start[f] = at.fields[f].velocity;
+    at.fields[f].velocity = at.fields[f].velocity + increment(at, f);
+  }
+  const bool pan = method == ContactInput::Method::pan;
+  if (pan)
+    for (std::size_t f = 0; f < count; ++f) at.taken[f] = at.fields[f].velocity;
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    const ContactPair& pair = at.pairs[p];
+    at.share[p] = pan ? share_of_particles(at, pair) : 1.0;
+    at.first_impulse[p] = at.share[p] * pair.impulse;
+    if (!pan) continue;
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    at.taken[a] = at.taken[a] + (1 / at.fields[a].mass) * at.first_impulse[p];
+    at.taken[b] = at.taken[b] - (1 / at.fields[b].mass) * at.first_impulse[p];
+  }
+}
+
 /// Velocities at the end of the step, and what the particles get.
 void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   const std::size_t count = at.fields.size();
-  const auto increment = [&](std::size_t f) {
-    const double* d = at.records[f].increment();
-    if (at.rigid[f] < 0) return Vec3<double>{d[0], d[1], d[2]};
-    return static_cast<int>(f) == at.moves ? at.change : Vec3<double>{};
-  };
-  // A rigid body has no stress that could give others the momentum of Pan's first impulses.
+  // With a free rigid body the nodes are brought to its velocity after all forces, and the particles get all
+  // of that impulse (thesis 5-14, 5-22): it has no stress that could give them the momentum later.
   const ContactInput::Method method = at.free_body ? ContactInput::Method::bardenhagen : method_;
-  const bool corrects_start = method != ContactInput::Method::bardenhagen;
-  std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
-  std::vector<Vec3<double>> start(count);  // velocity at the start of the step, as the particles have it
+  at.taken.resize(count), at.start.resize(count);
+  at.share.assign(at.pairs.size(), 1.0), at.first_impulse.assign(at.pairs.size(), Vec3<double>{});
   for (std::size_t f = 0; f < count; ++f)
-    taken[f] = at.fields[f].velocity, start[f] = taken[f] - increment(f);
-  std::vector<Vec3<double>> nodal_start = start;  // with Pan's first impulses
-  std::vector<Vec3<double>> first_impulse(at.pairs.size());
-  if (corrects_start) {
-    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = start[f];
-    resolve_contacts(at.fields, at.pairs);
-    for (std::size_t f = 0; f < count; ++f) nodal_start[f] = at.fields[f].velocity;
-    for (std::size_t p = 0; p < at.pairs.size(); ++p) first_impulse[p] = at.pairs[p].impulse;
-    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.fields[f].velocity + increment(f);
-    if (method == ContactInput::Method::pan)
-      for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity;
-  }
+    at.taken[f] = at.fields[f].velocity, at.start[f] = at.taken[f] - increment(at, f);
+  at.nodal_start = at.start;
+  if (method != ContactInput::Method::bardenhagen) correct_start(at, method);
   for (const ContactPair& pair : at.pairs) {
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    sums.fastest = std::max(sums.fastest, dot(taken[a] - taken[b], pair.normal));
+    sums.fastest = std::max(sums.fastest, dot(at.taken[a] - at.taken[b], pair.normal));
   }
   resolve_contacts(at.fields, at.pairs);
   for (std::size_t f = 0; f < count; ++f) {
     if (at.rigid[f] >= 0) continue;
     for (int a = 0; a < 3; ++a) {
-      at.records[f].increment()[a] += at.fields[f].velocity[a] - taken[f][a];
+      at.records[f].increment()[a] += at.fields[f].velocity[a] - at.taken[f][a];
       at.records[f].velocity()[a] = at.fields[f].velocity[a];
     }
   }
-  if (!counts) return;
+  if (counts) book(at, sums);
+}
+
+/// Energy and impulses of resolve_end().
+void Contact::book(const Node& at, ContactSums& sums) const {
   const auto given = [&](std::size_t f) {
     const bool known = at.rigid[f] < 0 || static_cast<int>(f) == at.moves;
-    return known ? increment(f) : at.fields[f].velocity - taken[f];
+    return known ? increment(at, f) : at.fields[f].velocity - at.taken[f];
   };
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const Vec3<double> impulse = method == ContactInput::Method::improved_bardenhagen
-                                     ? pair.impulse + first_impulse[p]
-                                     : pair.impulse;
+    const Vec3<double> impulse = pair.impulse + at.first_impulse[p];
     // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
     // of the fields is u at its start and u' with all increments that the particles get.
-    const Vec3<double> half = 0.5 * (given(a) - given(b)), mean = start[a] - start[b] + half;
-    // Pan's first impulses stop the approach of the nodes without stopping that of the particles, and the
-    // strain follows the nodes: their approach counts.
-    const Vec3<double> approach =
-        method == ContactInput::Method::pan ? nodal_start[a] - nodal_start[b] + half : mean;
+    const Vec3<double> mean = at.start[a] - at.start[b] + 0.5 * (given(a) - given(b));
+    // The part of Pan's first impulses that the particles do not get stops the approach of the nodes without
+    // stopping theirs, and the strain follows the nodes: their approach counts.
+    const Vec3<double> stopped =
+        (1 - at.share[p]) * (at.nodal_start[a] - at.start[a] - (at.nodal_start[b] - at.start[b]));
     const double pressing = dot(impulse, pair.normal);
     const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
-    sums.record.dissipated.add(pressing * dot(approach, pair.normal) + heat);
+    sums.record.dissipated.add(pressing * dot(mean + stopped, pair.normal) + heat);
     sums.record.friction_heat.add(heat);
     if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
     const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
       if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
-      const double work = 0.5 * dot(on_it, start[f] + at.fields[f].velocity);
+      const double work = 0.5 * dot(on_it, at.start[f] + at.fields[f].velocity);
       sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
           on_it, at.place - rigid_->state(at.rigid[f]).centre, work);
     };
@@ -175,6 +212,7 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
       at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
     }
     at.rigid.push_back(number);
+    at.wave.push_back(wave_[static_cast<std::size_t>(fields[f].component)]);
     at.records.push_back(record);
     at.number.push_back(f);
   }
@@ -182,8 +220,7 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
     at.moves = -1;
   } else {
     ContactField& moves = at.fields[static_cast<std::size_t>(at.moves)];
-    const Vec3<double> end =
-        rigid_->velocity_at_end(at.rigid[static_cast<std::size_t>(at.moves)], at.place);
+    const Vec3<double> end = rigid_->velocity_at_end(at.rigid[static_cast<std::size_t>(at.moves)], at.place);
     at.change = end - moves.velocity;
     moves = {std::numeric_limits<double>::infinity(), end};
   }

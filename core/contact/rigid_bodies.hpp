@@ -64,8 +64,8 @@ class RigidBodies {
   void shorten_step(const Loads& loads, const Vec3<double>& gravity, double dt) {
     move_without_contact(loads, gravity, dt);
   }
-  /// The motion of the free bodies at the end of the step; respond(responses) adds what the nodes of this rank
-  /// answer to velocity_at_end(), per body. Collective.
+  /// The motion of the free bodies at the end of the step; respond(responses) adds what the nodes of this
+  /// rank answer to velocity_at_end(), per body. Collective.
   void find_motion(const std::function<void(std::span<RigidResponse>)>& respond);
   /// Moves a block of a rigid body's particles.
   void move(int number, const ColumnLayout& layout, double* block) const;

@@ -19,10 +19,9 @@ Six both(const Vec3<double>& a, const Vec3<double>& b) { return {a.x, a.y, a.z, 
 /// of particles on one line.
 std::array<bool, 6> held(const RigidState& s) {
   RigidState moves = s;
-  moves.velocity = {1, 1, 1};
+  moves.velocity = moves.spin = {1, 1, 1};
   keep_symmetry(moves);
-  moves.spin = spin_with(s, s.inertia * Vec3<double>{1, 1, 1});
-  keep_symmetry(moves);
+  if (spin_with(s, {s.inertia.xx, s.inertia.yy, s.inertia.zz}) == Vec3<double>{}) moves.spin = {};
   const Six free = both(moves.velocity, moves.spin);
   std::array<bool, 6> is{};
   for (std::size_t i = 0; i < 6; ++i) is[i] = free[i] == 0;
@@ -85,7 +84,8 @@ RigidVelocity next_trial(const RigidState& s, const RigidVelocity& free, const R
   for (std::size_t i = 0; i < 6; ++i) {
     b[i] = fixed[i] ? 0 : b[i] + response[i];
     for (std::size_t k = 0; k <= i; ++k)
-      if (fixed[i] || fixed[k]) a[static_cast<std::size_t>(triangle(static_cast<int>(i), static_cast<int>(k)))] = i == k;
+      if (fixed[i] || fixed[k])
+        a[static_cast<std::size_t>(triangle(static_cast<int>(i), static_cast<int>(k)))] = i == k;
   }
   const Six d = solve(a, b);
   return {trial.velocity + Vec3<double>{d[0], d[1], d[2]}, trial.spin + Vec3<double>{d[3], d[4], d[5]}};

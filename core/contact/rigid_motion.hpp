@@ -1,6 +1,6 @@
 // The motion of free rigid bodies at the end of a step, found together with the impulses of contact on them:
-// six unknowns q = (V, w) per body, velocity of the centre and spin. At a node x the body has the velocity B q
-// = V + w x (x - c); a field that touches it there is brought to that velocity along the normal, and across
+// six unknowns q = (V, w) per body, velocity of the centre and spin. At a node x the body has the velocity B
+// q = V + w x (x - c); a field that touches it there is brought to that velocity along the normal, and across
 // as friction allows (node_contact.hpp, with a rigid body of infinite mass), by an impulse P(q) on the body:
 //
 //   M q = M q0 + sum over nodes of B^T P(q)          M: mass and inertia, q0: without contact

@@ -1,10 +1,10 @@
 // The motion of a rigid body: Newton's and Euler's equations with a step's impulses, and rotations without
 // drift.
 //
-// Within a step the body moves with the velocity V and spin w of its end (rigid_motion.hpp): every point x has
-// the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w. Impulses J and their
-// moment H about c at the start change momentum and angular momentum, which is then kept to round-off: c moves
-// along the momentum of the end.
+// Within a step the body moves with the velocity V and spin w of its end (rigid_motion.hpp): every point x
+// has the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w. Impulses J and
+// their moment H about c at the start change momentum and angular momentum, which is then kept to round-off:
+// c moves along the momentum of the end.
 //
 // A body that symmetry planes cut is a part of the whole: the other parts cancel impulses along the planes'
 // normals and moments about axes in the planes. The whole has the part's inertia about the normal, over its
