@@ -21,6 +21,7 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
 
   material_.assign(scene.components.size(), -1);
   weight_.assign(scene.components.size(), -std::numeric_limits<double>::infinity());
+  wave_.assign(scene.components.size(), 0.0);
   for (const Body& body : model.bodies) {
     const auto c = static_cast<std::size_t>(body.component);
     material_[c] = body.material;
@@ -29,12 +30,14 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
       weight_[c] = std::numeric_limits<double>::infinity();
       continue;
     }
+    wave_[c] = std::max(wave_[c], body.model->initial_sound_speed());
     // Of several bodies the largest: given, they all have the component's.
     weight_[c] = std::max(weight_[c], normal_weight(scene, c, static_cast<std::size_t>(body.material)));
   }
   if (has_failed_component(scene)) {
     material_.push_back(-1);  // no friction
     weight_.push_back(failed_normal_weight);
+    wave_.push_back(0);
   }
   has_failed_.resize(weight_.size());
   const std::size_t materials = model.materials.size();

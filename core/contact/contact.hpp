@@ -6,8 +6,10 @@
 //   bardenhagen           the velocities at the end of the step, after all other forces; all of it
 //   pan                   first those at its start, then those that the corrected ones and the forces lead
 //                         to; the particles get the second impulses, which oppose the nodal forces. The
-//                         first change the velocities that strain and move, and not the particles' momenta
+//                         first change the velocities that strain and move, and not the particles' momenta,
+//                         unless the approach is as fast as waves
 //   improved_bardenhagen  as pan; the particles get both
+// Nodes at which a free rigid body is follow bardenhagen's.
 //
 // Bodies whose supports share a node may still be up to two cells apart. With a largest distance, two fields
 // touch only if the gap between their surfaces is not larger: the sum of the distances from the node to the
@@ -78,6 +80,15 @@ struct RegressionScratch {
   LabelledPoints points;
 };
 
+/// A node at which a free rigid body touches others, for the motion of the body.
+struct RigidNode {
+  Vec3<double> place{};
+  std::vector<ContactField> fields;
+  std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
+  int moves = -1;  ///< field of the body whose motion at the end counts; -1: several rigid bodies meet
+  std::vector<ContactPair> pairs;
+};
+
 /// What contact adds to in a step, by thread.
 struct ContactSums {
   ContactRecord record;
@@ -129,6 +140,14 @@ class Contact {
   void drop_distant_pairs(const BrickGrid& grid, const SharedNodes& shared, Slot s);
   const MeetingNodes& meetings(Slot s) const { return meetings_[static_cast<std::size_t>(s)]; }
 
+  /// Free rigid bodies: the nodes at which the fields that a brick sees touch them, no later brick having
+  /// these, and the answer of such a node to a trial motion of the bodies. The fields have the motion of the
+  /// end of the step, without contact.
+  bool sees_free_body(Slot s) const;
+  void find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNodes> fields,
+                        std::vector<RigidNode>& to) const;
+  void respond(const RigidNode& node, std::span<RigidResponse> to) const;
+
   /// MUSL's strain velocity comes after that of the end of the step, which the fields' motion still has.
   enum class Velocity { of_end, of_strain, of_strain_after_end };
   /// Changes the velocities of the fields that a brick sees where they meet, and of those at the end of the
@@ -154,11 +173,17 @@ class Contact {
   static Vec3<double> outward(int field, std::span<const MeetingNodes::Pair> pairs);
   Vec3<double> outward(std::span<const FieldNodes> fields, int field, int node,
                        std::span<const MeetingNodes::Pair> pairs) const;
+  bool take_node(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
+                 const MeetingNodes::Node& node, Node& at) const;
   bool find_pairs(std::span<const FieldNodes> fields, std::span<const MeetingNodes::Pair> pairs,
                   Node& at) const;
   void hold_pairs(Node& at) const;
   void resolve_strain(Node& at, Velocity which) const;
+  static Vec3<double> increment(const Node& at, std::size_t field);
+  double share_of_particles(const Node& at, const ContactPair& pair) const;
+  void correct_start(Node& at, ContactInput::Method method) const;
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
+  void book(const Node& at, ContactSums& sums) const;
 
   const Model& model_;
   const RigidBodies* rigid_;
@@ -168,6 +193,7 @@ class Contact {
   bool limits_time_step_ = false;
   std::vector<bool> has_failed_;  ///< by component; all false unless their normals are excluded
   std::vector<double> weight_;    ///< of normals, by component
+  std::vector<double> wave_;      ///< largest wave speed at the start, by component; 0: rigid, or failed
   std::vector<int> material_;     ///< by component; -1 without bodies
   std::vector<double> friction_;  ///< by two materials
   ContactPairs pairs_;

@@ -1,6 +1,7 @@
 // The impulses at the nodes where fields meet.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/contact/contact.hpp"
 
@@ -10,14 +11,26 @@ namespace mpm::core {
 struct Contact::Node {
   Vec3<double> place{};
   std::vector<ContactField> fields;
-  std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
+  std::vector<int> rigid;    ///< numbers of the rigid bodies; -1: deformable
+  std::vector<double> wave;  ///< speeds; 0: rigid
+  int moves = -1;            ///< field of the one rigid body here, a free one with its motion at the end
+  Vec3<double> change{};     ///< of its velocity by contact
+  bool free_body = false;    ///< whether there is any
   std::vector<Motion> records;
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
   std::vector<ContactPair> pairs;
   std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
+  // At the end of the step: velocities at its start, as the particles have them and with Pan's first
+  // impulses; those before the impulses that the particles get; and of each pair the share of Pan's first
+  // impulse that the particles get, and that part.
+  std::vector<Vec3<double>> start, nodal_start, taken;
+  std::vector<double> share;
+  std::vector<Vec3<double>> first_impulse;
 
   void clear() {
-    fields.clear(), rigid.clear(), records.clear(), number.clear(), pairs.clear(), recorded.clear();
+    fields.clear(), rigid.clear(), wave.clear(), records.clear(), number.clear(), pairs.clear(),
+        recorded.clear();
+    moves = -1, change = {}, free_body = false;
   }
 };
 
@@ -75,66 +88,99 @@ void Contact::resolve_strain(Node& at, Velocity which) const {
       at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
 }
 
+/// The increment of a field that the particles get; of a rigid body by contact, where it is known before.
+Vec3<double> Contact::increment(const Node& at, std::size_t f) {
+  const double* d = at.records[f].increment();
+  if (at.rigid[f] < 0) return {d[0], d[1], d[2]};
+  return static_cast<int>(f) == at.moves ? at.change : Vec3<double>{};
+}
+
+/// Of Pan's first impulse of a pair, the share that the particles get. What the nodes stop is stopped in the
+/// particles by the stress of a strain u/c, with the approach u and the larger wave speed c of the two. Above
+/// half of c that strain is no small one, from c on there is none: mass that is swept up has no momentum but
+/// from the impulse itself (a shell of 200 m/s in soil with waves of 50 m/s).
+double Contact::share_of_particles(const Node& at, const ContactPair& pair) const {
+  const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+  const double approach = dot(at.start[a] - at.start[b], pair.normal),
+               wave = std::max(at.wave[a], at.wave[b]);
+  return approach > 0 ? std::clamp(2 * approach / wave - 1, 0.0, 1.0) : 0.0;
+}
+
+/// The first impulses of Pan's method, and the velocities that they and the forces lead to.
+void Contact::correct_start(Node& at, ContactInput::Method method) const {
+  const std::size_t count = at.fields.size();
+  for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.start[f];
+  resolve_contacts(at.fields, at.pairs);
+  for (std::size_t f = 0; f < count; ++f) {
+    at.nodal_start[f] = at.fields[f].velocity;
+    at.fields[f].velocity = at.fields[f].velocity + increment(at, f);
+  }
+  const bool pan = method == ContactInput::Method::pan;
+  if (pan)
+    for (std::size_t f = 0; f < count; ++f) at.taken[f] = at.fields[f].velocity;
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    const ContactPair& pair = at.pairs[p];
+    at.share[p] = pan ? share_of_particles(at, pair) : 1.0;
+    at.first_impulse[p] = at.share[p] * pair.impulse;
+    if (!pan) continue;
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    at.taken[a] = at.taken[a] + (1 / at.fields[a].mass) * at.first_impulse[p];
+    at.taken[b] = at.taken[b] - (1 / at.fields[b].mass) * at.first_impulse[p];
+  }
+}
+
 /// Velocities at the end of the step, and what the particles get.
 void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   const std::size_t count = at.fields.size();
-  const auto increment = [&](std::size_t f) {
-    const double* d = at.records[f].increment();
-    return at.rigid[f] < 0 ? Vec3<double>{d[0], d[1], d[2]} : Vec3<double>{};
-  };
-  const bool corrects_start = method_ != ContactInput::Method::bardenhagen;
-  std::vector<Vec3<double>> taken(count);  // velocity before the impulses that the particles get
-  std::vector<Vec3<double>> start(count);  // velocity at the start of the step, as the particles have it
+  // With a free rigid body the nodes are brought to its velocity after all forces, and the particles get all
+  // of that impulse (thesis 5-14, 5-22): it has no stress that could give them the momentum later.
+  const ContactInput::Method method = at.free_body ? ContactInput::Method::bardenhagen : method_;
+  at.taken.resize(count), at.start.resize(count);
+  at.share.assign(at.pairs.size(), 1.0), at.first_impulse.assign(at.pairs.size(), Vec3<double>{});
   for (std::size_t f = 0; f < count; ++f)
-    taken[f] = at.fields[f].velocity, start[f] = taken[f] - increment(f);
-  std::vector<Vec3<double>> nodal_start = start;  // with Pan's first impulses
-  std::vector<Vec3<double>> first_impulse(at.pairs.size());
-  if (corrects_start) {
-    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = start[f];
-    resolve_contacts(at.fields, at.pairs);
-    for (std::size_t f = 0; f < count; ++f) nodal_start[f] = at.fields[f].velocity;
-    for (std::size_t p = 0; p < at.pairs.size(); ++p) first_impulse[p] = at.pairs[p].impulse;
-    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.fields[f].velocity + increment(f);
-    if (method_ == ContactInput::Method::pan)
-      for (std::size_t f = 0; f < count; ++f) taken[f] = at.fields[f].velocity;
-  }
+    at.taken[f] = at.fields[f].velocity, at.start[f] = at.taken[f] - increment(at, f);
+  at.nodal_start = at.start;
+  if (method != ContactInput::Method::bardenhagen) correct_start(at, method);
   for (const ContactPair& pair : at.pairs) {
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    sums.fastest = std::max(sums.fastest, dot(taken[a] - taken[b], pair.normal));
+    sums.fastest = std::max(sums.fastest, dot(at.taken[a] - at.taken[b], pair.normal));
   }
   resolve_contacts(at.fields, at.pairs);
   for (std::size_t f = 0; f < count; ++f) {
     if (at.rigid[f] >= 0) continue;
     for (int a = 0; a < 3; ++a) {
-      at.records[f].increment()[a] += at.fields[f].velocity[a] - taken[f][a];
+      at.records[f].increment()[a] += at.fields[f].velocity[a] - at.taken[f][a];
       at.records[f].velocity()[a] = at.fields[f].velocity[a];
     }
   }
-  if (!counts) return;
+  if (counts) book(at, sums);
+}
+
+/// Energy and impulses of resolve_end().
+void Contact::book(const Node& at, ContactSums& sums) const {
   const auto given = [&](std::size_t f) {
-    return at.rigid[f] < 0 ? increment(f) : at.fields[f].velocity - taken[f];
+    const bool known = at.rigid[f] < 0 || static_cast<int>(f) == at.moves;
+    return known ? increment(at, f) : at.fields[f].velocity - at.taken[f];
   };
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const Vec3<double> impulse = method_ == ContactInput::Method::improved_bardenhagen
-                                     ? pair.impulse + first_impulse[p]
-                                     : pair.impulse;
+    const Vec3<double> impulse = pair.impulse + at.first_impulse[p];
     // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
     // of the fields is u at its start and u' with all increments that the particles get.
-    const Vec3<double> half = 0.5 * (given(a) - given(b)), mean = start[a] - start[b] + half;
-    // Pan's first impulses stop the approach of the nodes without stopping that of the particles, and the
-    // strain follows the nodes: their approach counts.
-    const Vec3<double> approach =
-        method_ == ContactInput::Method::pan ? nodal_start[a] - nodal_start[b] + half : mean;
+    const Vec3<double> mean = at.start[a] - at.start[b] + 0.5 * (given(a) - given(b));
+    // The part of Pan's first impulses that the particles do not get stops the approach of the nodes without
+    // stopping theirs, and the strain follows the nodes: their approach counts.
+    const Vec3<double> stopped =
+        (1 - at.share[p]) * (at.nodal_start[a] - at.start[a] - (at.nodal_start[b] - at.start[b]));
     const double pressing = dot(impulse, pair.normal);
     const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
-    sums.record.dissipated.add(pressing * dot(approach, pair.normal) + heat);
+    sums.record.dissipated.add(pressing * dot(mean + stopped, pair.normal) + heat);
     sums.record.friction_heat.add(heat);
     if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
     const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
       if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
-      const double work = 0.5 * dot(on_it, taken[f] + at.fields[f].velocity);
+      const double work = 0.5 * dot(on_it, at.start[f] + at.fields[f].velocity);
       sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
           on_it, at.place - rigid_->state(at.rigid[f]).centre, work);
     };
@@ -143,42 +189,101 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   }
 }
 
+/// The fields with mass at a node, and their pairs that touch; false without any.
+bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
+                        const MeetingNodes::Node& node, Node& at) const {
+  const NodeBlockShape shape = grid.shape();
+  const int side = shape.side(), low = shape.lowest(), n = node.number;
+  at.clear();
+  at.place = grid.geometry().node_place(grid.brick(s).coord, n % side + low, n / side % side + low,
+                                        n / (side * side) + low);
+  int rigid_fields = 0;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const Motion record{fields[f].motion.data() + node_doubles * n};
+    if (!(record.mass() > 0)) continue;
+    const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
+    const int number = rigid(fields[f].component);
+    if (number >= 0) {
+      ++rigid_fields;
+      at.free_body = at.free_body || rigid_->is_free(number);
+      at.moves = static_cast<int>(at.fields.size());
+      at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
+    } else {
+      at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
+    }
+    at.rigid.push_back(number);
+    at.wave.push_back(wave_[static_cast<std::size_t>(fields[f].component)]);
+    at.records.push_back(record);
+    at.number.push_back(f);
+  }
+  if (rigid_fields != 1 || !at.free_body || which == Velocity::of_strain) {
+    at.moves = -1;
+  } else {
+    ContactField& moves = at.fields[static_cast<std::size_t>(at.moves)];
+    const Vec3<double> end = rigid_->velocity_at_end(at.rigid[static_cast<std::size_t>(at.moves)], at.place);
+    at.change = end - moves.velocity;
+    moves = {std::numeric_limits<double>::infinity(), end};
+  }
+  return find_pairs(fields, meetings(s).pairs_of(node), at);
+}
+
 void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
                       ContactSums& sums) const {
   const BoundaryFaces faces(grid, s);
   sums.record.impulses.resize(3 * pairs_.size());
   if (rigid_ != nullptr) sums.rigid.resize(rigid_->count());
   Node at;
-  const NodeBlockShape shape = grid.shape();
-  const auto place = [&](int node) {
-    const int side = shape.side(), low = shape.lowest();
-    return grid.geometry().node_place(grid.brick(s).coord, node % side + low, node / side % side + low,
-                                      node / (side * side) + low);
-  };
-  const MeetingNodes& meetings = this->meetings(s);
-  for (const MeetingNodes::Node& node : meetings.nodes) {
-    at.clear();
-    at.place = place(node.number);
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      const Motion record{fields[f].motion.data() + node_doubles * node.number};
-      if (!(record.mass() > 0)) continue;
-      const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
-      const int number = rigid(fields[f].component);
-      at.rigid.push_back(number);
-      if (number >= 0)
-        at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
-      else
-        at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
-      at.records.push_back(record);
-      at.number.push_back(f);
-    }
-    if (!find_pairs(fields, meetings.pairs_of(node), at)) continue;
+  for (const MeetingNodes::Node& node : meetings(s).nodes) {
+    if (!take_node(grid, s, which, fields, node, at)) continue;
     if (which == Velocity::of_end)
       resolve_end(at, sums, node.counts);
     else
       resolve_strain(at, which);
   }
   for (FieldNodes& field : fields) faces.fill(field.motion.data());
+}
+
+bool Contact::sees_free_body(Slot s) const {
+  return std::ranges::any_of(seen(s), [&](std::int32_t component) {
+    const int number = rigid(component);
+    return number >= 0 && rigid_->is_free(number);
+  });
+}
+
+void Contact::find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNodes> fields,
+                               std::vector<RigidNode>& to) const {
+  Node at;
+  for (const MeetingNodes::Node& node : meetings(s).nodes) {
+    if (node.counts && take_node(grid, s, Velocity::of_end, fields, node, at) && at.free_body)
+      to.push_back({at.place, at.fields, at.rigid, at.moves, at.pairs});
+  }
+}
+
+void Contact::respond(const RigidNode& node, std::span<RigidResponse> to) const {
+  std::vector<ContactField> fields = node.fields;
+  std::vector<ContactPair> pairs = node.pairs;
+  const auto at = [&](int f) { return static_cast<std::size_t>(f); };
+  if (node.moves >= 0)
+    fields[at(node.moves)].velocity = rigid_->velocity_at_end(node.rigid[at(node.moves)], node.place);
+  const std::vector<ContactField> before = fields;
+  resolve_contacts(fields, pairs);
+  for (const ContactPair& pair : pairs) {
+    for (const int f : {pair.first, pair.second}) {
+      const int number = node.rigid[at(f)], other = f == pair.first ? pair.second : pair.first;
+      if (number < 0 || !rigid_->is_free(number) || pair.impulse == Vec3<double>{}) continue;
+      double along = 0, across = 0;
+      if (f == node.moves) {
+        const Vec3<double> u = before[at(pair.first)].velocity - before[at(pair.second)].velocity;
+        const double u_n = dot(u, pair.normal), p_n = dot(pair.impulse, pair.normal);
+        const Vec3<double> u_t = u - u_n * pair.normal, p_t = pair.impulse - p_n * pair.normal;
+        const double slides = std::sqrt(dot(u_t, u_t)), mass = before[at(other)].mass;
+        along = mass;
+        across = slides > 0 ? std::min(mass, std::sqrt(dot(p_t, p_t)) / slides) : 0;
+      }
+      to[at(number)].add(f == pair.first ? -1.0 * pair.impulse : pair.impulse,
+                         node.place - rigid_->state(number).centre, pair.normal, along, across);
+    }
+  }
 }
 
 }  // namespace mpm::core

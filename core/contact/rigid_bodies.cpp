@@ -51,7 +51,7 @@ RigidBodies::RigidBodies(Model& model, Reductions& ranks) : model_(model), ranks
     if (!body.rigid) continue;
     const int number = static_cast<int>(bodies_.size());
     by_component_[static_cast<std::size_t>(body.component)] = by_body_[b] = number;
-    bodies_.push_back({static_cast<int>(b), is_driven(model, b), 0});
+    bodies_.push_back({.body = static_cast<int>(b), .driven = is_driven(model, b)});
   }
   node_mass_.resize(bodies_.size());
   find_states(ranks);
@@ -165,7 +165,7 @@ void RigidBodies::begin_step(const Loads& loads, const Vec3<double>& gravity, do
 void RigidBodies::move_without_contact(const Loads& loads, const Vec3<double>& gravity, double dt) {
   dt_ = dt;
   for (std::size_t r = 0; r < bodies_.size(); ++r) {
-    const Rigid& rigid = bodies_[r];
+    Rigid& rigid = bodies_[r];
     RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
     const BodyMotion& motion = loads.motion(rigid.body);
     state.velocity = motion.kind == BodyMotion::Kind::prescribed
@@ -173,15 +173,42 @@ void RigidBodies::move_without_contact(const Loads& loads, const Vec3<double>& g
                          : rigid.velocity_before + dt * (gravity + loads.acceleration(rigid.body));
     state.spin = rigid.spin_before + dt * loads.angular_acceleration(rigid.body);
     if (!rigid.driven) keep_symmetry(state);
+    rigid.end = {state.velocity, state.spin};
     node_mass_[r] =
         rigid.driven ? std::numeric_limits<double>::infinity() : state.mass / std::max(state.contacts, 1.0);
   }
 }
 
+void RigidBodies::find_motion(const std::function<void(std::span<RigidResponse>)>& respond) {
+  constexpr int most_trials = 20;
+  constexpr auto size = static_cast<std::size_t>(RigidResponse::size);
+  bool rest = false;
+  for (int trial = 0; trial < most_trials && !rest; ++trial) {
+    std::vector<RigidResponse> responses(bodies_.size());
+    respond(responses);
+    std::vector<ExactSum> sums;
+    for (const RigidResponse& response : responses)
+      sums.insert(sums.end(), std::begin(response.sums), std::end(response.sums));
+    ranks_.sum(std::span<ExactSum>(sums));
+    rest = true;
+    for (std::size_t r = 0; r < bodies_.size(); ++r) {
+      Rigid& rigid = bodies_[r];
+      if (rigid.driven) continue;
+      double values[size];
+      for (std::size_t i = 0; i < size; ++i) values[i] = sums[size * r + i].value();
+      const RigidState& without = state(static_cast<int>(r));
+      const RigidVelocity before = rigid.end;
+      rigid.end = next_trial(without, {without.velocity, without.spin}, before, values);
+      rest = rest && same_motion(without, before, rigid.end);
+    }
+  }
+}
+
 void RigidBodies::move(int number, const ColumnLayout& layout, double* block) const {
   const RigidState& s = state(number);
-  const Mat3<double> turn = rotation(dt_ * s.spin);
-  const Vec3<double> centre = s.centre + dt_ * s.velocity;
+  const RigidVelocity& end = bodies_[static_cast<std::size_t>(number)].end;
+  const Mat3<double> turn = rotation(dt_ * end.spin);
+  const Vec3<double> centre = s.centre + dt_ * end.velocity;
   double* x = block + layout.offset(Column::position_x);
   for (int i = 0; i < block_lanes; ++i) {
     const Vec3<double> at =
@@ -232,7 +259,7 @@ void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, 
     const Vec3<double> impulse{s[0].value(), s[1].value(), s[2].value()},
         moment{s[3].value(), s[4].value(), s[5].value()};
     const double without_contact = kinetic_energy(state), given = s[6].value();
-    core::end_step(state, dt_, impulse, moment, rigid.driven);
+    core::end_step(state, dt_, rigid.end.velocity, rigid.end.spin, impulse, moment, rigid.driven);
     state.contacts = static_cast<double>(contacts[r]);
     if (ranks_.rank() != 0) continue;
     work.add(without_contact - rigid.energy_before);

@@ -2,16 +2,22 @@
 // six degrees of freedom. Their particles carry mass and surface to the grid; their motion is one state per
 // body (rigid_state.hpp), the same bits on every rank.
 //
-// At a node a driven body has infinite mass. A free one has its mass over the number of nodes at which it
-// touched others in the step before, so that the impulses of all of them stop it and no more (mass
-// splitting, as in node_contact.hpp).
+// At a node a driven body has infinite mass, and so has a free one with the motion that it has at the end of
+// the step: found once the nodes' velocities without contact are known (rigid_motion.hpp). Where that is not
+// yet so (USF's strain) or several rigid bodies meet at a node, a free one has its mass over the number of
+// nodes at which it touched others in the step before, so that the impulses of all of them stop it and no
+// more (mass splitting, as in node_contact.hpp).
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/communication/reductions.hpp"
+#include "core/contact/rigid_motion.hpp"
 #include "core/exact_sum.hpp"
 #include "core/model.hpp"
 #include "core/step/loads.hpp"
@@ -39,9 +45,18 @@ class RigidBodies {
     return by_component_[static_cast<std::size_t>(component)];
   }
   int of_body(int body) const { return by_body_[static_cast<std::size_t>(body)]; }
+  /// With the motion without contact until end_step().
   const RigidState& state(int number) const;
-  /// Mass of a rigid body at a node.
+  bool is_free(int number) const { return !bodies_[static_cast<std::size_t>(number)].driven; }
+  bool any_free() const {
+    return std::ranges::any_of(bodies_, [](const Rigid& r) { return !r.driven; });
+  }
+  /// Mass of a rigid body at a node where its motion at the end of the step is not known.
   double mass_at_node(int number) const { return node_mass_[static_cast<std::size_t>(number)]; }
+  /// Velocity at a place at the end of the step: without contact until find_motion(), which tries several.
+  Vec3<double> velocity_at_end(int number, const Vec3<double>& place) const {
+    return bodies_[static_cast<std::size_t>(number)].end.at(place - state(number).centre);
+  }
 
   /// The motion that the bodies would have without contact.
   void begin_step(const Loads& loads, const Vec3<double>& gravity, double dt);
@@ -49,6 +64,9 @@ class RigidBodies {
   void shorten_step(const Loads& loads, const Vec3<double>& gravity, double dt) {
     move_without_contact(loads, gravity, dt);
   }
+  /// The motion of the free bodies at the end of the step; respond(responses) adds what the nodes of this
+  /// rank answer to velocity_at_end(), per body. Collective.
+  void find_motion(const std::function<void(std::span<RigidResponse>)>& respond);
   /// Moves a block of a rigid body's particles.
   void move(int number, const ColumnLayout& layout, double* block) const;
   /// With the impulses of all threads, per body: the motion at the end of the step. The work of loads and
@@ -63,6 +81,7 @@ class RigidBodies {
     bool driven = false;
     double energy_before = 0;  ///< kinetic, at the start of the step
     Vec3<double> velocity_before{}, spin_before{};
+    RigidVelocity end{};  ///< with which it moves in this step
   };
   void find_states(Reductions& ranks);
   void move_without_contact(const Loads& loads, const Vec3<double>& gravity, double dt);

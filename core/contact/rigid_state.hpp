@@ -1,9 +1,10 @@
 // The motion of a rigid body: Newton's and Euler's equations with a step's impulses, and rotations without
 // drift.
 //
-// Within a step the body moves with the velocity V and spin w that it would have without contact: every point
-// x has the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w. Impulses J
-// and their moment H about c then change momentum and angular momentum at the end of the step.
+// Within a step the body moves with the velocity V and spin w of its end (rigid_motion.hpp): every point x
+// has the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w. Impulses J and
+// their moment H about c at the start change momentum and angular momentum, which is then kept to round-off:
+// c moves along the momentum of the end.
 //
 // A body that symmetry planes cut is a part of the whole: the other parts cancel impulses along the planes'
 // normals and moments about axes in the planes. The whole has the part's inertia about the normal, over its
@@ -86,13 +87,13 @@ inline Vec3<double> spin_with(const RigidState& s, const Vec3<double>& l) {
   return spin_of(s.inertia, l);
 }
 
-/// The end of a step of length dt with contact's impulse and its moment about the centre at its beginning;
-/// `driven`: contact does not change the motion.
-inline void end_step(RigidState& s, double dt, const Vec3<double>& impulse, const Vec3<double>& moment,
-                     bool driven) {
+/// The end of a step of length dt, in which the body has moved with `velocity` and `spin`, with contact's
+/// impulse and its moment about the centre at its beginning; `driven`: contact does not change the motion.
+inline void end_step(RigidState& s, double dt, const Vec3<double>& velocity, const Vec3<double>& spin,
+                     const Vec3<double>& impulse, const Vec3<double>& moment, bool driven) {
   const Vec3<double> angular_momentum = s.inertia * s.spin + moment;
-  s.inertia = rotate(rotation(dt * s.spin), s.inertia);
-  s.centre = s.centre + dt * s.velocity;
+  s.inertia = rotate(rotation(dt * spin), s.inertia);
+  s.centre = s.centre + dt * velocity;
   s.force = (1 / dt) * impulse;
   s.moment = (1 / dt) * moment;
   if (driven) return;

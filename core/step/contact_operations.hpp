@@ -45,10 +45,10 @@ template <class Update, class F>
   if (model_.grid->components(s).empty()) f(all_components, 0);
 }
 
-/// Resolves the velocities of the fields that a brick sees, in at.fields.
+/// The motion of the fields that a brick sees, into at.fields.
 template <ShapePolicy S, TransferPolicy T>
 template <class Update>
-[[gnu::noinline]] void PassesWith<S, T>::meet(Slot s, Scratch& at, Contact::Velocity which, Update update) {
+void PassesWith<S, T>::take_fields(Slot s, Scratch& at, Update update) {
   const std::span<const std::int32_t> seen = contact_->seen(s);
   at.fields.resize(seen.size());
   for (std::size_t k = 0; k < seen.size(); ++k) {
@@ -56,6 +56,13 @@ template <class Update>
     update(seen[k], k);
     at.fields[k].motion.assign(at.nodes.data(), at.nodes.data() + at.nodes.size());
   }
+}
+
+/// Resolves the velocities of the fields that a brick sees, in at.fields.
+template <ShapePolicy S, TransferPolicy T>
+template <class Update>
+[[gnu::noinline]] void PassesWith<S, T>::meet(Slot s, Scratch& at, Contact::Velocity which, Update update) {
+  take_fields(s, at, update);
   contact_->resolve(*model_.grid, s, which, at.fields, at.contact);
 }
 
@@ -198,6 +205,20 @@ template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::drop_distant_pairs() {
   for_bricks(0, model_.grid->owned(), [this](Slot s, Scratch&) {
     if (contact_->meets(s)) contact_->drop_distant_pairs(*model_.grid, shared_, s);
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::find_rigid_motion() {
+  for (Scratch& w : scratch_) w.rigid_nodes.clear();
+  for_bricks(0, model_.grid->owned(), [this](Slot s, Scratch& at) {
+    if (!contact_->meets(s) || contact_->meetings(s).nodes.empty() || !contact_->sees_free_body(s)) return;
+    take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
+    contact_->find_rigid_nodes(*model_.grid, s, at.fields, at.rigid_nodes);
+  });
+  rigid_->find_motion([this](std::span<RigidResponse> responses) {
+    for (const Scratch& w : scratch_)
+      for (const RigidNode& node : w.rigid_nodes) contact_->respond(node, responses);
   });
 }
 

@@ -65,6 +65,10 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     }
   }
 
+  const auto move_free_bodies = [&] {
+    if (rigid_ && rigid_->any_free()) then("motion of rigid bodies", [&] { pass.find_rigid_motion(); });
+  };
+
   switch (model_.scene->solution.scheme) {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
@@ -73,6 +77,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       correct_velocities();
       if (pass.loads().any()) solve("velocities", Passes::MassSystem::velocity_at_end);
       solve("increments", Passes::MassSystem::increment);
+      move_free_bodies();
       then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
       then("exchange again", [&] { pass.finish_exchange(); });
       solve("new velocities", Passes::MassSystem::new_velocity);
@@ -87,6 +92,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       then("exchange again", [&] { pass.finish_exchange(); });
       correct_velocities();
       solve("increments", Passes::MassSystem::increment);
+      move_free_bodies();
       then("velocities and motion", [&] { pass.update_velocities_and_move(); });
       break;
     case Scheme::usl:
@@ -95,6 +101,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       then("exchange", [&] { pass.finish_exchange(); });
       limit();
       correct_velocities();
+      move_free_bodies();
       then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
   }

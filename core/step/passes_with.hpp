@@ -57,6 +57,7 @@ class PassesWith final : public Passes {
   void find_meetings() override;
   void map_reach() override;
   void drop_distant_pairs() override;
+  void find_rigid_motion() override;
   void move_rigid_bodies() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
@@ -93,6 +94,7 @@ class PassesWith final : public Passes {
     std::vector<FieldNodes> fields;  ///< where components meet
     RegressionScratch regression;
     ContactSums contact;
+    std::vector<RigidNode> rigid_nodes;
     SiteAverages averages;   ///< of the current tile; empty where volume changes are not averaged
     double strain_rate = 0;  ///< largest of the thread's bricks
     std::tuple<CarriedSums<NodeArray::first>, CarriedSums<NodeArray::second>> carried;  ///< of this pass
@@ -128,6 +130,8 @@ class PassesWith final : public Passes {
   void for_each_own_field(Slot s, F f);
   template <class Update, class F>
   void for_each_field(Slot s, Scratch& at, Contact::Velocity which, Update update, F f);
+  template <class Update>
+  void take_fields(Slot s, Scratch& at, Update update);
   template <class Update>
   void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
   void keep_motion_of_others(Slot s, const Scratch& at);

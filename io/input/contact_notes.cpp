@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include <fmt/format.h>
@@ -44,6 +45,22 @@ void note_driven(const core::Scene& scene, std::vector<core::Diagnostic>& notes)
        fmt::format("rigid bodies '{}' and '{}' both have a prescribed motion: where they meet they pass "
                    "through each other",
                    moves->name, other->name)});
+}
+
+/// Where a free rigid body touches, contact is always of type 1 (core/contact/contact_impulses.cpp).
+void note_free(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const std::optional<Node> contact = root.child("Contact");
+  if (!contact || scene.contact.method == core::ContactInput::Method::bardenhagen) return;
+  const core::BodyInput* free = nullptr;
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    if (is_rigid(scene, body) && !body.constrain_rigid_position && !body.prescribed_velocity) free = &body;
+  });
+  if (free == nullptr) return;
+  notes.push_back({scene.provenance.path, contact->line(), "Contact", "contact_type",
+                   std::to_string(static_cast<int>(scene.contact.method)),
+                   fmt::format("rigid body '{}' is free: where it touches others contact is of type 1, since "
+                               "it has no stress that could oppose their forces",
+                               free->name)});
 }
 
 /// The largest set of deformable components whose normals have the same weight; two spheres have no edges.
@@ -154,6 +171,7 @@ std::string touching(const core::Scene& scene) {
 
 void note_contact(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   note_driven(scene, notes);
+  note_free(root, scene, notes);
   note_scheme(root, scene, notes);
   note_tied_weights(root, scene, notes);
 }

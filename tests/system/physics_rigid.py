@@ -50,12 +50,13 @@ def pressed(shape, end=6.0, output=""):
                  f'<Console print_time="{end / 40}"/>' + output)
 
 
-def thrown(end=1.5, output="", partition="", kind=1):
-    """A free rigid brick that strikes a free elastic block off its centre, in empty space."""
+def thrown(end=1.5, output="", partition="", kind=1, cells=1):
+    """A free rigid brick that strikes a free elastic block off its centre, in empty space; `cells` of the grid along a length of 1."""
+    dp = 0.5 / cells
     soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
-    bodies = [_mpm.block("block", (2, 2, 2), (6, 6, 3)),
-              _mpm.block("brick", (2.3, 2.2, 5.4), (2, 3, 2), (0.4, 0.2, -2), of="iron")]
-    text = scene(bodies, _mpm.grid((0, 0, 0), (12, 12, 12)), _mpm.solution(end), soft, 0.2,
+    bodies = [_mpm.block("block", (2, 2, 2), (6, 6, 3), dp=dp),
+              _mpm.block("brick", (2.3, 2.2, 5.4), (2, 3, 2), (0.4, 0.2, -2), dp, of="iron")]
+    text = scene(bodies, _mpm.grid((0, 0, 0), (12, 12, 12), cell=1 / cells), _mpm.solution(end), soft, 0.2,
                  f'<Console print_time="{end / 20}"/><Restart time_interval="{end / 2}"/>' + output, kind)
     return text.replace("</PeneBlast>", partition + "</PeneBlast>")
 
@@ -95,24 +96,48 @@ class Rigid(_mpm.Case):
                 self.assertLess(entered, 0.2)
 
     def test_free_body_and_block(self):
-        """Momentum is exact; with cells of a third of the bodies, angular momentum and the books of energy are not."""
-        _, summary, status = self.go(thrown())
-        mass = 6 * 2 * 4.0 * 1.0
-        block, brick = summary["bodies"]
-        momentum = np.sum([np.array(b["velocity"]) * b["mass"] for b in (block, brick)], axis=0)
-        first = np.array([0.4, 0.2, -2]) * brick["mass"]
-        start = np.cross([3.3, 3.7, 6.4], first)
-        turned = np.linalg.norm(np.subtract(summary["angular_momentum"], start)) / np.linalg.norm(start)
-        drift = summary["energy"]["relative_drift"]
-        print(f"thrown brick: momentum {np.abs(momentum - first).max() / np.abs(first).max():.1e}, angular momentum "
-              f"{turned:.1e}, velocities {block['velocity'][2]:.3f} and {brick['velocity'][2]:.3f}, drift {drift:+.1e}")
-        self.assertAlmostEqual(brick["mass"], mass, delta=1e-9)
-        self.assertLess(np.abs(momentum - first).max() / np.abs(first).max(), 1e-12)
-        self.assertLess(turned, 0.05)
-        self.assertGreater(brick["velocity"][2], -1.5)
-        self.assertLess(block["velocity"][2], -0.1)
-        self.assertLess(abs(drift), 0.2)
-        self.assertGreater(np.abs(status["mx[contact:brick]"]).max(), 0)
+        """Momentum is exact. The books of energy close to 8 % with cells of a third of the bodies and 2 % with half of these; the
+        angular momentum, which is lost as by any two bodies (docs/contact.md), to 3.4 and 0.9 %. Nothing depends on contact_type."""
+        for cells, most_turned, most_drift in ((1, 0.05, 0.1), (2, 0.015, 0.04)):
+            with self.subTest(cells=cells):
+                state, summary, status = self.go(thrown(cells=cells))
+                block, brick = summary["bodies"]
+                momentum = np.sum([np.array(b["velocity"]) * b["mass"] for b in (block, brick)], axis=0)
+                first = np.array([0.4, 0.2, -2]) * brick["mass"]
+                start = np.cross([3.3, 3.7, 6.4], first)
+                turned = np.linalg.norm(np.subtract(summary["angular_momentum"], start)) / np.linalg.norm(start)
+                drift = summary["energy"]["relative_drift"]
+                print(f"thrown brick, cells {cells}: momentum {np.abs(momentum - first).max() / np.abs(first).max():.1e}, angular "
+                      f"momentum {turned:.1e}, velocities {block['velocity'][2]:.3f} and {brick['velocity'][2]:.3f}, drift {drift:+.1e}")
+                self.assertAlmostEqual(brick["mass"], 6 * 2 * 4.0 * 1.0, delta=1e-9)
+                self.assertLess(np.abs(momentum - first).max() / np.abs(first).max(), 1e-12)
+                self.assertLess(turned, most_turned)
+                self.assertGreater(brick["velocity"][2], -1.5)
+                self.assertLess(block["velocity"][2], -0.1)
+                self.assertLess(abs(drift), most_drift)
+                self.assertGreater(np.abs(status["mx[contact:brick]"]).max(), 0)
+        for kind in (0, 2):
+            self.assertEqual(self.go(thrown(kind=kind, cells=cells))[0], state)
+
+    def test_faster_than_waves(self):
+        """A plate drives into soil at 200 m/s, four times its wave speed: all that it sweeps up must have its velocity, 70.4 kg m/s
+        over 100 mm, and the shock runs a little ahead. With type 0 the particles get that from the first impulses, but for the last
+        of the approach, below half the wave speed: 3 % less. Without this share they had 10 % less."""
+        soft = _mpm.material("soft", 2.2e-3, 'type="DruckerPrager" Young="4" Poisson="0.3" phi="20" c="0.04084" psi="0" match="2" '
+                             'ten_f="0.1122"')
+        swept = 2.2e-3 * 40 * 40 * 100 * 200
+        for kind, least, most in ((0, 0.95, 1.05), (1, 1.0, 1.1)):
+            with self.subTest(kind=kind):
+                plate = _mpm.block("plate", (-50, 0, 0), (50, 40, 40), dp=5, of="iron", more=held(200))
+                soil = _mpm.block("soil", (0, 0, 0), (300, 40, 40), dp=5)
+                text = scene([plate, soil], _mpm.grid((-50, 0, 0), (350, 40, 40), "002222", cell=10), _mpm.solution(0.5), soft,
+                             output='<Console print_time="0.05"/>', kind=kind,
+                             distance=SURFACES + ' contact_normal="regression"')
+                _, summary, status = self.go(text)
+                found, drift = status["px[body:soil]"][-1] / swept, summary["energy"]["relative_drift"]
+                print(f"plate faster than waves, type {kind}: momentum over that of the mass swept up {found:.3f}, drift {drift:+.1e}")
+                self.assertTrue(least < found < most, found)
+                self.assertLess(abs(drift), 0.02)
 
     def test_body_at_a_symmetry_plane(self):
         """Half of a brick that strikes half of a block moves as the whole does."""

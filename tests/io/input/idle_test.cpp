@@ -382,6 +382,21 @@ TEST_CASE("driven rigid bodies pass through each other, in contact too") {
   CHECK(passing(still, still) == 0);  // they never meet
 }
 
+TEST_CASE("a free rigid body is in contact of type 1 whatever the type") {
+  const auto named = [](const std::string& type, const std::string& motion) {
+    const std::string text =
+        replaced(two_bodies(rigid_bar(), 6, true), "<InitialVelocity", motion + "<InitialVelocity");
+    const std::vector<std::string> notes =
+        notes_of(replaced(text, "<Solution>", "<Contact enable='1' " + type + "/><Solution>"), true);
+    return std::ranges::count_if(notes, [](const std::string& note) {
+      return note.find("is free: where it touches others contact is of type 1") != std::string::npos;
+    });
+  };
+  CHECK(named("", "") == 1);
+  CHECK(named("contact_type='2'", "") == 1);
+  CHECK(named("contact_type='1'", "") == 0);
+}
+
 TEST_CASE("rigid bodies beside others are refused") {
   const std::string mixed =
       replaced(replaced(two_bodies(bar, 6, true), "material='cu'", "material='iron'"), "</Material>",
