@@ -126,13 +126,13 @@ class Implicit(_mpm.Case):
             with self.subTest(ranks=ranks):
                 outcome = self.run_in(f"on{ranks}", [self.write(text)], ranks=ranks)
                 self.assertIn("gmres with mg", outcome.out)
-                # Measured 8 or 9 for each Newton step; GAMG takes 26.
+                # Measured 5.2; GAMG takes 9.8.
                 newton, linear = map(int, re.search(r"(\d+) Newton iterations and (\d+) linear", outcome.out).groups())
-                self.assertLess(linear / newton, 12)
-                # Displacements are of the order 0.1.
+                self.assertLess(linear / newton, 8)
+                # Places are in single precision: two units in the last place at 12. Of the pressure 2e-8 was measured.
                 place_here, pressure_here = self.state_of(f"on{ranks}")
-                self.assertLess(np.abs(place_here - place).max(), 1e-7)
-                self.assertLess(np.abs(pressure_here - pressure).max(), 1e-4 * np.abs(pressure).max())
+                self.assertLess(np.abs(place_here - place).max(), 2e-6)
+                self.assertLess(np.abs(pressure_here - pressure).max(), 1e-6 * np.abs(pressure).max())
 
     def state_of(self, folder):
         states = _cases.States(self.folder / folder)
