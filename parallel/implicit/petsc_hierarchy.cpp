@@ -79,7 +79,8 @@ void GridHierarchy::choose(PC pc) const {
   check_petsc(PCSetType(pc, PCMG));
   check_petsc(PCMGSetLevels(pc, static_cast<PetscInt>(levels), nullptr));
   check_petsc(PCMGSetGalerkin(pc, PC_MG_GALERKIN_BOTH));
-  for (std::size_t l = 0; l < levels; ++l) {  // from the coarsest grid on
+  check_petsc(PCSetUseAmat(pc, PETSC_FALSE));  // there is no product with differences of residuals
+  for (std::size_t l = 0; l < levels; ++l) {   // from the coarsest grid on
     KSP smoother = nullptr;
     PC of = nullptr;
     check_petsc(PCMGGetSmoother(pc, static_cast<PetscInt>(l), &smoother));

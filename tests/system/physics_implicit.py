@@ -133,6 +133,10 @@ class Implicit(_mpm.Case):
                 place_here, pressure_here = self.state_of(f"on{ranks}")
                 self.assertLess(np.abs(place_here - place).max(), 2e-6)
                 self.assertLess(np.abs(pressure_here - pressure).max(), 1e-6 * np.abs(pressure).max())
+        # Products by differences of residuals have no matrix of their own for coarser grids.
+        outcome = self.run_in("matrixfree", [self.write(text.replace("rtol=", 'jacobian="matrixfree" rtol='))])
+        self.assertIn("gmres with mg", outcome.out)
+        self.assertLess(np.abs(self.state_of("matrixfree")[0] - place).max(), 2e-6)
 
     def state_of(self, folder):
         states = _cases.States(self.folder / folder)
