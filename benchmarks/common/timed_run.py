@@ -11,7 +11,8 @@ from common import results
 def execute(file, folder, limit, options=(), ranks=1):
     """Exit code, standard error, processor seconds and seconds by the clock; killed after `limit` seconds. `options`
     follow -- on the command line."""
-    command = [*(("mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)) if ranks > 1 else ()), str(results.BIN / "mpm_run"), str(file), "--output-dir", str(folder),
+    launcher = ("mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)) if ranks > 1 else ()
+    command = [*launcher, str(results.BIN / "mpm_run"), str(file), "--output-dir", str(folder),
                *(("--", *options) if options else ())]
     environment = results.environment(OMP_NUM_THREADS="1", OMPI_MCA_ess_singleton_isolated="1")
     start = time.perf_counter()
