@@ -1,4 +1,4 @@
-"""Runs one scene with mpm_run, on one rank and one thread, and measures it."""
+"""Runs one scene with mpm_run, one thread per rank, and measures it."""
 
 import dataclasses
 import functools
@@ -31,6 +31,7 @@ class Run:
     quick: bool = False
     options: tuple = ()
     files: dict = dataclasses.field(default_factory=dict)
+    ranks: int = 1
 
     @property
     def key(self):
@@ -63,7 +64,8 @@ class Result:
     def __init__(self, folder):
         self.folder = folder
         self.summary = json.loads((folder / "case.summary.json").read_text())
-        self.steps = steps_of((folder / "case.out").read_text())
+        self.log = (folder / "case.out").read_text()
+        self.steps = steps_of(self.log)
 
     @functools.cached_property
     def states(self):
@@ -93,13 +95,13 @@ def run(one, out, keep=False):
     file.write_text(one.scene)
     for name, text in one.files.items():
         (folder / name).write_text(text)
-    code, said, processor, wall = timed_run.execute(file, folder, LIMIT, one.options)
+    code, said, processor, wall = timed_run.execute(file, folder, LIMIT, one.options, one.ranks)
     row = {**one.labels, **dict.fromkeys(COMMON, ""), "status": DONE, "note": ""}
     if code == 0:
         result = Result(folder)
         spent, steps = result.summary["wall_seconds"], result.steps
         # Of the processor: seconds by the clock, less the share in which other programs had the processor.
-        seconds = (spent["loop"] - spent["output"]) * min(1.0, processor / wall)
+        seconds = (spent["loop"] - spent["output"]) * min(1.0, processor / one.ranks / wall)
         row.update(particles=result.summary["particles"], steps=result.summary["steps"], seconds=seconds)
         if steps:
             row.update(unknowns=max(s.unknowns for s in steps), newton=sum(len(s.norms) - 1 for s in steps),

@@ -290,6 +290,7 @@ NewtonReport ImplicitIntegrator::solve_once(std::span<double> u, const NewtonOpt
   total_.structure_seconds += report.structure_seconds;
   total_.residual_seconds += report.residual_seconds;
   total_.jacobian_seconds += report.jacobian_seconds;
+  total_.setup_seconds += report.setup_seconds;
   total_.linear_seconds += report.linear_seconds;
   return report;
 }
@@ -360,10 +361,11 @@ std::string ImplicitIntegrator::words_of_run() const {
   if (solves_ == 0) return {};
   return fmt::format(
       "{}; {} Newton iterations and {} linear ones in {} solutions, {} of them rejected; seconds of Newton's "
-      "method on this rank: matrix structure {:.2f}, residuals {:.2f}, Jacobians {:.2f}, linear systems "
-      "{:.2f}",
+      "method on this rank: matrix structure {:.2f}, residuals {:.2f}, Jacobians {:.2f}, preconditioner or "
+      "factors {:.2f}, linear systems {:.2f}",
       solver_.description(), total_.iterations, total_.linear_iterations, solves_, cuts_,
-      total_.structure_seconds, total_.residual_seconds, total_.jacobian_seconds, total_.linear_seconds);
+      total_.structure_seconds, total_.residual_seconds, total_.jacobian_seconds, total_.setup_seconds,
+      total_.linear_seconds);
 }
 
 /// Names the node of the largest residual.

@@ -60,6 +60,8 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::int64_t first_node() const override { return unknowns_.first(); }
   std::int64_t all_nodes() const override { return unknowns_.all(); }
   std::span<const double> coordinates() const override { return unknowns_.coordinates(); }
+  std::span<const std::int32_t> lattice() const override { return unknowns_.lattice(); }
+  std::span<const std::uint8_t> held() const override { return unknowns_.held(); }
   bool residual(std::span<const double> u, std::span<double> r) override;
   double force_scale() const override { return force_scale_; }
   void structure(BlockMatrix& matrix) override {

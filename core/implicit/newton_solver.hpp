@@ -28,6 +28,10 @@ class NonlinearProblem {
   virtual std::int64_t all_nodes() const = 0;   ///< of all ranks
   /// Of this rank's nodes, three per node; for the rigid motions that a multigrid method needs to know.
   virtual std::span<const double> coordinates() const = 0;
+  /// Of this rank's nodes: where they are in the lattice of the grid's nodes, three integers per node, and
+  /// three bits per node, of components that are given; for a hierarchy of coarser grids.
+  virtual std::span<const std::int32_t> lattice() const = 0;
+  virtual std::span<const std::uint8_t> held() const = 0;
 
   /// Residual forces. False, on all ranks, where the state cannot be evaluated (a particle inverts).
   virtual bool residual(std::span<const double> u, std::span<double> r) = 0;
@@ -57,8 +61,10 @@ struct NewtonReport {
   int iterations = 0;
   std::int64_t linear_iterations = 0;
   std::vector<double> norms;  ///< |r| over the force scale, from the first guess on
-  /// Wall-clock time for the matrix's structure, for residuals, for the Jacobian, and for linear systems.
-  double structure_seconds = 0, residual_seconds = 0, jacobian_seconds = 0, linear_seconds = 0;
+  /// Wall-clock time for the matrix's structure, for residuals, for the Jacobian, for the preconditioner or
+  /// the factors made from it, and for what solves the linear systems with these.
+  double structure_seconds = 0, residual_seconds = 0, jacobian_seconds = 0, setup_seconds = 0,
+         linear_seconds = 0;
 };
 
 class NewtonSolver {

@@ -43,6 +43,7 @@ std::vector<double> NodeUnknowns::number() {
   nodes_.assign(static_cast<std::size_t>(grid().owned()) * per_brick(), {});
   own_.clear();
   coordinates_.clear();
+  lattice_.clear();
   std::vector<double> start;
   for (Slot s = 0; s < grid().owned(); ++s) {
     const double* sum = sums(s);
@@ -67,6 +68,9 @@ std::vector<double> NodeUnknowns::number() {
           start.insert(start.end(), sum + node_doubles * n, sum + node_doubles * (n + 1));
           const Vec3<double> x = grid().geometry().node_place(grid().brick(s).coord, i, j, k);
           coordinates_.insert(coordinates_.end(), {x.x, x.y, x.z});
+          const BrickCoord b = grid().brick(s).coord;
+          lattice_.insert(lattice_.end(),
+                          {brick_cells * b.x + i, brick_cells * b.y + j, brick_cells * b.z + k});
         }
       }
     }

@@ -69,6 +69,8 @@ class NodeUnknowns {
   std::int64_t first() const { return first_; }
   std::int64_t all() const { return all_; }
   std::span<const double> coordinates() const { return coordinates_; }
+  /// Three per own node: its place in the lattice of the grid's nodes.
+  std::span<const std::int32_t> lattice() const { return lattice_; }
   /// Three bits and three displacements per own node.
   std::span<const std::uint8_t> held() const { return held_; }
   std::span<const double> held_displacements() const { return held_to_; }
@@ -102,6 +104,7 @@ class NodeUnknowns {
   std::vector<Own> own_;
   std::int64_t first_ = 0, all_ = 0;
   std::vector<double> coordinates_, held_to_;
+  std::vector<std::int32_t> lattice_;
   std::vector<std::uint8_t> held_;
   AlignedDoubles buffer_;
 };

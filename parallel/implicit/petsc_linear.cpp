@@ -13,7 +13,13 @@ constexpr std::int64_t direct_up_to = 5000;
 
 }  // namespace
 
-void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender) {
+bool takes_multigrid(std::int64_t unknowns, bool slender) {
+  PetscBool other = PETSC_FALSE;
+  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-pc_type", &other));
+  return unknowns > direct_up_to && !slender && other == PETSC_FALSE;
+}
+
+void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender, const GridHierarchy* grids) {
   KSP ksp = nullptr;
   PC pc = nullptr;
   check_petsc(SNESGetKSP(snes, &ksp));
@@ -31,7 +37,10 @@ void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender) {
     check_petsc(KSPSetType(ksp, KSPGMRES));
     check_petsc(KSPGMRESSetRestart(ksp, 60));
     check_petsc(KSPSetTolerances(ksp, 1e-5, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
-    check_petsc(PCSetType(pc, PCGAMG));
+    if (grids != nullptr && grids->usable())
+      grids->choose(pc);
+    else
+      check_petsc(PCSetType(pc, PCGAMG));
   }
 }
 

@@ -2,9 +2,10 @@
 // (SNESSetFromOptions), and which others after a failure.
 //
 // Small problems are solved directly, slender ones by PETSc's own factorisation with the bandwidth reduced,
-// others by MUMPS; larger ones by GMRES with smoothed aggregation multigrid (GAMG). The single system of a
-// linearised step is solved by conjugate gradients, preconditioned with the blocks of the nodes; where it
-// turns out not to be positive definite (a law that softens or whose flow is not associated), by GMRES.
+// others by MUMPS; larger ones by GMRES with multigrid on coarser grids (petsc_hierarchy.hpp), or, where
+// nodes are scattered, with smoothed aggregation (GAMG). The single system of a linearised step is solved by
+// conjugate gradients, preconditioned with the blocks of the nodes; where it turns out not to be positive
+// definite (a law that softens or whose flow is not associated), by GMRES.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +14,17 @@
 
 #include <petscsnes.h>
 
+#include "parallel/implicit/petsc_hierarchy.hpp"
+
 namespace mpm::parallel {
 
 /// Nodes in the widest level of a slender body, whose systems are solved directly whatever their size: the
 /// work grows with their length alone.
 inline constexpr std::size_t slender_up_to = 24;
 
-void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender);
+/// Whether such systems are solved with multigrid on coarser grids, and the user has not chosen otherwise.
+bool takes_multigrid(std::int64_t unknowns, bool slender);
+void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender, const GridHierarchy* grids);
 /// For the one system of a linearised step.
 void choose_conjugate_gradients(SNES snes, double tolerance);
 /// PETSc's own factorisation does not exchange rows, MUMPS does.

@@ -13,6 +13,7 @@
 
 #include "core/implicit/newton_solver.hpp"
 #include "parallel/implicit/petsc_errors.hpp"
+#include "parallel/implicit/petsc_hierarchy.hpp"
 #include "parallel/implicit/petsc_linear.hpp"
 #include "parallel/implicit/petsc_matrix.hpp"
 #include "parallel/implicit/petsc_newton.hpp"
@@ -42,7 +43,7 @@ using OwnedMat = Owned<Mat, MatDestroy>;
 using OwnedSnes = Owned<SNES, SNESDestroy>;
 using OwnedNullSpace = Owned<MatNullSpace, MatNullSpaceDestroy>;
 
-/// For multigrid methods.
+/// For algebraic multigrid.
 void give_rigid_motions(const NonlinearProblem& problem, Mat matrix) {
   OwnedVec coordinates;
   check_petsc(MatCreateVecs(matrix, &coordinates, nullptr));
@@ -87,14 +88,15 @@ class PetscSolver final : public core::NewtonSolver {
   std::string description() const override { return description_; }
 
  private:
-  void set_up(NonlinearProblem& problem);
+  void set_up(NonlinearProblem& problem, bool linear);
   bool try_otherwise(SNES snes, bool linear);
   void refuse_unused_options();
 
   /// What solves with the same places of entries share: PETSc keeps the symbolic part of a factorisation.
   struct SetUp {
     std::unique_ptr<MatrixValues> values;
-    bool slender = false;  ///< as is a bar of few nodes across, on one rank
+    bool slender = false;                  ///< as is a bar of few nodes across, on one rank
+    std::unique_ptr<GridHierarchy> grids;  ///< null for systems that are solved without
     OwnedVec solution, residual;
     OwnedMat action;
     OwnedSnes snes;
@@ -110,7 +112,7 @@ class PetscSolver final : public core::NewtonSolver {
 };
 
 /// The matrix and the solver, or those of the last solve where the places of the entries are the same.
-void PetscSolver::set_up(NonlinearProblem& problem) {
+void PetscSolver::set_up(NonlinearProblem& problem, bool linear) {
   MatrixPlaces places(problem.first_node(), problem.own_nodes());
   problem.structure(places);
   for (std::int64_t i = 0; i < problem.own_nodes(); ++i) {
@@ -119,6 +121,7 @@ void PetscSolver::set_up(NonlinearProblem& problem) {
   }
   places.exchange(comm_);
   int same = of_ && of_->values->places().same_as(places) ? 1 : 0;
+  if (same == 1 && of_->grids && !of_->grids->is_of(problem)) same = 0;
   check_mpi(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, comm_));
   if (same == 0) {
     of_ = std::make_unique<SetUp>();
@@ -129,6 +132,8 @@ void PetscSolver::set_up(NonlinearProblem& problem) {
     check_petsc(MatCreateVecs(of_->values->matrix(), &of_->solution, &of_->residual));
     check_petsc(SNESCreate(comm_, &of_->snes));
     set_functions(of_->snes, of_->residual, now_);
+    if (takes_multigrid(3 * problem.all_nodes(), of_->slender) && !linear)
+      of_->grids = std::make_unique<GridHierarchy>(comm_, problem);
   }
   give_rigid_motions(problem, of_->values->matrix());
 }
@@ -178,7 +183,7 @@ std::string why_not_converged(SNES snes, PetscErrorCode code, SNESConvergedReaso
 NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
                                 const NewtonOptions& options) {
   const double start = MPI_Wtime();
-  set_up(problem);
+  set_up(problem, options.linear);
   now_ = {&problem, &options, of_->values.get(), {}, nullptr};
   NewtonReport& report = now_.report;
   const Vec solution = of_->solution, r = of_->residual;
@@ -197,7 +202,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   if (options.linear) {
     choose_conjugate_gradients(snes, options.relative_tolerance);
   } else {
-    choose_linear_solver(snes, 3 * problem.all_nodes(), of_->slender);
+    choose_linear_solver(snes, 3 * problem.all_nodes(), of_->slender, of_->grids.get());
     choose_full_steps(snes, now_);
   }
   if (SNESSetFromOptions(snes) != 0)
@@ -237,8 +242,8 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   check_petsc(VecGetArrayRead(solution, &from));
   std::copy_n(from, u.size(), u.begin());
   check_petsc(VecRestoreArrayRead(solution, &from));
-  report.linear_seconds =
-      MPI_Wtime() - start - report.structure_seconds - report.residual_seconds - report.jacobian_seconds;
+  report.linear_seconds = MPI_Wtime() - start - report.structure_seconds - report.residual_seconds -
+                          report.jacobian_seconds - report.setup_seconds;
   refuse_unused_options();
   return report;
 }

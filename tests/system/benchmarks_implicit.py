@@ -211,6 +211,12 @@ class Quick(_mpm.RunOnce):
                                   ("block", "QuadraticBSpline", 0.08)):
             self.assertLess(abs(self.one("error", "locking", body=body, shape=shape)), most, (body, shape))
 
+    def test_iterations_over_the_size(self):
+        for ranks in (1, 2):
+            few, many = (self.one("linear", "size", ranks=ranks, cells=n) for n in (14, 20))
+            self.assertLessEqual(many, 1.25 * few)  # measured 8 and 8; the unknowns nearly triple
+            self.assertLessEqual(many, 12)
+
     def test_quadratic_convergence(self):
         for row in self.rows("laws"):
             self.assertGreater(float(row["order"]), 1.8, row)
