@@ -120,7 +120,8 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
 /// Conduction has taken the step as it was chosen: it moves heat between particles alone.
 void ExplicitIntegrator::limit_strain() {
   double& dt = model_.clock.dt;
-  const double limited = limited_step(dt, ranks_.largest(passes_->largest_strain_rate(strain_rate_limit(dt))));
+  const double limited =
+      limited_step(dt, ranks_.largest(passes_->largest_strain_rate(strain_rate_limit(dt))));
   if (limited == dt) return;
   dt = limited;
   passes_->shorten_step(dt);
