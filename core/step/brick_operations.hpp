@@ -112,10 +112,10 @@ void PassesWith<S, T>::fold_at_walls(Slot s, int field, double* contributions) {
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
 void PassesWith<S, T>::map_to_grid() {
-  const bool finds_ranges = maps_mass(what) && strain_may_jump_;
-  if (finds_ranges) velocities_.resize(static_cast<std::size_t>(model_.grid->owned()));
+  const bool finds_ranges = maps_mass(what) && finds_ranges_;
+  if (finds_ranges) ranges_.resize(static_cast<std::size_t>(model_.grid->owned()));
   map_bricks<what>([&](Slot s, Scratch& at) {
-    if (finds_ranges) velocities_[static_cast<std::size_t>(s)] = velocity_range(model_, s);
+    if (finds_ranges) ranges_[static_cast<std::size_t>(s)] = velocity_range(model_, s);
     for_each_own_field(s, [&](std::int32_t component) {
       map_brick<what>(s, component, at, [](int, const Place&, double*, int) {});
     });

@@ -296,14 +296,16 @@ class PassesWith final : public Passes {
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
-  AlignedDoubles corrected_;               ///< by slot; XPIC, FMPM: corrected_nodes()
-  AlignedDoubles solution_;                ///< by slot; consistent mass: solution()
-  AlignedDoubles cell_masses_;             ///< by slot; consistent mass: cell_masses()
-  bool masses_known_ = false;              ///< in this step
-  AlignedDoubles direction_;               ///< by slot; consistent mass: direction()
-  std::vector<VelocityRange> velocities_;  ///< by owned slot, at the start of the step; of scenes below alone
-  const bool strain_may_jump_;
-  std::vector<double> critical_;  ///< by slot; USF: largest critical speed of the stress pass
+  AlignedDoubles corrected_;    ///< by slot; XPIC, FMPM: corrected_nodes()
+  AlignedDoubles solution_;     ///< by slot; consistent mass: solution()
+  AlignedDoubles cell_masses_;  ///< by slot; consistent mass: cell_masses()
+  bool masses_known_ = false;   ///< in this step
+  AlignedDoubles direction_;    ///< by slot; consistent mass: direction()
+  /// Whether the velocities' ranges tell in which bricks the strain may jump: with affine transfers nodes
+  /// have velocities beyond those of the particles.
+  const bool finds_ranges_;
+  std::vector<VelocityRange> ranges_;  ///< by owned slot, at the start of the step
+  std::vector<double> critical_;       ///< by slot; USF: largest critical speed of the stress pass
 };
 
 /// Share of a full cell's mass below which a node's increment is scaled down in USL's strain rate. The nodal
@@ -324,7 +326,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       transfer_(model.scene->solution),
       scheme_(model.scene->solution.scheme),
       orders_(orders_of(model.scene->solution)),
-      strain_may_jump_(strain_may_jump(model)) {
+      finds_ranges_(strain_may_jump(model) && !is_affine(model.scene->solution.transfer)) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = solution.gravity;
   forces_.damping = solution.damping;

@@ -25,11 +25,9 @@ void PassesWith<S, T>::sum_fields(Slot s, Scratch& at) {
 template <ShapePolicy S, TransferPolicy T>
 double PassesWith<S, T>::largest_strain_rate(double above) {
   const BrickGrid& grid = *model_.grid;
-  // With affine transfers nodes have velocities beyond those of the particles.
-  const bool means = !is_affine(model_.scene->solution.transfer);
   for (Scratch& w : scratch_) w.strain_rate = 0;
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
-    if (means && !may_strain_faster(grid, velocities_, s, above)) return;
+    if (finds_ranges_ && !may_strain_faster(grid, ranges_, s, above)) return;
     const auto sum = [&]<NodeArray of>() {
       ContributionPrefetch<of>(grid, shared<of>(), s + 1, 1).next();
       sum_fields<of>(s, at);
