@@ -149,4 +149,17 @@ struct NodeBlockShape {
   constexpr bool operator==(const NodeBlockShape&) const = default;
 };
 
+/// The nodes of a smaller block among those of a larger one.
+struct NodeRows {
+  NodeBlockShape of, part;
+  int nodes() const { return part.nodes(); }
+  /// f(first, count) for consecutive nodes: rows along x, or all at once.
+  template <class F>
+  void for_each(F f) const {
+    if (part == of) return f(0, of.nodes());
+    for (int k = part.lowest(); k <= part.highest(); ++k)
+      for (int j = part.lowest(); j <= part.highest(); ++j) f(of.index(part.lowest(), j, k), part.side());
+  }
+};
+
 }  // namespace mpm::core

@@ -228,27 +228,53 @@ inline void for_each_point(F f) {
 
 }  // namespace
 
+namespace {
+
+/// f(node, point, whether it is one of the lattice) for all nodes.
+template <class F>
+[[gnu::always_inline]] inline void for_each_node(F f) {
+  for (int k = 0, node = 0; k < side; ++k) {
+    for (int j = 0; j < side; ++j) {
+      const bool row = k > 0 && k <= points && j > 0 && j <= points;
+      const int first = points * (j - 1 + points * (k - 1)) - 1;
+      for (int i = 0; i < side; ++i, ++node) f(node, first + i, row && i > 0 && i <= points);
+    }
+  }
+}
+
+template <Onto onto, class Part>
+[[gnu::always_inline]] inline void put(double* at, const Part& sum) {
+  store(at, onto == Onto::nothing ? sum : load<Part>(at) + sum);
+}
+
+}  // namespace
+
+template <Onto onto>
 void sums_to_nodes(const double* sums, double* nodes) {
   using Half = Lanes<4>;
-  for_each_point([&](int node, int point) {
-    store(nodes + 4 * node, load<Half>(nodes + 4 * node) + load<Half>(sums + 4 * point));
+  for_each_node([&](int node, int point, bool on_lattice) {
+    if (on_lattice)
+      put<onto>(nodes + 4 * node, load<Half>(sums + 4 * point));
+    else if (onto == Onto::nothing)
+      store(nodes + 4 * node, Half(0.0));
   });
 }
 
+template <Onto onto>
 void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes) {
-  using Record = Lanes<node_doubles>;
+  using Half = Lanes<4>;
   constexpr int components = 6;
-  Row t[components][side * side];
-  alignas(64) double rows[components][NodeRows::doubles] = {};
-  for_each_point([&](int node, int point) {
-    const double* from = sums + sum_doubles * point;
-    double* to = nodes + node_doubles * node;
-    store(to, load<Record>(to) + load<Record>(from));
-    const int at = NodeRows::index(point);
-    for (int c = 0; c < components; ++c) rows[c][at] = from[node_doubles + c];
-  });
-  for (int c = 0; c < components; ++c) {
-    for (int n = 0; n < side * side; ++n) t[c][n] = load<Row>(rows[c] + row_doubles * n);
+  static_assert(points + 1 < row_doubles);
+  // T_j by components, rows of nodes; zero beyond the lattice.
+  Row t[components][side * side] = {};
+  for (int k = 0; k < points; ++k) {
+    for (int j = 0; j < points; ++j) {
+      Row r[row_doubles] = {};
+      for (int i = 0; i < points; ++i)
+        r[i + 1] = load<Row>(sums + sum_doubles * lattice_points.index(i, j, k) + node_doubles);
+      transpose(r);
+      for (int c = 0; c < components; ++c) t[c][j + 1 + side * (k + 1)] = r[c];
+    }
   }
   Row force[3][side * side];
   const Row* const column[3][3] = {{t[0], t[3], t[5]}, {t[3], t[1], t[4]}, {t[5], t[4], t[2]}};
@@ -263,14 +289,24 @@ void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes) {
     }
     for (int a = 0; a < 3; ++a) forces(weights, frame.inverse_cell, column[a], force[a]);
   }
-  for (int n = 0; n < side * side; ++n) {
-    Row r[4] = {force[0][n], force[1][n], force[2][n], Row(0.0)};
-    transpose_half(r);
-    double* at = nodes + node_doubles * side * n + node_field::force.first;
-    for (int i = 0; i < side; ++i, at += node_doubles)
-      store(at, load<Lanes<4>>(at) + half_of(r[i / 2], i % 2));
-  }
+  Row r[4];
+  for_each_node([&](int node, int point, bool on_lattice) {
+    const int row = node / side, i = node % side;
+    if (i == 0) {
+      for (int a = 0; a < 3; ++a) r[a] = force[a][row];
+      r[3] = Row(0.0);
+      transpose_half(r);
+    }
+    const Row averaged = join(Half(0.0), half_of(r[i / 2], i % 2));
+    put<onto>(nodes + node_doubles * node,
+              on_lattice ? load<Row>(sums + sum_doubles * point) + averaged : averaged);
+  });
 }
+
+template void sums_to_nodes<Onto::nothing>(const BrickFrame&, const double*, double*);
+template void sums_to_nodes<Onto::contributions>(const BrickFrame&, const double*, double*);
+template void sums_to_nodes<Onto::nothing>(const double*, double*);
+template void sums_to_nodes<Onto::contributions>(const double*, double*);
 
 void nodes_to_lattice(const double* nodes, double* lattice) {
   using Record = Lanes<node_doubles>;
@@ -280,13 +316,17 @@ void nodes_to_lattice(const double* nodes, double* lattice) {
 }
 
 void velocity_rows(const double* nodes, double* velocity) {
+  using Half = Lanes<4>;
   for (int n = 0; n < side * side; ++n) {
-    for (int c = 0; c < 3; ++c) {
-      double* row = velocity + NodeRows::doubles * c + row_doubles * n;
-      const double* from = nodes + node_doubles * side * n + Motion::strain_velocity_at + c;
-      for (int i = 0; i < side; ++i) row[i] = from[node_doubles * i];
-      row[side] = 0;
-    }
+    const auto at = [&](int i) {
+      return i < side
+                 ? load<Half>(nodes + node_doubles * (side * n + i) + Motion::strain_velocity_at)
+                 : Half(0.0);
+    };
+    Row r[4];
+    for (int i = 0; i < 4; ++i) r[i] = join(at(i), at(i + 4));
+    transpose_pairs(r);
+    for (int c = 0; c < 3; ++c) store(velocity + NodeRows::doubles * c + row_doubles * n, r[c]);
   }
 }
 

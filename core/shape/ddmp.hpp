@@ -122,10 +122,12 @@ struct PointStore {
 
 namespace ddmp {
 
-/// Adds to the nodes of a brick the momentum, mass and direct forces of the lattice's points, and
-/// -sum_j G_ji T_j. `sums`: records of sum_doubles; `nodes`: contributions to the first array.
+/// To the nodes of a brick the momentum, mass and direct forces of the lattice's points, and -sum_j G_ji T_j.
+/// `sums`: records of sum_doubles; `nodes`: contributions to the first array.
+template <Onto onto>
 void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes);
 /// Momentum and mass alone: records of four doubles.
+template <Onto onto>
 void sums_to_nodes(const double* sums, double* nodes);
 /// The records of the lattice's points among those of the nodes.
 void nodes_to_lattice(const double* nodes, double* lattice);
@@ -156,15 +158,19 @@ struct Ddmp {
   class Sums {
    public:
     explicit Sums(double* contributions) : records(lattice_), contributions_(contributions) {}
-    void finish(const BrickFrame& frame) {
-      if constexpr (maps_force(what))
-        ddmp::sums_to_nodes(frame, lattice_, contributions_);
-      else
-        ddmp::sums_to_nodes(lattice_, contributions_);
-    }
+    void finish(const BrickFrame& frame) { to_nodes<Onto::contributions>(frame); }
+    void replace(const BrickFrame& frame) { to_nodes<Onto::nothing>(frame); }
     double* records;
 
    private:
+    template <Onto onto>
+    void to_nodes(const BrickFrame& frame) {
+      if constexpr (maps_force(what))
+        ddmp::sums_to_nodes<onto>(frame, lattice_, contributions_);
+      else
+        ddmp::sums_to_nodes<onto>(lattice_, contributions_);
+    }
+
     alignas(64) double lattice_[Scatter<what>::width * lattice_points.nodes()] = {};
     double* contributions_;
   };

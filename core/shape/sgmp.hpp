@@ -22,10 +22,6 @@ inline constexpr int sum_doubles = 16;
 /// A centre's velocity gradient: d v / dx_j in doubles 4 j .. 4 j + 2.
 inline constexpr int gradient_doubles = 12;
 
-inline Lanes<8> join(Lanes<4> low, Lanes<4> high) {
-  return __builtin_shufflevector(low.v, high.v, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
 template <NodeFields what>
 struct CentreStore {
   static constexpr int width = maps_force(what) ? sum_doubles : 4;
@@ -43,8 +39,6 @@ struct CentreStore {
   }
 };
 
-/// Whether sums replace the nodes' contributions or are added to them.
-enum class Onto { nothing, contributions };
 /// To the nodes m_i = sum_c m_c / 8, p_i = sum_c p_c / 8 and f_i = -sum_c G_ci (V sigma)_c. `centre`: records
 /// of sum_doubles; `node`: contributions to the first array.
 template <Onto onto>
@@ -75,12 +69,12 @@ struct Sgmp {
   class Sums {
    public:
     explicit Sums(double* contributions) : records(centre_), contributions_(contributions) {}
-    void finish(const BrickFrame& frame) { to_nodes<sgmp::Onto::contributions>(frame); }
-    void replace(const BrickFrame& frame) { to_nodes<sgmp::Onto::nothing>(frame); }
+    void finish(const BrickFrame& frame) { to_nodes<Onto::contributions>(frame); }
+    void replace(const BrickFrame& frame) { to_nodes<Onto::nothing>(frame); }
     double* records;
 
    private:
-    template <sgmp::Onto onto>
+    template <Onto onto>
     void to_nodes(const BrickFrame& frame) {
       if constexpr (maps_force(what))
         sgmp::centres_to_nodes<onto>(frame.inverse_cell, centre_, contributions_);

@@ -86,6 +86,9 @@ struct MappedRows {
   alignas(64) double stress[6][block_lanes];  ///< V sigma: xx, yy, zz, xy, yz, xz
 };
 
+/// Whether a brick's sums replace the nodes' contributions or are added to them.
+enum class Onto { nothing, contributions };
+
 /// Adds the first `used` particles of a block to a brick's sums.
 template <class Scatter, class Place, class Rows>
 [[gnu::always_inline]] inline void add_particles(Scatter& running, const BrickFrame& frame,

@@ -41,6 +41,22 @@ namespace mpm::core {
   r[2].v = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
   r[3].v = __builtin_shufflevector(c, d, 4, 5, 6, 7, 12, 13, 14, 15);
 }
+/// Four components of eight points: of points i and i + 4 in r[i], then component i of all of them.
+[[gnu::always_inline]] inline void transpose_pairs(Lanes<8> r[4]) {
+  using V = Lanes<8>::vector;
+  const V xz0 = __builtin_shufflevector(r[0].v, r[1].v, 0, 8, 2, 10, 4, 12, 6, 14);
+  const V yw0 = __builtin_shufflevector(r[0].v, r[1].v, 1, 9, 3, 11, 5, 13, 7, 15);
+  const V xz2 = __builtin_shufflevector(r[2].v, r[3].v, 0, 8, 2, 10, 4, 12, 6, 14);
+  const V yw2 = __builtin_shufflevector(r[2].v, r[3].v, 1, 9, 3, 11, 5, 13, 7, 15);
+  r[0].v = __builtin_shufflevector(xz0, xz2, 0, 1, 8, 9, 4, 5, 12, 13);
+  r[1].v = __builtin_shufflevector(yw0, yw2, 0, 1, 8, 9, 4, 5, 12, 13);
+  r[2].v = __builtin_shufflevector(xz0, xz2, 2, 3, 10, 11, 6, 7, 14, 15);
+  r[3].v = __builtin_shufflevector(yw0, yw2, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+/// Joins two halves.
+[[gnu::always_inline]] inline Lanes<8> join(Lanes<4> low, Lanes<4> high) {
+  return __builtin_shufflevector(low.v, high.v, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 /// Lanes 0..3 or 4..7.
 [[gnu::always_inline]] inline Lanes<4> half_of(const Lanes<8>& r, int upper) {
   return upper == 0 ? Lanes<4>(__builtin_shufflevector(r.v, r.v, 0, 1, 2, 3))

@@ -128,10 +128,10 @@ void PassesWith<S, T>::map_to_grid() {
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
-  sum<NodeArray::first>(shared_, s, component, at, at.nodes.data());
+  sum<NodeArray::first>(moving_shared_, s, component, at, at.nodes.data());
   // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
   if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at, at.nodes.data());
-  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), shared_.nodes(), at.nodes.data());
+  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(), at.nodes.data());
 }
 
 /// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the

@@ -72,7 +72,7 @@ template <ShapePolicy S, TransferPolicy T>
   if (contact_->meetings(s).nodes.empty()) return;
   for (std::size_t k = 0; k < at.fields.size(); ++k) {
     if (model_.grid->field_of(s, at.fields[k].component) < 0)
-      keep_motion(shared_.nodes(), at.fields[k].motion.data(), motion(s, k));
+      keep_motion(moving_shared_.summed(), at.fields[k].motion.data(), motion(s, k));
   }
 }
 

@@ -163,26 +163,26 @@ void BoundaryFaces::mirror(int i, double* record) const {
 }
 
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
-                  int nodes, double* record) {
+                  const NodeRows& nodes, double* record) {
   const Half gravity(Half::vector{forces.gravity.x, forces.gravity.y, forces.gravity.z, 0});
   const double floor = forces.strain_mass_floor;
-  for (int n = 0; n < nodes; ++n) {
-    const MappedRecord<double> sums{record + node_doubles * n};
+  const auto update = [&](double* at) {
+    const MappedRecord<double> sums{at};
     const double m = sums.mass();
-    if (!(m > mass_cutoff)) {
-      store(sums.at, Record(0.0));
-      continue;
-    }
+    if (!(m > mass_cutoff)) return store(at, Record(0.0));
     const double inverse = 1 / m;
     const Half v = load<Half>(sums.momentum()) * Half(inverse);
     const Half a = load<Half>(sums.force()) * Half(inverse) + gravity - Half(forces.damping) * v;
     const Half dv = Half(dt) * a;
-    const Motion motion{sums.at};
+    const Motion motion{at};
     store(motion.velocity(), v + dv);
     store(motion.increment(), dv);
     motion.mass() = m;
     motion.omitted_share() = m < floor ? 1 - m / floor : 0;
-  }
+  };
+  nodes.for_each([&](int first, int count) {
+    for (int n = first; n < first + count; ++n) update(record + node_doubles * n);
+  });
   // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel
   // them through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the
   // grid, and its reaction acts on the particles too: only then do particles come to rest at the wall, can
@@ -206,11 +206,17 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   faces.fill(record);
 }
 
-void keep_motion(int nodes, const double* record, double* motion) {
-  for (int n = 0; n < nodes; ++n) store(motion + motion_width * n, load<Half>(record + node_doubles * n));
+void keep_motion(const NodeRows& nodes, const double* record, double* motion) {
+  nodes.for_each([&](int first, int count) {
+    for (int n = first; n < first + count; ++n, motion += motion_width)
+      store(motion, load<Half>(record + node_doubles * n));
+  });
 }
-void recall_motion(int nodes, const double* motion, double* record) {
-  for (int n = 0; n < nodes; ++n) store(record + node_doubles * n, load<Half>(motion + motion_width * n));
+void recall_motion(const NodeRows& nodes, const double* motion, double* record) {
+  nodes.for_each([&](int first, int count) {
+    for (int n = first; n < first + count; ++n, motion += motion_width)
+      store(record + node_doubles * n, load<Half>(motion));
+  });
 }
 
 namespace {
@@ -230,11 +236,11 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
 }
 }  // namespace
 
-void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
-                       double* record) {
+void second_velocities(double mass_cutoff, const double* momenta, const double* masses,
+                       const BoundaryFaces& faces, int nodes, double* record) {
   for (int n = 0; n < nodes; ++n) {
     const Motion at{record + node_doubles * n};
-    const double m = at.mass();
+    const double m = masses[node_doubles * n + Motion::mass_at];
     store(at.strain_velocity(),
           m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
   }

@@ -77,19 +77,20 @@ class BoundaryFaces {
   int count_ = 0;
 };
 
-/// MappedRecord -> MotionRecord: velocity at the end of the step and its increment.
+/// MappedRecord -> MotionRecord: velocity at the end of the step and its increment. Outer nodes follow those
+/// that are updated.
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
-                  int nodes, double* record);
+                  const NodeRows& nodes, double* record);
 
 /// A node's motion as stored between MUSL's passes: velocity and mass of its MotionRecord.
 inline constexpr int motion_width = 4;
-void keep_motion(int nodes, const double* record, double* motion);
-void recall_motion(int nodes, const double* motion, double* record);
+void keep_motion(const NodeRows& nodes, const double* record, double* motion);
+void recall_motion(const NodeRows& nodes, const double* motion, double* record);
 
-/// Sets the strain velocity to `momenta` (0..2 of each record) over the masses of `record`: USF's velocity at
-/// the start of the step (momenta = record), or MUSL's re-mapped one.
-void second_velocities(double mass_cutoff, const double* momenta, const BoundaryFaces& faces, int nodes,
-                       double* record);
+/// Sets the strain velocity to `momenta` (0..2 of each record) over `masses` (3 of each record): USF's velocity
+/// at the start of the step (both in `record`), or MUSL's re-mapped one (the masses in either).
+void second_velocities(double mass_cutoff, const double* momenta, const double* masses,
+                       const BoundaryFaces& faces, int nodes, double* record);
 
 /// A node's sum of velocities in a correction (core/transfer/corrected.hpp), in a Motion: velocity v(l),
 /// increment dv(l), and its mass.

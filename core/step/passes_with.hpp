@@ -85,8 +85,20 @@ class PassesWith final : public Passes {
   static constexpr bool traps = std::is_same_v<S, Linear>;
   /// Whether the transfer corrects velocities (core/transfer/corrected.hpp).
   static constexpr bool corrects = corrects_velocities<T>;
+  /// What MUSL maps back to the grid. Where the motion of all nodes is not found (moving_block), the strain
+  /// velocities of the others need the masses once more.
+  static constexpr NodeFields mapped_back =
+      momentum_block<S> == S::node_block ? mapped::momentum : mapped::momentum_mass;
   /// Whether it solves with the consistent mass matrix (core/transfer/consistent.hpp).
   static constexpr bool solves = solves_mass<T>;
+  /// The nodes of a brick whose motion is found: with MUSL those that its particles take it from, unless contact, a
+  /// correction, a solution or a rigid wall (node_update.hpp) needs all of them.
+  static NodeBlockShape moving_block(const Model& model) {
+    const SolutionInput& solution = model.scene->solution;
+    const bool all = corrects || solves || solution.scheme != Scheme::musl || model.scene->contact.enable ||
+                     std::ranges::count(model.grid->geometry().boundary, Boundary::rigid_wall) > 0;
+    return all ? S::node_block : momentum_block<S>;
+  }
   struct Nothing {};
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
@@ -261,7 +273,7 @@ class PassesWith final : public Passes {
   const SharedNodes& shared() const {
     return of == NodeArray::first ? shared_ : momentum_shared_;
   }
-  int motion_doubles() const { return motion_width * shared_.nodes(); }
+  int motion_doubles() const { return motion_width * moving_shared_.summed().nodes(); }
   /// Of the field number `k` of those that the brick sees.
   double* motion(Slot s, std::size_t k = 0) {
     const std::size_t first = contact_ ? contact_->first_seen(s) : static_cast<std::size_t>(s);
@@ -278,6 +290,7 @@ class PassesWith final : public Passes {
   RigidBodies* rigid_;  ///< in contact; null without
   SharedNodes shared_;
   SharedNodes momentum_shared_;
+  SharedNodes moving_shared_;  ///< of the first array, where the nodes' motion is found
   NodeForces forces_;
   Loads loads_;
   std::unique_ptr<Contact> contact_;  ///< null without contact
@@ -321,6 +334,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       rigid_(rigid),
       shared_(model.grid->shape()),
       momentum_shared_(model.grid->shape(), momentum_block<S>),
+      moving_shared_(model.grid->shape(), model.grid->shape(), moving_block(model)),
       loads_(model),
       failed_(model),
       transfer_(model.scene->solution),

@@ -38,7 +38,7 @@ double PassesWith<S, T>::largest_strain_rate(double above) {
       sum.template operator()<NodeArray::first>();
     double* nodes = at.nodes.data();
     const double cutoff = grid.geometry().mass_cutoff;
-    second_velocities(cutoff, nodes, faces(s), shared_.nodes(), nodes);
+    second_velocities(cutoff, nodes, nodes, faces(s), shared_.nodes(), nodes);
     at.strain_rate = std::max(at.strain_rate, mpm::core::largest_strain_rate(
                                                   grid.shape(), grid.geometry().inverse_cell, cutoff, nodes));
   });
@@ -51,20 +51,19 @@ template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities_and_map_back() {
   motion_.resize(static_cast<std::size_t>(motion_doubles()) *
                  (contact_ ? contact_->all_seen() : static_cast<std::size_t>(model_.grid->owned())));
-  map_bricks<mapped::momentum>([&](Slot s, Scratch& at) {
+  map_bricks<mapped_back>([&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
     for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
       take_updated_nodes(s, at);
-      keep_motion(shared_.nodes(), moving_nodes(s, at), motion(s, k));
+      keep_motion(moving_shared_.summed(), moving_nodes(s, at), motion(s, k));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       SpreadPrefetch room = prefetch_motion(s);
       const BrickFrame frame = this->frame(s);
-      map_brick<mapped::momentum>(s, component, at,
-                                  [&](int body, const Place& place, double* block, int used) {
-                                    nodes.next();
-                                    room.next();
-                                    update_velocities(s, frame, body, place, block, used, at);
-                                  });
+      map_brick<mapped_back>(s, component, at, [&](int body, const Place& place, double* block, int used) {
+        nodes.next();
+        room.next();
+        update_velocities(s, frame, body, place, block, used, at);
+      });
     });
     if (contact_ && contact_->meets(s)) keep_motion_of_others(s, at);
     at.add_work_of_brick();
@@ -77,10 +76,11 @@ void PassesWith<S, T>::update_stress_and_move() {
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t k) {
-      recall_motion(shared_.nodes(), motion(s, k), at.nodes.data());
+      recall_motion(moving_shared_.summed(), motion(s, k), at.nodes.data());
       if constexpr (solves) return take_solved_strain(s, at);
-      sum<NodeArray::second>(momentum_shared_, s, component, at, at.sums.data());
-      second_velocities(0, at.sums.data(), faces(s), shared_.nodes(), at.nodes.data());
+      double *const sums = at.sums.data(), *const nodes = at.nodes.data();
+      sum<NodeArray::second>(momentum_shared_, s, component, at, sums);
+      second_velocities(0, sums, maps_mass(mapped_back) ? sums : nodes, faces(s), shared_.nodes(), nodes);
     };
     for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
                    [&](std::int32_t component, std::size_t) {
@@ -103,8 +103,8 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
   map_bricks<mapped::force>([&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) {
       sum<NodeArray::second>(momentum_shared_, s, component, at, at.nodes.data());
-      second_velocities(grid.geometry().mass_cutoff, at.nodes.data(), faces(s), shared_.nodes(),
-                        at.nodes.data());
+      double* const nodes = at.nodes.data();
+      second_velocities(grid.geometry().mass_cutoff, nodes, nodes, faces(s), shared_.nodes(), nodes);
       take_solved_strain(s, at);
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {

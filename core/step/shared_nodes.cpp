@@ -8,11 +8,15 @@
 
 namespace mpm::core {
 
-SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached)
-    : shape_(shape), reached_(reached) {
+SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached,
+                         const NodeBlockShape& wanted)
+    : shape_(shape), reached_(reached), wanted_(wanted) {
   require_few_layers(shape);
   const int low = shape.lowest(), high = shape.highest();
-  const auto within = [&](int i) { return reached.lowest() <= i && i <= reached.highest(); };
+  const auto within = [](const NodeBlockShape& block, int i, int j, int k) {
+    const auto along = [&](int n) { return block.lowest() <= n && n <= block.highest(); };
+    return along(i) && along(j) && along(k);
+  };
   std::vector<std::pair<Share, bool>> read;  // and whether the lower neighbour along x has the node
   for (int k = low; k <= high; ++k) {
     for (int j = low; j <= high; ++j) {
@@ -22,9 +26,9 @@ SharedNodes::SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reac
           // The same node, relative to the neighbour's lowest.
           const BrickCoord d = neighbour_offset(n);
           const int a = i - brick_cells * d.x, b = j - brick_cells * d.y, c = k - brick_cells * d.z;
-          if (!within(a) || !within(b) || !within(c)) continue;
+          if (!within(reached, a, b, c)) continue;
           shares_.push_back({n, shape.index(a, b, c)});
-          read.push_back({shares_.back(), i <= high - brick_cells});
+          if (within(wanted, i, j, k)) read.push_back({shares_.back(), i <= wanted.highest() - brick_cells});
         }
       }
     }
@@ -58,9 +62,9 @@ namespace {
 /// By neighbour its contributions, null if it has none.
 using Neighbours = std::array<const double*, neighbourhood>;
 
-/// The sums of one node block, row by row along x. Which neighbours share the nodes of a row is known when
-/// this is compiled; absent ones are passed over, which changes no bit as sums begin with +0.
-template <int width, NodeBlockShape shape, NodeBlockShape reached>
+/// The sums of the wanted nodes of one block, row by row along x. Which neighbours share the nodes of a row is
+/// known when this is compiled; absent ones are passed over, which changes no bit as sums begin with +0.
+template <int width, NodeBlockShape shape, NodeBlockShape reached, NodeBlockShape wanted>
 class RowSums {
  public:
   /// `known`: the shared nodes of the lower neighbour along x are in `carried`. Replaces them, if not null,
@@ -71,8 +75,8 @@ class RowSums {
       for (int j = low; j <= high; ++j) {
         Part row[side];
         sum_row<known>(from, j, k, carried, row);
-        for (int i = 0; i < side; ++i) store(sums + node_doubles * i, row[i]);
-        sums += node_doubles * side;
+        double* to = sums + node_doubles * shape.index(low, j, k);
+        for (int i = 0; i < side; ++i) store(to + node_doubles * i, row[i]);
         if (carried == nullptr) continue;
         for (int i = 0; i < common; ++i, carried += width) store(carried, row[i + brick_cells]);
       }
@@ -81,7 +85,7 @@ class RowSums {
 
  private:
   using Part = Lanes<width>;
-  static constexpr int low = shape.lowest(), high = shape.highest(), side = shape.side();
+  static constexpr int low = wanted.lowest(), high = wanted.highest(), side = wanted.side();
   static constexpr int common = side - brick_cells;  ///< nodes of a row that the next brick along x has too
 
   /// Whether the neighbour at offset `d` along an axis contributes to node `i`.
@@ -93,7 +97,8 @@ class RowSums {
   template <bool known>
   [[gnu::always_inline]] static void sum_row(const Neighbours& from, int j, int k, const double* carried,
                                              Part (&row)[side]) {
-    alignas(64) static constexpr double zeros[width * side] = {};
+    alignas(64) static constexpr double no_row[width * shape.side()] = {};
+    const double* const zeros = no_row + width * (low - shape.lowest());
     for (int i = 0; i < side; ++i) row[i] = known && i < common ? load<Part>(carried + width * i) : Part(0.0);
     for (int z = -1; z <= 1; ++z) {
       for (int y = -1; y <= 1; ++y) {
@@ -119,17 +124,19 @@ class RowSums {
   }
 };
 
-/// f<shape, reached>() with the blocks of `shared`.
+/// f<shape, reached, wanted>() with the blocks of `shared`.
 template <class F>
 void with_blocks(const SharedNodes& shared, F f) {
-  const auto are = [&](const NodeBlockShape& shape, const NodeBlockShape& reached) {
-    return shared.shape() == shape && shared.reached() == reached;
+  const auto are = [&](const NodeBlockShape& shape, const NodeBlockShape& reached,
+                       const NodeBlockShape& wanted) {
+    return shared.shape() == shape && shared.reached() == reached && shared.wanted() == wanted;
   };
   constexpr NodeBlockShape small{0, 0}, below{1, 0}, both{1, 1};
-  if (are(small, small)) return f.template operator()<small, small>();
-  if (are(below, below)) return f.template operator()<below, below>();
-  if (are(both, both)) return f.template operator()<both, both>();
-  if (are(both, small)) return f.template operator()<both, small>();
+  if (are(small, small, small)) return f.template operator()<small, small, small>();
+  if (are(below, below, below)) return f.template operator()<below, below, below>();
+  if (are(both, both, both)) return f.template operator()<both, both, both>();
+  if (are(both, small, both)) return f.template operator()<both, small, both>();
+  if (are(both, both, small)) return f.template operator()<both, both, small>();
   throw std::logic_error("sums over node blocks that no shape function has");
 }
 
@@ -143,8 +150,8 @@ void sum_over_neighbours(const BrickGrid& grid, const SharedNodes& shared, Slot 
     from[n] = brick.neighbour[n] == no_slot ? nullptr : contributions_of(brick.neighbour[n]);
   const bool known = carried != nullptr && carried->begins(grid, slot);
   double* records = carried == nullptr ? nullptr : carried->records(slot);
-  with_blocks(shared, [&]<NodeBlockShape shape, NodeBlockShape reached>() {
-    using Rows = RowSums<record_doubles(of), shape, reached>;
+  with_blocks(shared, [&]<NodeBlockShape shape, NodeBlockShape reached, NodeBlockShape wanted>() {
+    using Rows = RowSums<record_doubles(of), shape, reached, wanted>;
     if (known)
       Rows::template sum<true>(from, records, sums);
     else

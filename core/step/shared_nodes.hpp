@@ -19,7 +19,10 @@ class SharedNodes {
   /// Throws std::logic_error for more than most_layers of nodes beyond the brick.
   explicit SharedNodes(const NodeBlockShape& shape) : SharedNodes(shape, shape) {}
   /// A brick contributes to the nodes of the smaller block `reached` alone.
-  SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached);
+  SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached)
+      : SharedNodes(shape, reached, shape) {}
+  /// Only the nodes of the smaller block `wanted` are summed.
+  SharedNodes(const NodeBlockShape& shape, const NodeBlockShape& reached, const NodeBlockShape& wanted);
 
   struct Share {
     int neighbour;  ///< 0..26
@@ -27,7 +30,10 @@ class SharedNodes {
   };
   const NodeBlockShape& shape() const { return shape_; }
   const NodeBlockShape& reached() const { return reached_; }
+  const NodeBlockShape& wanted() const { return wanted_; }
   int nodes() const { return shape_.nodes(); }
+  /// Those that are summed.
+  NodeRows summed() const { return {shape_, wanted_}; }
   /// What to prefetch for a brick's sums, for records of `width` doubles: a record in each of their cache
   /// lines, brick by brick. `after_lower_x`: without those that the sums of its lower neighbour along x have
   /// read.
@@ -52,7 +58,7 @@ class SharedNodes {
   };
   static Lines find_lines(std::vector<std::pair<Share, bool>> shares, bool half_records);
 
-  NodeBlockShape shape_, reached_;
+  NodeBlockShape shape_, reached_, wanted_;
   std::vector<Share> shares_;       ///< by node
   std::vector<std::size_t> first_;  ///< of each node's shares, and the end
   Lines lines_[2];                  ///< of whole and of half records
@@ -84,7 +90,8 @@ class CarriedSums {
 
 /// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
 /// node_doubles for the second and third array, all components for the first. A brick that does not exist
-/// contributes zeros, so every copy of a node adds the same numbers.
+/// contributes zeros, so every copy of a node adds the same numbers. Records of nodes that are not wanted stay
+/// as they are.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
 /// The same with what the last brick has left in `carried`.

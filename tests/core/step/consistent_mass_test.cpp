@@ -180,7 +180,7 @@ TEST_CASE("No solution leads through a wall, and what a wall holds it holds in e
       const auto wall = [&](int n) { return n - n % side + shape.below; };
       for (double& x : motion) x = unit(random);
       for (int n = 0; n < nodes; ++n) motion[static_cast<std::size_t>(core::node_doubles * n + 3)] = 0.5;
-      core::update_nodes({}, 0.7, 1e-9, faces, nodes, motion.data());
+      core::update_nodes({}, 0.7, 1e-9, faces, {shape, shape}, motion.data());
       const int velocity = core::Motion::velocity_at;
       core::begin_mass_solution(faces, nodes, 1e-9, motion.data(), velocity, velocity, velocity,
                                 direction.data(), solution.data());

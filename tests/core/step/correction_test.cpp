@@ -210,7 +210,7 @@ TEST_CASE("No order leads through a wall, and what a wall holds it holds in ever
       for (const bool of_start : {false, true}) {
         for (double& x : motion) x = unit(random);
         for (int n = 0; n < nodes; ++n) motion[static_cast<std::size_t>(core::node_doubles * n + 3)] = 0.5;
-        core::update_nodes({}, 0.7, 1e-9, faces, nodes, motion.data());
+        core::update_nodes({}, 0.7, 1e-9, faces, {shape, shape}, motion.data());
         core::begin_correction(of_start, faces, nodes, motion.data(), sum.data());
         int held = 0, free = 0;
         for (int order = 2; order <= 6; ++order) {

@@ -102,9 +102,9 @@ TEST_CASE("Every copy of a node has the same sum and the same motion, to the las
       const auto nodes = agreed(grid, [&](Slot s, double* records) {
         const BoundaryFaces faces(g, grid.shape(), grid.brick(s).coord);
         sum_contributions<NodeArray::first>(grid, shared, s, records);
-        update_nodes(forces, 0.01, 1e-3, faces, shared.nodes(), records);
+        update_nodes(forces, 0.01, 1e-3, faces, shared.summed(), records);
         sum_contributions<NodeArray::second>(grid, shared, s, sums.data());
-        second_velocities(0, sums.data(), faces, shared.nodes(), records);
+        second_velocities(0, sums.data(), records, faces, shared.nodes(), records);
       });
       CHECK(nodes.size() >= 125);
     }
@@ -197,7 +197,7 @@ TEST_CASE("A free node moves by (f/m + g - c v) dt; one at the cutoff or below d
   std::copy(heavy.begin(), heavy.end(), records.begin());
   std::copy(light.begin(), light.end(), records.begin() + node_doubles);
   std::copy(cut.begin(), cut.end(), records.begin() + 2 * node_doubles);
-  update_nodes(forces, 0.25, 0.125, faces, shape.nodes(), records.data());
+  update_nodes(forces, 0.25, 0.125, faces, {shape, shape}, records.data());
   const auto record = [&](int n) {
     Record r;
     std::copy_n(records.begin() + node_doubles * n, node_doubles, r.begin());
@@ -238,13 +238,13 @@ TEST_CASE("Every boundary holds what it should on every face, also where the las
             grid, [&](Slot s, double* r) { sum_contributions<NodeArray::second>(grid, shared, s, r); });
         const auto moved = [&](Slot s, double* r) {
           sum_contributions<NodeArray::first>(grid, shared, s, r);
-          update_nodes({}, dt, 0, BoundaryFaces(g, grid.shape(), grid.brick(s).coord), shared.nodes(), r);
+          update_nodes({}, dt, 0, BoundaryFaces(g, grid.shape(), grid.brick(s).coord), shared.summed(), r);
         };
         const auto after = agreed(grid, moved);
         const auto mapped = agreed(grid, [&](Slot s, double* r) {
           moved(s, r);
           sum_contributions<NodeArray::second>(grid, shared, s, sums.data());
-          second_velocities(0, sums.data(), BoundaryFaces(g, grid.shape(), grid.brick(s).coord),
+          second_velocities(0, sums.data(), r, BoundaryFaces(g, grid.shape(), grid.brick(s).coord),
                             shared.nodes(), r);
         });
         const auto axis = static_cast<std::size_t>(face / 2);
