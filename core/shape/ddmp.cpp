@@ -230,14 +230,14 @@ inline void for_each_point(F f) {
 
 namespace {
 
-/// f(node, point, whether it is one of the lattice) for all nodes.
+/// f(row of nodes, number of its first point) for all rows; that number is negative where no point of the
+/// lattice is in the row, whose point i is else node i + 1.
 template <class F>
-[[gnu::always_inline]] inline void for_each_node(F f) {
-  for (int k = 0, node = 0; k < side; ++k) {
+[[gnu::always_inline]] inline void for_each_row(F f) {
+  for (int k = 0; k < side; ++k) {
     for (int j = 0; j < side; ++j) {
-      const bool row = k > 0 && k <= points && j > 0 && j <= points;
-      const int first = points * (j - 1 + points * (k - 1)) - 1;
-      for (int i = 0; i < side; ++i, ++node) f(node, first + i, row && i > 0 && i <= points);
+      const bool on_lattice = k > 0 && k <= points && j > 0 && j <= points;
+      f(j + side * k, on_lattice ? points * (j - 1 + points * (k - 1)) : -1);
     }
   }
 }
@@ -252,11 +252,15 @@ template <Onto onto, class Part>
 template <Onto onto>
 void sums_to_nodes(const double* sums, double* nodes) {
   using Half = Lanes<4>;
-  for_each_node([&](int node, int point, bool on_lattice) {
-    if (on_lattice)
-      put<onto>(nodes + 4 * node, load<Half>(sums + 4 * point));
-    else if (onto == Onto::nothing)
-      store(nodes + 4 * node, Half(0.0));
+  for_each_row([&](int row, int point) {
+    double* at = nodes + 4 * side * row;
+#pragma GCC unroll 8
+    for (int i = 0; i < side; ++i) {
+      if (point >= 0 && i > 0 && i <= points)
+        put<onto>(at + 4 * i, load<Half>(sums + 4 * (point + i - 1)));
+      else if (onto == Onto::nothing)
+        store(at + 4 * i, Half(0.0));
+    }
   });
 }
 
@@ -289,17 +293,16 @@ void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes) {
     }
     for (int a = 0; a < 3; ++a) forces(weights, frame.inverse_cell, column[a], force[a]);
   }
-  Row r[4];
-  for_each_node([&](int node, int point, bool on_lattice) {
-    const int row = node / side, i = node % side;
-    if (i == 0) {
-      for (int a = 0; a < 3; ++a) r[a] = force[a][row];
-      r[3] = Row(0.0);
-      transpose_half(r);
+  for_each_row([&](int row, int point) {
+    Row r[4] = {force[0][row], force[1][row], force[2][row], Row(0.0)};
+    transpose_half(r);
+    double* at = nodes + node_doubles * side * row;
+#pragma GCC unroll 8
+    for (int i = 0; i < side; ++i) {
+      Row sum = join(Half(0.0), half_of(r[i / 2], i % 2));
+      if (point >= 0 && i > 0 && i <= points) sum += load<Row>(sums + sum_doubles * (point + i - 1));
+      put<onto>(at + node_doubles * i, sum);
     }
-    const Row averaged = join(Half(0.0), half_of(r[i / 2], i % 2));
-    put<onto>(nodes + node_doubles * node,
-              on_lattice ? load<Row>(sums + sum_doubles * point) + averaged : averaged);
   });
 }
 
@@ -319,9 +322,8 @@ void velocity_rows(const double* nodes, double* velocity) {
   using Half = Lanes<4>;
   for (int n = 0; n < side * side; ++n) {
     const auto at = [&](int i) {
-      return i < side
-                 ? load<Half>(nodes + node_doubles * (side * n + i) + Motion::strain_velocity_at)
-                 : Half(0.0);
+      return i < side ? load<Half>(nodes + node_doubles * (side * n + i) + Motion::strain_velocity_at)
+                      : Half(0.0);
     };
     Row r[4];
     for (int i = 0; i < 4; ++i) r[i] = join(at(i), at(i + 4));
@@ -355,7 +357,8 @@ void Ddmp::shape_and_gradient(const Place& place, int lane, const Vec3<double>& 
   std::fill_n(gradient, 64, Vec3<double>{});
   const int side = lattice_points.side(), point = place.node[lane];
   const int cell[3] = {point % side, point / side % side, point / (side * side)};
-  const double alpha = place.alpha[lane];
+  double alpha = 64;
+  for (const auto& fraction : place.f) alpha *= fraction[lane] * (1 - fraction[lane]);
   const auto of_corner = [&](int, const NodeOffset& offset, double s, const Vec3<double>& direct) {
     const int(&c)[3] = offset.along;
     const int at = number(c[0], c[1], c[2]);

@@ -52,9 +52,7 @@ inline constexpr int sum_doubles = 16;
 
 }  // namespace ddmp
 
-/// Position in the cells, and alpha.
 struct DdmpPlace : LinearPlace {
-  alignas(64) double alpha[block_lanes];
   const CellsAround* cells = nullptr;
 
   DdmpPlace() = default;
@@ -62,16 +60,26 @@ struct DdmpPlace : LinearPlace {
     find(frame, layout, block);
   }
   void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
-    using R = Lanes<8>;
     LinearPlace::find(frame, layout, block);
     cells = frame.cells;
+  }
+  Lanes<8> alpha() const {
+    using R = Lanes<8>;
     R product(64.0);
-    for (int a = 0; a < 3; ++a) product *= load<R>(f[a]) * (R(1.0) - load<R>(f[a]));
-    store(alpha, product);
+    for (const auto& fraction : f) product *= load<R>(fraction) * (R(1.0) - load<R>(fraction));
+    return product;
   }
 };
 
 namespace ddmp {
+
+/// A block's particles with alpha, for forces.
+struct BlendedPlace {
+  const DdmpPlace& place;
+  const int (&node)[block_lanes];
+  alignas(64) double alpha[block_lanes];
+  explicit BlendedPlace(const DdmpPlace& of) : place(of), node(of.node) { store(alpha, of.alpha()); }
+};
 
 /// Sums over the particles of one cell: V sigma times S alpha and S (1 - alpha), xx yy zz xy yz xz.
 template <NodeFields what>
@@ -83,16 +91,17 @@ struct CellSums : MomentumSums<what> {
     for (int i = 0; i < 6; ++i) direct[i] = averaged[i] = linear::Nodes(0.0);
   }
   [[gnu::always_inline]] void add(const DdmpPlace& place, int i, const MappedRows& rows) {
+    MomentumSums<what>::add(linear::weights(place, i), i, rows);
+  }
+  [[gnu::always_inline]] void add(const BlendedPlace& blended, int i, const MappedRows& rows) {
     using N = linear::Nodes;
-    const N w = linear::weights(place, i);
+    const N w = linear::weights(blended.place, i);
     MomentumSums<what>::add(w, i, rows);
-    if constexpr (maps_force(what)) {
-      const N with_alpha = N(place.alpha[i]) * w, rest = w - with_alpha;
-      for (int c = 0; c < 6; ++c) {
-        const N stress(rows.stress[c][i]);
-        direct[c] += with_alpha * stress;
-        averaged[c] += rest * stress;
-      }
+    const N with_alpha = N(blended.alpha[i]) * w, rest = w - with_alpha;
+    for (int c = 0; c < 6; ++c) {
+      const N stress(rows.stress[c][i]);
+      direct[c] += with_alpha * stress;
+      averaged[c] += rest * stress;
     }
   }
 };
@@ -118,9 +127,19 @@ struct PointStore {
   }
 };
 
-}  // namespace ddmp
-
-namespace ddmp {
+template <NodeFields what>
+struct Scatter : CellScatter<CellSums<what>, PointStore<what>> {
+  /// Adds the first `used` particles of a block.
+  [[gnu::always_inline]] void add_block(const BrickFrame& frame, const DdmpPlace& place, int used,
+                                        const MappedRows& rows, double* records) {
+    if constexpr (maps_force(what)) {
+      const BlendedPlace blended(place);
+      for (int i = 0; i < used; ++i) this->add(frame, blended, i, rows, records);
+    } else {
+      for (int i = 0; i < used; ++i) this->add(frame, place, i, rows, records);
+    }
+  }
+};
 
 /// To the nodes of a brick the momentum, mass and direct forces of the lattice's points, and -sum_j G_ji T_j.
 /// `sums`: records of sum_doubles; `nodes`: contributions to the first array.
@@ -151,7 +170,7 @@ struct Ddmp {
   using Place = DdmpPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>
-  using Scatter = CellScatter<ddmp::CellSums<what>, ddmp::PointStore<what>>;
+  using Scatter = ddmp::Scatter<what>;
 
   /// Sums at the lattice's points.
   template <NodeFields what>
@@ -199,7 +218,7 @@ struct Ddmp {
   static void gradient(const BrickFrame& frame, const Place& place, const Field& field, Rows& rows, int at) {
     using R = Lanes<8>;
     const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
-    const R alpha = load<R>(place.alpha), rest = R(1.0) - alpha;
+    const R alpha = place.alpha(), rest = R(1.0) - alpha;
     const R scale[3] = {alpha * R(frame.inverse_cell.x), alpha * R(frame.inverse_cell.y),
                         alpha * R(frame.inverse_cell.z)};
     const LinearWeights weight(place);

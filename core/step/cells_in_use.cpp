@@ -16,18 +16,6 @@ constexpr std::uint64_t bit_of(int i, int j, int k) {
   return std::uint64_t{1} << (i + brick_cells * (j + brick_cells * k));
 }
 
-/// By the number of the cell's lowest point in lattice_points. No particle is in a cell above the brick.
-constexpr auto cell_of_point = [] {
-  std::array<std::uint64_t, lattice_points.nodes()> bits{};
-  for (int k = 0; k < brick_cells; ++k) {
-    for (int j = 0; j < brick_cells; ++j) {
-      for (int i = 0; i < brick_cells; ++i)
-        bits[static_cast<std::size_t>(lattice_points.index(i, j, k))] = bit_of(i, j, k);
-    }
-  }
-  return bits;
-}();
-
 /// f(bit, node of the brick's node block) for each cell.
 template <class F>
 void for_each_cell_of(const NodeBlockShape& shape, F f) {
@@ -77,9 +65,10 @@ CellsInUse::Cells CellsInUse::cells_of(Slot s) const {
     const BlockPrefetch prefetch(model_, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       prefetch.request<Linear>(b, pool.layout(), columns);
-      const LinearPlace place(frame, pool.layout(), pool.block(tile.blocks[b]));
-      for (int l = 0; l < tile.used_lanes(b); ++l)
-        cells |= cell_of_point[static_cast<std::size_t>(place.node[l])];
+      const double* x = pool.block(tile.blocks[b]) + pool.layout().offset(Column::position_x);
+      const auto p =
+          locate_in_sites<Lanes<block_lanes>, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
+      for (int l = 0; l < tile.used_lanes(b); ++l) cells |= Cells{1} << p.node[l];
     }
   }
   return cells;

@@ -87,8 +87,8 @@ inline constexpr int motion_width = 4;
 void keep_motion(const NodeRows& nodes, const double* record, double* motion);
 void recall_motion(const NodeRows& nodes, const double* motion, double* record);
 
-/// Sets the strain velocity to `momenta` (0..2 of each record) over `masses` (3 of each record): USF's velocity
-/// at the start of the step (both in `record`), or MUSL's re-mapped one (the masses in either).
+/// Sets the strain velocity to `momenta` (0..2 of each record) over `masses` (3 of each record): USF's
+/// velocity at the start of the step (both in `record`), or MUSL's re-mapped one (the masses in either).
 void second_velocities(double mass_cutoff, const double* momenta, const double* masses,
                        const BoundaryFaces& faces, int nodes, double* record);
 

@@ -91,8 +91,8 @@ class PassesWith final : public Passes {
       momentum_block<S> == S::node_block ? mapped::momentum : mapped::momentum_mass;
   /// Whether it solves with the consistent mass matrix (core/transfer/consistent.hpp).
   static constexpr bool solves = solves_mass<T>;
-  /// The nodes of a brick whose motion is found: with MUSL those that its particles take it from, unless contact, a
-  /// correction, a solution or a rigid wall (node_update.hpp) needs all of them.
+  /// The nodes of a brick whose motion is found: with MUSL those that its particles take it from, unless
+  /// contact, a correction, a solution or a rigid wall (node_update.hpp) needs all of them.
   static NodeBlockShape moving_block(const Model& model) {
     const SolutionInput& solution = model.scene->solution;
     const bool all = corrects || solves || solution.scheme != Scheme::musl || model.scene->contact.enable ||

@@ -62,8 +62,8 @@ namespace {
 /// By neighbour its contributions, null if it has none.
 using Neighbours = std::array<const double*, neighbourhood>;
 
-/// The sums of the wanted nodes of one block, row by row along x. Which neighbours share the nodes of a row is
-/// known when this is compiled; absent ones are passed over, which changes no bit as sums begin with +0.
+/// The sums of the wanted nodes of one block, row by row along x. Which neighbours share the nodes of a row
+/// is known when this is compiled; absent ones are passed over, which changes no bit as sums begin with +0.
 template <int width, NodeBlockShape shape, NodeBlockShape reached, NodeBlockShape wanted>
 class RowSums {
  public:

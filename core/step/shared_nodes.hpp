@@ -90,8 +90,8 @@ class CarriedSums {
 
 /// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
 /// node_doubles for the second and third array, all components for the first. A brick that does not exist
-/// contributes zeros, so every copy of a node adds the same numbers. Records of nodes that are not wanted stay
-/// as they are.
+/// contributes zeros, so every copy of a node adds the same numbers. Records of nodes that are not wanted
+/// stay as they are.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, double* sums);
 /// The same with what the last brick has left in `carried`.
