@@ -167,16 +167,25 @@ struct SeparableInterpolation {
   }
 };
 
+/// The columns of a particle's domain, for BlockPrefetch.
+template <bool has_size>
+struct SizeColumns {};
+template <>
+struct SizeColumns<true> {
+  static constexpr Column first_of_domain = Column::half_size_x;
+  static constexpr int columns_of_domain = 3;
+};
+
 /// A policy (shape.hpp) but for its name.
 template <class Along>
-struct Separable {
+struct Separable : SizeColumns<Along::has_size> {
   static constexpr int nodes_per_axis = Along::nodes;
   static_assert(nodes_per_axis == 3 || nodes_per_axis == 4);
   static constexpr Site site = nodes_per_axis == 3 ? Site::node : Site::cell;
   static constexpr NodeBlockShape node_block{1, nodes_per_axis == 3 ? 0 : 1};
   static ColumnSet columns() {
     ColumnSet set;
-    if (Along::has_size) set.add_range(Column::half_size_x, 3);
+    if constexpr (Along::has_size) set.add_range(Separable::first_of_domain, Separable::columns_of_domain);
     return set;
   }
   using Place = SeparablePlace<Along>;
