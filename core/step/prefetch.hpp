@@ -115,17 +115,17 @@ class ContributionPrefetch {
     }
   }
   [[gnu::always_inline]] void next() {
-    const std::size_t last = std::min(next_ + step_, shares_.size());
-    for (; next_ < last; ++next_) {
-      const SharedNodes::Share& s = shares_[next_];
-      __builtin_prefetch(from_[static_cast<std::size_t>(s.neighbour)] + record_doubles(of) * s.node, 0, 2);
-    }
+    const std::size_t count = std::min(step_, shares_.size());
+    const SharedNodes::Share* const last = shares_.data() + count;
+    for (const SharedNodes::Share* s = shares_.data(); s != last; ++s)
+      __builtin_prefetch(from_[static_cast<std::size_t>(s->neighbour)] + record_doubles(of) * s->node, 0, 2);
+    shares_ = shares_.subspan(count);
   }
 
  private:
-  std::span<const SharedNodes::Share> shares_;
+  std::span<const SharedNodes::Share> shares_;  ///< yet to be requested
   std::array<const double*, neighbourhood> from_{};
-  std::size_t next_ = 0, step_ = 0;
+  std::size_t step_ = 0;
 };
 
 }  // namespace mpm::core
