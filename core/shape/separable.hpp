@@ -107,7 +107,7 @@ struct SeparableScatter {
           const R q = x * wy[j];
           double* at = lowest + width * side * (j + side * k);
           for (int m = 0; m < n; ++m, at += width) {
-            store(at, load<R>(at) + (p * R(w[0][m][i]) + q * R(d[0][m][i])));
+            store(at, (load<R>(at) + p * R(w[0][m][i])) + q * R(d[0][m][i]));
             if constexpr (affine) p += increase[0] * R(wz) * wy[j];
           }
           if constexpr (affine) u += increase[1] * R(wz);
