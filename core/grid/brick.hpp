@@ -150,7 +150,7 @@ struct NodeBlockShape {
 };
 
 /// The nodes of a smaller block among those of a larger one.
-struct NodeRows {
+struct NodeSelection {
   NodeBlockShape of, part;
   int nodes() const { return part.nodes(); }
   /// f(first, count) for consecutive nodes: rows along x, or all at once.

@@ -45,7 +45,8 @@ struct NodeFields {
 };
 
 namespace node_field {
-// Mechanics. `second_...`: MUSL maps the momentum a second time; USF maps momentum and mass there together.
+// Mechanics. `second_...`: MUSL maps the momentum a second time, the mass with it for shape functions whose
+// forces reach farther than their momentum; USF maps momentum and mass there together.
 inline constexpr NodeFields momentum{NodeArray::first, 0, 3};
 inline constexpr NodeFields mass{NodeArray::first, 3, 1};
 inline constexpr NodeFields force{NodeArray::first, 4, 3};

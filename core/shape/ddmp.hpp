@@ -110,8 +110,10 @@ struct CellSums : MomentumSums<what> {
 template <NodeFields what>
 struct PointStore {
   static constexpr int width = maps_force(what) ? sum_doubles : 4;
-  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* lowest) {
+  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* records,
+                                         int node) {
     using N = linear::Nodes;
+    double* const lowest = records + width * node;
     if constexpr (maps_force(what)) {
       const N(&d)[6] = s.direct;
       N point[8] = {s.px, s.py, s.pz, s.m, N(0.0), N(0.0), N(0.0), N(0.0)};

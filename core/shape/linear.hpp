@@ -194,7 +194,7 @@ template <int width>
 }
 
 /// Adds a block's particles to the sums of the current cell; when the cell changes, Store::add(sums, frame,
-/// records of its lowest point) adds these to the records of `Store::width` doubles of the brick's points.
+/// records, its lowest point) adds these to the records, of `Store::width` doubles, of the brick's points.
 template <class Sums, class Store>
 struct CellScatter {
   static constexpr int width = Store::width;
@@ -214,7 +214,7 @@ struct CellScatter {
     sums.add(place, i, rows);
   }
   [[gnu::always_inline]] void flush(const BrickFrame& frame, double* records) {
-    if (node >= 0) Store::add(sums, frame, records + width * node);
+    if (node >= 0) Store::add(sums, frame, records, node);
   }
 };
 
@@ -222,8 +222,10 @@ struct CellScatter {
 template <NodeFields what>
 struct NodeStore {
   static constexpr int width = record_doubles(what.array);
-  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* lowest) {
+  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* records,
+                                         int node) {
     using N = linear::Nodes;
+    double* const lowest = records + width * node;
     N r[8] = {s.px, s.py, s.pz, s.m, N(0.0), N(0.0), N(0.0), N(0.0)};
     if constexpr (maps_force(what)) linear::forces(frame, s.xx, s.yy, s.zz, s.xy, s.yz, s.xz, r + 4);
     if constexpr (width == 8) {

@@ -25,7 +25,9 @@ template <Onto onto, class Part>
 
 template <Onto onto>
 void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, double* node) {
-  const Half mean(0.125), x(0.25 * inverse_cell.x), y(0.25 * inverse_cell.y), z(0.25 * inverse_cell.z);
+  const Half mean(0.125), y(0.25 * inverse_cell.y), z(0.25 * inverse_cell.z);
+  Half x(0.25 * inverse_cell.x);
+  x.set(3, 0);  // where yy is
   const Record first_scale = join(mean, x), second_scale = join(y, z);
   const Record sum_and_difference = join(Half(1.0), Half(-1.0));
   Record below[nodes][nodes];  // what the previous plane of centres adds to this plane of nodes
@@ -38,8 +40,11 @@ void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, do
       for (int j = 0; j < centres; ++j) {
         Record first_below(0.0), second_below(0.0);
         for (int k = 0; k < centres; ++k) {
-          const double* at = centre + sum_doubles * centre_index(i, j, k);
-          const Record a = first_scale * load<Record>(at), b = second_scale * load<Record>(at + 8);
+          const int c = centre_index(i, j, k);
+          const Record all = load<Record>(centre + node_doubles * c);
+          const Record rest = join(load<Half>(centre + rest_of_sums + 4 * c), Half(0.0));
+          const Record yz = __builtin_shufflevector(all.v, rest.v, 5, 7, 8, 10, 6, 8, 9, 10);  // (Y | Z)
+          const Record a = first_scale * all, b = second_scale * yz;
           first[j][k] = a + first_below;
           second[j][k] = b + sum_and_difference * second_below;
           first_below = a;

@@ -17,30 +17,32 @@ namespace mpm::core {
 namespace sgmp {
 
 inline constexpr int centres = lattice_points.side(), nodes = centres + 1;  ///< of a brick, along an axis
-/// A centre's sums: momentum and mass, and the rows of V sigma, with four doubles each.
-inline constexpr int sum_doubles = 16;
+/// The centres' sums: (p m | V sigma_xx xy xz yy) of all of them, then (V sigma_yz zz 0 0).
+inline constexpr int sum_doubles = 12;
+inline constexpr int rest_of_sums = node_doubles * lattice_points.nodes();
 /// A centre's velocity gradient: d v / dx_j in doubles 4 j .. 4 j + 2.
 inline constexpr int gradient_doubles = 12;
 
 template <NodeFields what>
 struct CentreStore {
   static constexpr int width = maps_force(what) ? sum_doubles : 4;
-  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame&, double* lowest) {
+  [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame&, double* records,
+                                         int centre) {
     using N = linear::Nodes;
     if constexpr (maps_force(what)) {
-      N upper[8] = {s.px, s.py, s.pz, s.m, s.xx, s.xy, s.xz, N(0.0)};
-      add_to_corners<width>(upper, lowest);
-      N lower[8] = {s.xy, s.yy, s.yz, N(0.0), s.xz, s.yz, s.zz, N(0.0)};
-      add_to_corners<width>(lower, lowest + 8);
+      N first[8] = {s.px, s.py, s.pz, s.m, s.xx, s.xy, s.xz, s.yy};
+      add_to_corners<node_doubles>(first, records + node_doubles * centre);
+      N rest[4] = {s.yz, s.zz, N(0.0), N(0.0)};
+      add_half_to_corners(rest, records + rest_of_sums + 4 * centre);
     } else {
       N momentum[4] = {s.px, s.py, s.pz, s.m};
-      add_half_to_corners(momentum, lowest);
+      add_half_to_corners(momentum, records + 4 * centre);
     }
   }
 };
 
-/// To the nodes m_i = sum_c m_c / 8, p_i = sum_c p_c / 8 and f_i = -sum_c G_ci (V sigma)_c. `centre`: records
-/// of sum_doubles; `node`: contributions to the first array.
+/// To the nodes m_i = sum_c m_c / 8, p_i = sum_c p_c / 8 and f_i = -sum_c G_ci (V sigma)_c. `centre`: sums;
+/// `node`: contributions to the first array.
 template <Onto onto>
 void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, double* node);
 /// Momentum and mass only: records of four doubles.

@@ -163,7 +163,7 @@ void BoundaryFaces::mirror(int i, double* record) const {
 }
 
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
-                  const NodeRows& nodes, double* record) {
+                  const NodeSelection& nodes, double* record) {
   const Half gravity(Half::vector{forces.gravity.x, forces.gravity.y, forces.gravity.z, 0});
   const double floor = forces.strain_mass_floor;
   const auto update = [&](double* at) {
@@ -206,13 +206,13 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   faces.fill(record);
 }
 
-void keep_motion(const NodeRows& nodes, const double* record, double* motion) {
+void keep_motion(const NodeSelection& nodes, const double* record, double* motion) {
   nodes.for_each([&](int first, int count) {
     for (int n = first; n < first + count; ++n, motion += motion_width)
       store(motion, load<Half>(record + node_doubles * n));
   });
 }
-void recall_motion(const NodeRows& nodes, const double* motion, double* record) {
+void recall_motion(const NodeSelection& nodes, const double* motion, double* record) {
   nodes.for_each([&](int first, int count) {
     for (int n = first; n < first + count; ++n, motion += motion_width)
       store(record + node_doubles * n, load<Half>(motion));

@@ -80,12 +80,12 @@ class BoundaryFaces {
 /// MappedRecord -> MotionRecord: velocity at the end of the step and its increment. Outer nodes follow those
 /// that are updated.
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
-                  const NodeRows& nodes, double* record);
+                  const NodeSelection& nodes, double* record);
 
 /// A node's motion as stored between MUSL's passes: velocity and mass of its MotionRecord.
 inline constexpr int motion_width = 4;
-void keep_motion(const NodeRows& nodes, const double* record, double* motion);
-void recall_motion(const NodeRows& nodes, const double* motion, double* record);
+void keep_motion(const NodeSelection& nodes, const double* record, double* motion);
+void recall_motion(const NodeSelection& nodes, const double* motion, double* record);
 
 /// Sets the strain velocity to `momenta` (0..2 of each record) over `masses` (3 of each record): USF's
 /// velocity at the start of the step (both in `record`), or MUSL's re-mapped one (the masses in either).

@@ -33,7 +33,7 @@ class SharedNodes {
   const NodeBlockShape& wanted() const { return wanted_; }
   int nodes() const { return shape_.nodes(); }
   /// Those that are summed.
-  NodeRows summed() const { return {shape_, wanted_}; }
+  NodeSelection summed() const { return {shape_, wanted_}; }
   /// What to prefetch for a brick's sums, for records of `width` doubles: a record in each of their cache
   /// lines, brick by brick. `after_lower_x`: without those that the sums of its lower neighbour along x have
   /// read.
