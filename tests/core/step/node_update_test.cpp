@@ -179,7 +179,39 @@ TEST_CASE("Sums that are carried from a brick to the next along x have the same 
       };
       check.operator()<NodeArray::first>(whole);
       check.operator()<NodeArray::second>(momenta);
+      // And finds the motion of that block alone.
+      if (momenta.reached() != shape)
+        check.operator()<NodeArray::first>(SharedNodes(shape, shape, momenta.reached()));
     }
+  }
+}
+
+TEST_CASE("Sums of a smaller block of nodes have the bits of all sums, and leave the other nodes alone") {
+  std::mt19937 random(29);
+  const NodeBlockShape shape{1, 1}, inner;
+  const SharedNodes all(shape), some(shape, shape, inner);
+  std::set<int> wanted;
+  some.summed().for_each([&](int first, int count) {
+    for (int n = first; n < first + count; ++n) wanted.insert(n);
+  });
+  CHECK(wanted.size() == 125);
+  CHECK(some.summed().nodes() == 125);
+  BrickGrid grid(geometry_of({16, 16, 16}), shape);
+  grid.reset(random_bricks(random, 4), {});
+  fill(grid, NodeArray::first, random);
+  const auto count = static_cast<std::size_t>(node_doubles * shape.nodes());
+  for (Slot s = 0; s < grid.owned(); ++s) {
+    std::vector<double> whole(count), part(count, 7.0);
+    sum_contributions<NodeArray::first>(grid, all, s, whole.data());
+    sum_contributions<NodeArray::first>(grid, some, s, part.data());
+    int different = 0;
+    for (int n = 0; n < shape.nodes(); ++n) {
+      for (int c = 0; c < node_doubles; ++c) {
+        const auto at = static_cast<std::size_t>(node_doubles * n + c);
+        different += part[at] != (wanted.contains(n) ? whole[at] : 7.0);
+      }
+    }
+    CHECK(different == 0);
   }
 }
 
