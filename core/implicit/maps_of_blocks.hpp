@@ -14,10 +14,10 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_start() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   const Vec3<double> cell = model_.grid->geometry().cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
-    for_each_block(s, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    for_each_block(field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
       const Place place(frame, layout, block);
       for (int l = 0; l < used; ++l) {
         const double m = block[layout.offset(Column::mass) + l];
@@ -31,20 +31,20 @@ void ImplicitPassesWith<S>::map_start() {
                                     std::abs(slope.z) * cell.z;
                          });
       }
-      if (loads_.act(*model_.grid, s, tile.body))
-        add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
+      if (loads_.act(*model_.grid, field.slot, tile.body))
+        add_load_forces<S>(loads_, model_, field.slot, tile.body, place, block, used, contributions);
     });
-    fold(mapped::implicit_start, s, contributions);
+    fold(mapped::implicit_start, field, contributions);
   });
 }
 
 template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_motion() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
-    for_each_block(s, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    for_each_block(field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
       const Place place(frame, layout, block);
       const bool moved = prescribed(tile.body);
       const ConstitutiveModel& material = *model_.bodies[static_cast<std::size_t>(tile.body)].model;
@@ -66,16 +66,16 @@ void ImplicitPassesWith<S>::map_motion() {
         });
       }
     });
-    fold(mapped::implicit_motion, s, contributions);
+    fold(mapped::implicit_motion, field, contributions);
   });
 }
 
 template <ShapePolicy S>
-void ImplicitPassesWith<S>::map_surface(int body) {
+void ImplicitPassesWith<S>::map_surface() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
     const auto map = [&](const ParticleTile&, const ColumnLayout& layout, const double* block, int used) {
       const Place place(frame, layout, block);
       for (int l = 0; l < used; ++l) {
@@ -88,18 +88,18 @@ void ImplicitPassesWith<S>::map_surface(int body) {
                          });
       }
     };
-    for_each_block(s, map, body);
-    fold(mapped::implicit_surface, s, contributions);
+    for_each_block(field, true, map);
+    fold(mapped::implicit_surface, field, contributions);
   });
 }
 
 template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_lag() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
-    for_each_block(s, [&](const ParticleTile&, const ColumnLayout& layout, double* block, int used) {
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    for_each_block(field, false, [&](const ParticleTile&, const ColumnLayout& layout, double* block, int used) {
       if (!layout.has(Column::acceleration_lag_x)) return;
       const Place place(frame, layout, block);
       for (int l = 0; l < used; ++l) {
@@ -112,7 +112,7 @@ void ImplicitPassesWith<S>::map_lag() {
         });
       }
     });
-    fold(mapped::implicit_lag, s, contributions);
+    fold(mapped::implicit_lag, field, contributions);
   });
 }
 
