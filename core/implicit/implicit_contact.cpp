@@ -169,12 +169,15 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
     if (length > 0) normal = (1 / length) * surface;
     return length > 0;
   }
-  const auto of = [&](const Surface& s) {
-    return ContactSurface{s.gradient, weight_[static_cast<std::size_t>(s.component)], false};
-  };
-  const std::optional<Vec3<double>> found = contact_normal(of(first), of(second));
-  if (!found) return false;
-  normal = *found;
+  const double weight[2] = {weight_[static_cast<std::size_t>(first.component)],
+                            weight_[static_cast<std::size_t>(second.component)]};
+  Vec3<double> along = first.gradient;
+  if (weight[1] > weight[0]) along = -1.0 * second.gradient;
+  if (weight[1] == weight[0])
+    along = second.volume * first.gradient - first.volume * second.gradient;
+  const double length = std::sqrt(dot(along, along));
+  if (!(length > 0)) return false;
+  normal = (1 / length) * along;
   const auto slope = [&](const Surface& s) {
     double sum = 0;
     for (int a = 0; a < 3; ++a) sum += g.cell[a] * s.gradient[a] * normal[a];

@@ -15,8 +15,10 @@
 // body's surface. Two deformable components touch where, with the volumes V that they fill around the node
 // and their gradients along the normal over a cell, V_1 + V_2 >= least_cover max(|dV_1|, |dV_2|): the sum of
 // the volumes is the larger gradient or more where no gap is between them, whatever part of the cell's width
-// they cover, and falls to 0.4 to 0.5 of it at a gap of a cell (linear functions). Normals are those of
-// explicit contact (core/contact/node_contact.hpp).
+// they cover, and falls to 0.4 to 0.5 of it at a gap of a cell (linear functions). The normal is that of the
+// component of the larger normal_vector_weight, as in explicit steps; with equal weights it is the direction
+// in which V_1/(V_1 + V_2) grows, V_2 grad V_1 - V_1 grad V_2, so that a free side of both does not tilt it, as
+// it does the mean of the two normals.
 //
 // Which nodes stick, and the friction of those that slide, are those of the last solution: a step is solved
 // again, from there, until they agree. A node that sticks with more than mu p slides; one that slides against
@@ -39,7 +41,6 @@
 #include <tuple>
 #include <vector>
 
-#include "core/contact/node_contact.hpp"
 #include "core/contact/rigid_bodies.hpp"
 #include "core/implicit/implicit_passes.hpp"
 #include "core/implicit/node_unknowns.hpp"
