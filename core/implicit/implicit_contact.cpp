@@ -18,6 +18,14 @@ Mat3<double> outer(const Vec3<double>& a, const Vec3<double>& b) {
 
 Vec3<double> vector_of(const double* from) { return {from[0], from[1], from[2]}; }
 
+/// Of two vectors what they have in common: by component the smaller one, where both have the same sign.
+Vec3<double> common(const Vec3<double>& a, const Vec3<double>& b) {
+  Vec3<double> both{};
+  for (int i = 0; i < 3; ++i)
+    if (a[i] * b[i] > 0) both[i] = std::abs(a[i]) < std::abs(b[i]) ? a[i] : b[i];
+  return both;
+}
+
 /// Without its component along n.
 Vec3<double> across(const Vec3<double>& d, const Vec3<double>& n) { return d - dot(d, n) * n; }
 
@@ -173,8 +181,9 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
                             weight_[static_cast<std::size_t>(second.component)]};
   Vec3<double> along = first.gradient;
   if (weight[1] > weight[0]) along = -1.0 * second.gradient;
-  if (weight[1] == weight[0])
-    along = second.volume * first.gradient - first.volume * second.gradient;
+  if (weight[1] == weight[0]) along = common(first.gradient, -1.0 * second.gradient);
+  // In the middle of a body of two cells.
+  if (along == Vec3<double>{}) along = second.volume * first.gradient - first.volume * second.gradient;
   const double length = std::sqrt(dot(along, along));
   if (!(length > 0)) return false;
   normal = (1 / length) * along;
