@@ -177,11 +177,20 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
     if (length > 0) normal = (1 / length) * surface;
     return length > 0;
   }
+  // Less is that of an inside where particles are not evenly spaced. Where hardly any of the other one is, its
+  // side would have that in common.
+  constexpr double uneven = 0.1;
+  const auto of_surface = [&](const Surface& s) {
+    Vec3<double> gradient = s.gradient;
+    for (int a = 0; a < 3; ++a)
+      if (std::abs(g.cell[a] * gradient[a]) < uneven * s.volume) gradient[a] = 0;
+    return gradient;
+  };
   const double weight[2] = {weight_[static_cast<std::size_t>(first.component)],
                             weight_[static_cast<std::size_t>(second.component)]};
   Vec3<double> along = first.gradient;
   if (weight[1] > weight[0]) along = -1.0 * second.gradient;
-  if (weight[1] == weight[0]) along = common(first.gradient, -1.0 * second.gradient);
+  if (weight[1] == weight[0]) along = common(of_surface(first), -1.0 * of_surface(second));
   // In the middle of a body of two cells.
   if (along == Vec3<double>{}) along = second.volume * first.gradient - first.volume * second.gradient;
   const double length = std::sqrt(dot(along, along));
