@@ -119,6 +119,8 @@ class ImplicitContact {
   /// Adds `factor` times the stiffness; its structure alone without `values`.
   void add_tangent(double factor, bool values, BlockMatrix& matrix) const;
 
+  /// Whether deformable components may meet.
+  bool has_springs() const { return std::ranges::count_if(stiffness_, [](double k) { return k > 0; }) > 1; }
   /// Whether any two components have friction.
   bool rubs() const {
     return std::ranges::any_of(friction_, [](double f) { return f > 0; });

@@ -64,6 +64,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::span<const std::int32_t> lattice() const override { return unknowns_.lattice(); }
   std::span<const std::int32_t> fields() const override { return unknowns_.components(); }
   std::span<const std::uint8_t> held() const override { return unknowns_.held(); }
+  bool has_springs() const override { return contact_ && contact_->has_springs(); }
   bool residual(std::span<const double> u, std::span<double> r) override;
   double force_scale() const override { return force_scale_; }
   void structure(BlockMatrix& matrix) override {
