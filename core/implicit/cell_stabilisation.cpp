@@ -76,7 +76,8 @@ bool CellStabilisation::handles(const BrickField& field, const int (&at)[3]) con
 }
 
 /// Ties in a cell without filling, whose nodes are no mirror images.
-void CellStabilisation::find_ties(const BrickField& field, int lowest, const double* sums, const NodeUnknowns::Node* nodes) {
+void CellStabilisation::find_ties(const BrickField& field, int lowest, const double* sums,
+                                  const NodeUnknowns::Node* nodes) {
   const GridGeometry& g = model_.grid->geometry();
   const auto volume_of = [&](int node) { return sums[node_doubles * node + node_field::volume.first]; };
   int fullest = -1;

@@ -15,7 +15,8 @@
 // of a millionth of the material's stiffness: it acts on the difference of two displacements, so that it
 // carries no weight, however far a step moves both.
 //
-// Where components are in contact each is stabilised by itself: a cell that two share is partly empty for both.
+// Where components are in contact each is stabilised by itself: a cell that two share is partly empty for
+// both.
 //
 // Shape functions through cell centres (SGMP, DDMP) do not see a checkerboard of displacements even where
 // cells are full: there all cells count as empty.

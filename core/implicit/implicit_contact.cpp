@@ -82,7 +82,8 @@ std::vector<ImplicitContact::Meeting> ImplicitContact::find_meetings(ImplicitPas
       of = here.slot;
       std::set<std::int32_t> all;
       for (const Slot neighbour : grid.brick(of).neighbour)
-        if (neighbour != no_slot) all.insert(grid.components(neighbour).begin(), grid.components(neighbour).end());
+        if (neighbour != no_slot)
+          all.insert(grid.components(neighbour).begin(), grid.components(neighbour).end());
       seen.assign(all.begin(), all.end());
       sums.resize(seen.size() * doubles);
       for (std::size_t c = 0; seen.size() > 1 && c < seen.size(); ++c) {
@@ -126,7 +127,8 @@ std::size_t ImplicitContact::add_member(const Surface& surface, const Vec3<doubl
     member.number = static_cast<std::int64_t>(shared[0]) - 1;
     if (member.number < 0) return no_own;
     const std::int64_t own = member.number - unknowns_.first();
-    if (own >= 0 && own < static_cast<std::int64_t>(unknowns_.own())) member.own = static_cast<std::size_t>(own);
+    if (own >= 0 && own < static_cast<std::int64_t>(unknowns_.own()))
+      member.own = static_cast<std::size_t>(own);
     member.held = static_cast<std::uint8_t>(shared[1]);
     member.mass = shared[2];
   }
@@ -177,8 +179,8 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
     if (length > 0) normal = (1 / length) * surface;
     return length > 0;
   }
-  // Less is that of an inside where particles are not evenly spaced. Where hardly any of the other one is, its
-  // side would have that in common.
+  // Less is that of an inside where particles are not evenly spaced. Where hardly any of the other one is,
+  // its side would have that in common.
   constexpr double uneven = 0.1;
   const auto of_surface = [&](const Surface& s) {
     Vec3<double> gradient = s.gradient;
@@ -210,7 +212,11 @@ void ImplicitContact::add_touch(std::size_t first, std::size_t second, const Vec
   if (a.held == 7 && b.held == 7) return;
   const double k_a = stiffness_[static_cast<std::size_t>(a.component)],
                k_b = stiffness_[static_cast<std::size_t>(b.component)];
-  Touch touch{first, second, place, normal, rigidity * std::max(k_a, k_b),
+  Touch touch{first,
+              second,
+              place,
+              normal,
+              rigidity * std::max(k_a, k_b),
               k_a > 0 && k_b > 0 ? k_a * k_b / (k_a + k_b) : std::max(k_a, k_b),
               friction(a.component, b.component)};
   touch.counts = (a.number >= 0 ? a.own : b.own) != no_own;
@@ -370,7 +376,8 @@ void ImplicitContact::end_step(StepStatistics& to) {
     if (pair >= 0) to.contact.add_impulse(pair, second == b.component ? impulse : -1.0 * impulse);
     if (a.rigid < 0) continue;
     const Vec3<double> way = a.displacement;
-    impulses_[static_cast<std::size_t>(a.rigid)].add(-1.0 * impulse, touch.place - rigid_->state(a.rigid).centre,
+    impulses_[static_cast<std::size_t>(a.rigid)].add(-1.0 * impulse,
+                                                     touch.place - rigid_->state(a.rigid).centre,
                                                      -dot(mean, way) - dot(stop.impulse, way) / dt_);
   }
   start_.clear();

@@ -4,7 +4,8 @@
 // Where components meet at a node each has a displacement of its own (node_unknowns.hpp); that of a rigid
 // body is given. Two of them that touch there press on each other and rub: with d, the displacement of the
 // second less that of the first in the step, n, the normal from the first to the second, and mu, the
-// coefficient of friction, the first exerts on the second, and the second with the opposite sign on the first,
+// coefficient of friction, the first exerts on the second, and the second with the opposite sign on the
+// first,
 //   f = p n - t   p = k max(0, -d.n)   t = k d_t where they stick, mu p d_t/|d_t| where they slide
 // with d_t = d - (d.n) n: they may part and slide. k is `rigidity` times the stiffness of a cell of the
 // stiffer one, so that in a step they enter each other, and creep where they stick, by the part 1/rigidity of
@@ -17,10 +18,10 @@
 // the volumes is the larger gradient or more where no gap is between them, whatever part of the cell's width
 // they cover, and falls to 0.4 to 0.5 of it at a gap of a cell (linear functions). The normal is that of the
 // component of the larger normal_vector_weight, as in explicit steps. With equal weights it is the direction
-// of what grad V_1 and -grad V_2 have in common, the smaller one of each component of the same sign: where the
-// two fill the cell both are equal; a free side of one or both, which tilts the mean of the two normals, is not
-// in common. Along the axes of the grid that is exact. Where they have nothing in common, as in the middle of a
-// body of two cells, it is V_2 grad V_1 - V_1 grad V_2, in which V_1/(V_1 + V_2) grows.
+// of what grad V_1 and -grad V_2 have in common, the smaller one of each component of the same sign: where
+// the two fill the cell both are equal; a free side of one or both, which tilts the mean of the two normals,
+// is not in common. Along the axes of the grid that is exact. Where they have nothing in common, as in the
+// middle of a body of two cells, it is V_2 grad V_1 - V_1 grad V_2, in which V_1/(V_1 + V_2) grows.
 //
 // Which nodes stick, and the friction of those that slide, are those of the last solution: a step is solved
 // again, from there, until they agree. A node that sticks with more than mu p slides; one that slides against
@@ -120,7 +121,9 @@ class ImplicitContact {
   void add_tangent(double factor, bool values, BlockMatrix& matrix) const;
 
   /// Whether deformable components may meet.
-  bool has_springs() const { return std::ranges::count_if(stiffness_, [](double k) { return k > 0; }) > 1; }
+  bool has_springs() const {
+    return std::ranges::count_if(stiffness_, [](double k) { return k > 0; }) > 1;
+  }
   /// Whether any two components have friction.
   bool rubs() const {
     return std::ranges::any_of(friction_, [](double f) { return f > 0; });
@@ -160,9 +163,9 @@ class ImplicitContact {
  private:
   /// Of a touch, in a dynamic step.
   struct Stop {
-    Vec3<double> impulse{};               ///< on the second
+    Vec3<double> impulse{};                ///< on the second
     Vec3<double> on_first{}, on_second{};  ///< changes of velocity
-    double gained = 0;                    ///< kinetic energy of relative motion
+    double gained = 0;                     ///< kinetic energy of relative motion
   };
   struct Surface {
     std::int32_t component;

@@ -105,12 +105,14 @@ void NodeUnknowns::hold_walls() {
   const double* const base = buffer_.data();
   for (const BrickField& field : fields_.all()) {
     Node* const of = nodes_.data() + field.index * per_brick();
-    BoundaryFaces(grid(), field.slot).for_each_node(buffer_.data(), [&](int axis, int, Boundary boundary, double* at) {
-      const auto bits = boundary == Boundary::fixed ? 7 : 1 << axis;
-      of[(at - base) / node_doubles].held |= static_cast<std::uint8_t>(bits);
-    });
+    BoundaryFaces(grid(), field.slot)
+        .for_each_node(buffer_.data(), [&](int axis, int, Boundary boundary, double* at) {
+          const auto bits = boundary == Boundary::fixed ? 7 : 1 << axis;
+          of[(at - base) / node_doubles].held |= static_cast<std::uint8_t>(bits);
+        });
   }
-  for (std::size_t i = 0; i < own_.size(); ++i) held_[i] = of(fields_.all()[own_[i].field])[own_[i].node].held;
+  for (std::size_t i = 0; i < own_.size(); ++i)
+    held_[i] = of(fields_.all()[own_[i].field])[own_[i].node].held;
 }
 
 void NodeUnknowns::hold_moved(double dt) {

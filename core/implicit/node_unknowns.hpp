@@ -101,8 +101,8 @@ class NodeUnknowns {
     const BrickField& field = fields_.all()[own_[i].field];
     return {field.slot, field.number, own_[i].node};
   }
-  /// The copy in the brick that owns a component's unknown at a node of an owned brick, whatever its rank; its
-  /// slot is no_slot where no brick has the component.
+  /// The copy in the brick that owns a component's unknown at a node of an owned brick, whatever its rank;
+  /// its slot is no_slot where no brick has the component.
   Copy owner(Slot s, std::int32_t node, std::int32_t component) const;
   /// value_of_own(number of the own node, record) sets records of node_doubles, zeros before; then shared()
   /// has those of all owners, until contributions change. Collective.

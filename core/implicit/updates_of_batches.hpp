@@ -91,8 +91,7 @@ void ImplicitPassesWith<S>::move_field(const BrickField& field, const AlignedDou
       at.statistics.events += batch.events;
       if (batch.layout->has(Column::sound_speed)) {
         for (int b = 0; b < batch.blocks; ++b)
-          std::copy_n(batch.sound_speed + block_lanes * b, block_lanes,
-                      batch.column(Column::sound_speed, b));
+          std::copy_n(batch.sound_speed + block_lanes * b, block_lanes, batch.column(Column::sound_speed, b));
       }
       at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
       const auto c = static_cast<int>(&tile - model_.grid->brick(field.slot).tiles.data());

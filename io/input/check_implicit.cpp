@@ -59,7 +59,8 @@ void check_implicit_contact(const Node& root, const core::Scene& scene, const Bu
     refuse("distance_type", "must be 0 with implicit steps, which find contact at nodes that both reach");
   if (input.regression)
     refuse("contact_normal",
-           "regression is not available with implicit steps, whose normals are those of rigid bodies and gradients of "
+           "regression is not available with implicit steps, whose normals are those of rigid bodies and "
+           "gradients of "
            "volume; remove it");
   if (input.limits_time_step)
     refuse("contact_time_step", "must be 0 with implicit steps, whose length Newton's method decides");

@@ -2,7 +2,8 @@
 // the spacing from which one of them interpolates linearly. Rigid motions and all linear fields on the fine
 // grid are interpolated exactly.
 //
-// Nodes of several fields may be at one place (components in contact): each field has coarser grids of its own.
+// Nodes of several fields may be at one place (components in contact): each field has coarser grids of its
+// own.
 //
 // Components that are given have identity rows in the matrix. Interpolation leaves them out, so that a coarse
 // matrix, the Galerkin product, is the stiffness of what can move; a coarse component that reaches given ones

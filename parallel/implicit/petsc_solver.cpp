@@ -202,7 +202,8 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   if (options.linear) {
     choose_conjugate_gradients(snes, options.relative_tolerance);
   } else {
-    choose_linear_solver(snes, 3 * problem.all_nodes(), problem.has_springs(), of_->slender, of_->grids.get());
+    choose_linear_solver(snes, 3 * problem.all_nodes(), problem.has_springs(), of_->slender,
+                         of_->grids.get());
     choose_full_steps(snes, now_);
   }
   if (SNESSetFromOptions(snes) != 0)

@@ -79,12 +79,14 @@ class Meeting(_mpm.Case):
                 self.assertLess(np.abs(places[0] - places[1]).max(), error)
 
     def test_blocks_that_are_pulled_apart_exert_no_force(self):
-        for shape in ("linear", "QuadraticBSpline"):
+        """By a load that grows, to 90: in each step they part further. With splines nodes a cell beyond a face, which hardly any particle
+        feels, move a little against it."""
+        for shape, most in (("linear", 0), ("QuadraticBSpline", 90e-4)):
             with self.subTest(shape=shape):
-                pulled = [_mpm.block("low", (0, 0, 0), (3, 3, 2), more='<BodyForce bz="-5"/>'),
-                          _mpm.block("top", (0, 0, 2), (3, 3, 2), of="hard", more='<BodyForce bz="5"/>')]
+                pulled = [_mpm.block("low", (0, 0, 0), (3, 3, 2), more='<BodyForce bz="-5*t"/>'),
+                          _mpm.block("top", (0, 0, 2), (3, 3, 2), of="hard", more='<BodyForce bz="5*t"/>')]
                 self.run_in(shape, [self.write(scene(pulled, "202022", ((0, 0, 0), (7, 7, 4)), steps=3, shape=shape))])
-                np.testing.assert_array_equal(self.forces(shape), 0)
+                self.assertLessEqual(np.abs(self.forces(shape)).max(), most)
 
     def test_sliding_friction_is_coulombs(self):
         """A block, led at its top, presses and drags on a larger one, along a direction off the axes. Its edges do not plough:
@@ -150,7 +152,7 @@ class Meeting(_mpm.Case):
     def test_with_a_rigid_body_averages_and_other_rules(self):
         """A rigid plate on a block on a block; volume changes are averaged. The plate's force passes through both."""
         plate = _mpm.block("plate", (0, 0, 4), (6, 6, 2), of="ram", more='<PrescribedVelocity vx="0" vy="0" vz="-0.02"/>')
-        low, top = stack(0.0)
+        low, top = _mpm.block("low", (0, 0, 0), (3, 3, 2)), _mpm.block("top", (0, 0, 2), (3, 3, 2), of="hard")
         text = scene([low, top, plate], "202020", ROOM, (law("soft"), law("hard", 4 * YOUNG), _mpm.material("ram", 1.0, 'type="Rigid"')), steps=2)
         averaged = text.replace("<Implicit ", '<Volumetric averaging="cell"/><Implicit ')
         for name, each in (("plain", text), ("averaged", averaged), ("matrixfree", text.replace("<Implicit ", '<Implicit jacobian="matrixfree" '))):
