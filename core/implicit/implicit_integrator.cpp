@@ -213,8 +213,10 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
   const double part = look_ahead(u);
   if (part > 0) {
     map_forces(ahead_);
+    find_contact_forces();
     unknowns_.for_each_own([&](std::size_t i, const double* sum) {
-      for (int a = 0; a < 3; ++a) state_[i].ahead[a] = -sum[4 + a] / part;
+      for (int a = 0; a < 3; ++a)
+        state_[i].ahead[a] = -(sum[4 + a] + (1 + rule_.carry) * state_[i].contact[a]) / part;
     });
   }
   const bool usable = map_forces(u);
@@ -241,7 +243,7 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
       }
       r[k] = at.reaction[a];
       if (!(part > 0)) continue;
-      const double led = at.ahead[a] + sum[4 + a] / part;
+      const double led = at.ahead[a] + (sum[4 + a] + (1 + rule_.carry) * at.contact[a]) / part;
       r[k] += led;
       size += std::abs(led);
     }
