@@ -14,8 +14,9 @@ constexpr double hardly_empty = 0.01;
 
 }  // namespace
 
-CellStabilisation::CellStabilisation(Model& model)
+CellStabilisation::CellStabilisation(Model& model, const BrickFields& fields)
     : model_(model),
+      fields_(fields),
       centred_(model.scene->grid.shape == ShapeFunction::sgmp ||
                model.scene->grid.shape == ShapeFunction::ddmp),
       matrix_(cell_matrix(model.grid->geometry().cell)) {
@@ -53,13 +54,15 @@ CellMatrix cell_matrix(const Vec3<double>& cell) {
   return m;
 }
 
-/// Whether this brick is the first in summation order of those that exist and hold all nodes of the cell
-/// whose lowest node is (i, j, k).
-bool CellStabilisation::handles(Slot s, const int (&at)[3]) const {
-  const Brick& brick = model_.grid->brick(s);
+/// Whether this brick is the first in summation order of those that have the field and hold all nodes of the
+/// cell whose lowest node is (i, j, k).
+bool CellStabilisation::handles(const BrickField& field, const int (&at)[3]) const {
+  const Brick& brick = model_.grid->brick(field.slot);
   const NodeBlockShape shape = model_.grid->shape();
   for (int n = 0; n < neighbourhood; ++n) {
-    if (brick.neighbour[static_cast<std::size_t>(n)] == no_slot) continue;
+    const Slot other = brick.neighbour[static_cast<std::size_t>(n)];
+    if (other == no_slot) continue;
+    if (field.component != all_components && model_.grid->field_of(other, field.component) < 0) continue;
     const BrickCoord offset = neighbour_offset(n);
     const int shift[3] = {offset.x, offset.y, offset.z};
     bool holds = true;
@@ -73,7 +76,8 @@ bool CellStabilisation::handles(Slot s, const int (&at)[3]) const {
 }
 
 /// Ties in a cell without filling, whose nodes are no mirror images.
-void CellStabilisation::find_ties(Slot s, int lowest, const double* sums, const NodeUnknowns::Node* nodes) {
+void CellStabilisation::find_ties(const BrickField& field, int lowest, const double* sums,
+                                  const NodeUnknowns::Node* nodes) {
   const GridGeometry& g = model_.grid->geometry();
   const auto volume_of = [&](int node) { return sums[node_doubles * node + node_field::volume.first]; };
   int fullest = -1;
@@ -87,7 +91,7 @@ void CellStabilisation::find_ties(Slot s, int lowest, const double* sums, const 
     const double volume = volume_of(node), part = volume / g.cell_volume();
     if (node == fullest || nodes[node].number < 0 || !(part > 0 && part < hardly_any)) continue;
     const double modulus = sums[node_doubles * node + node_field::modulus.first] / volume;
-    ties_[static_cast<std::size_t>(s)].push_back(
+    ties_[field.index].push_back(
         {node, fullest, spring * (1 - part / hardly_any) * modulus * g.smallest_cell()});
   }
 }
@@ -96,17 +100,18 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
   const BrickGrid& grid = *model_.grid;
   const GridGeometry& g = grid.geometry();
   const NodeBlockShape shape = grid.shape();
-  cells_.resize(static_cast<std::size_t>(grid.owned()));
-  ties_.resize(static_cast<std::size_t>(grid.owned()));
+  cells_.resize(fields_.count());
+  ties_.resize(fields_.count());
   const double cell_volume = g.cell_volume();
-  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
-    std::vector<Cell>& cells = cells_[static_cast<std::size_t>(s)];
+  for_each_by_threads(0, static_cast<int>(fields_.count()), 4, [&](int f) {
+    const BrickField& field = fields_.all()[static_cast<std::size_t>(f)];
+    std::vector<Cell>& cells = cells_[field.index];
     cells.clear();
-    ties_[static_cast<std::size_t>(s)].clear();
+    ties_[field.index].clear();
     std::vector<double> sums(static_cast<std::size_t>(node_doubles * shape.nodes()));
-    unknowns.sums(s, sums.data());
-    const NodeUnknowns::Node* const nodes = unknowns.of_brick(s);
-    const BrickCoord coord = grid.brick(s).coord;
+    unknowns.sums(field, sums.data());
+    const NodeUnknowns::Node* const nodes = unknowns.of(field);
+    const BrickCoord coord = grid.brick(field.slot).coord;
     const std::int64_t first[3] = {brick_cells * std::int64_t{coord.x}, brick_cells * std::int64_t{coord.y},
                                    brick_cells * std::int64_t{coord.z}};
     int at[3];
@@ -138,12 +143,12 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
             modulus += sum[node_field::modulus.first];
           }
           if (!active || !inside) {
-            if (handles(s, at)) find_ties(static_cast<Slot>(s), lowest, sums.data(), nodes);
+            if (handles(field, at)) find_ties(field, lowest, sums.data(), nodes);
             continue;
           }
           if (!(volume > 0)) continue;
           const double empty = centred_ ? 1 : 1 - fill;
-          if (empty > hardly_empty && handles(s, at))
+          if (empty > hardly_empty && handles(field, at))
             cells.push_back({lowest, alpha * empty * modulus / volume});
         }
       }
@@ -154,10 +159,11 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
 void CellStabilisation::add_forces(const AlignedDoubles& displacements) {
   BrickGrid& grid = *model_.grid;
   const auto doubles = static_cast<std::size_t>(node_doubles * grid.shape().nodes());
-  for_each_by_threads(0, grid.owned(), 4, [&](int s) {
-    const double* const record = displacements.data() + doubles * static_cast<std::size_t>(s);
-    double* const contributions = grid.contributions(NodeArray::first, s);
-    for (const Cell& cell : cells_[static_cast<std::size_t>(s)]) {
+  for_each_by_threads(0, static_cast<int>(fields_.count()), 4, [&](int f) {
+    const BrickField& field = fields_.all()[static_cast<std::size_t>(f)];
+    const double* const record = displacements.data() + doubles * field.index;
+    double* const contributions = grid.contributions(NodeArray::first, field.slot, field.number);
+    for (const Cell& cell : cells_[field.index]) {
       double u[24];
       for (int n = 0; n < 8; ++n)
         for (int a = 0; a < 3; ++a) u[3 * n + a] = record[node_doubles * (cell.lowest + corner_[n]) + a];
@@ -172,7 +178,7 @@ void CellStabilisation::add_forces(const AlignedDoubles& displacements) {
         }
       }
     }
-    for (const Tie& tie : ties_[static_cast<std::size_t>(s)]) {
+    for (const Tie& tie : ties_[field.index]) {
       for (int a = 0; a < 3; ++a) {
         const double pull =
             tie.stiffness * (record[node_doubles * tie.node + a] - record[node_doubles * tie.fullest + a]);
@@ -186,9 +192,9 @@ void CellStabilisation::add_forces(const AlignedDoubles& displacements) {
 void CellStabilisation::add_tangent(const NodeUnknowns& unknowns, bool values, BlockMatrix& matrix) const {
   std::array<double, 24 * 24> sum;
   std::array<std::int64_t, 8> numbers;
-  for (Slot s = 0; s < model_.grid->owned(); ++s) {
-    const NodeUnknowns::Node* const nodes = unknowns.of_brick(s);
-    for (const Cell& cell : cells_[static_cast<std::size_t>(s)]) {
+  for (const BrickField& field : fields_.all()) {
+    const NodeUnknowns::Node* const nodes = unknowns.of(field);
+    for (const Cell& cell : cells_[field.index]) {
       std::uint32_t held = 0;
       for (int n = 0; n < 8; ++n) {
         const NodeUnknowns::Node& node = nodes[cell.lowest + corner_[n]];
@@ -200,7 +206,7 @@ void CellStabilisation::add_tangent(const NodeUnknowns& unknowns, bool values, B
           sum[24 * p + q] = ((held >> p | held >> q) & 1) != 0 ? 0 : cell.stiffness * matrix_[p][q];
       matrix.add(numbers, values ? sum.data() : nullptr);
     }
-    for (const Tie& tie : ties_[static_cast<std::size_t>(s)]) {
+    for (const Tie& tie : ties_[field.index]) {
       const NodeUnknowns::Node* const ends[2] = {nodes + tie.node, nodes + tie.fullest};
       const std::uint32_t held = ends[0]->held | std::uint32_t{ends[1]->held} << 3;
       for (std::size_t p = 0; p < 6; ++p)

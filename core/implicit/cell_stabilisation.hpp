@@ -15,6 +15,9 @@
 // of a millionth of the material's stiffness: it acts on the difference of two displacements, so that it
 // carries no weight, however far a step moves both.
 //
+// Where components are in contact each is stabilised by itself: a cell that two share is partly empty for
+// both.
+//
 // Shape functions through cell centres (SGMP, DDMP) do not see a checkerboard of displacements even where
 // cells are full: there all cells count as empty.
 #pragma once
@@ -37,7 +40,7 @@ class CellStabilisation {
   static constexpr double alpha = 1e-3;
   static constexpr double hardly_any = 0.05, spring = 1e-6;
 
-  explicit CellStabilisation(Model& model);
+  CellStabilisation(Model& model, const BrickFields& fields);
 
   /// Finds the cells, once the nodes are numbered and mapped::implicit_motion has been summed.
   void find_cells(const NodeUnknowns& unknowns);
@@ -55,15 +58,16 @@ class CellStabilisation {
     std::int32_t node, fullest;  ///< of the brick
     double stiffness;
   };
-  void find_ties(Slot s, int lowest, const double* sums, const NodeUnknowns::Node* nodes);
-  bool handles(Slot s, const int (&at)[3]) const;
+  void find_ties(const BrickField& field, int lowest, const double* sums, const NodeUnknowns::Node* nodes);
+  bool handles(const BrickField& field, const int (&at)[3]) const;
 
   Model& model_;
+  const BrickFields& fields_;
   bool centred_;  ///< shape functions through cell centres
   CellMatrix matrix_;
   int corner_[8];                         ///< nodes of a cell relative to its lowest
-  std::vector<std::vector<Cell>> cells_;  ///< by slot
-  std::vector<std::vector<Tie>> ties_;    ///< by slot
+  std::vector<std::vector<Cell>> cells_;  ///< by field
+  std::vector<std::vector<Tie>> ties_;    ///< by field
 };
 
 }  // namespace mpm::core

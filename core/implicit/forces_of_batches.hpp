@@ -14,11 +14,11 @@ template <ShapePolicy S>
 bool ImplicitPassesWith<S>::map_forces(const AlignedDoubles& displacements) {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   std::atomic<bool> usable = true;
-  for_bricks([&](Slot s, Scratch& at) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
-    at.displacements.take_strain(frame, records(displacements, s));
-    for_each_tile(s, false, [&](const ParticleTile& tile, const Body& body) {
+  for_fields([&](const BrickField& field, Scratch& at) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    at.displacements.take_strain(frame, records(displacements, field));
+    for_each_tile(field, false, [&](const ParticleTile& tile, const Body& body) {
       if (averages_) find_dilatations(tile, body, frame, at);
       for_each_batch(tile, frame, Blocks::copies, at, [&](std::size_t) {
         Batch& batch = at.batch;
@@ -46,7 +46,7 @@ bool ImplicitPassesWith<S>::map_forces(const AlignedDoubles& displacements) {
       });
       if (averages_) add_site_forces(at, contributions);
     });
-    fold(mapped::implicit_force, s, contributions);
+    fold(mapped::implicit_force, field, contributions);
   });
   return usable;
 }
@@ -56,17 +56,17 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
                                         BlockMatrix& matrix) {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   std::mutex matrix_lock;
-  for_bricks([&](Slot s, Scratch& at) {
-    const BrickFrame frame(*model_.grid, s);
+  for_fields([&](const BrickField& field, Scratch& at) {
+    const BrickFrame frame(*model_.grid, field.slot);
     StiffnessBlock& stiffness = at.stiffness;
-    stiffness.begin(unknowns.of_brick(s), unknowns.nodes());
-    if (displacements != nullptr) at.displacements.take_strain(frame, records(*displacements, s));
+    stiffness.begin(unknowns.of(field), unknowns.nodes());
+    if (displacements != nullptr) at.displacements.take_strain(frame, records(*displacements, field));
     const auto flush = [&] {
       const std::lock_guard one_at_a_time(matrix_lock);
       stiffness.flush(matrix, displacements == nullptr);
     };
     int site = -1;
-    for_each_tile(s, false, [&](const ParticleTile& tile, const Body& body) {
+    for_each_tile(field, false, [&](const ParticleTile& tile, const Body& body) {
       if (averages_ && displacements == nullptr) at.dilatation.begin(model_.grid->shape().nodes());
       if (averages_ && displacements != nullptr) {
         find_dilatations(tile, body, frame, at);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/contact/contact_points.hpp"
 #include "core/step/speeds.hpp"
 #include "core/step/stepper.hpp"
 
@@ -47,13 +48,14 @@ double length_of(const ImplicitInput& input, const Model& model) {
 ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communication, NewtonSolver& solver)
     : model_(model),
       ranks_(communication.reductions),
+      halo_(communication.halo),
       solver_(solver),
       input_(model.scene->solution.implicit.value_or(ImplicitInput{})),
       cells_(make_cells_in_use(model, communication.halo)),
       rigid_(make_rigid_bodies(model, communication.reductions)),
-      passes_(make_implicit_passes(model, rigid_.get())),
-      unknowns_(model, communication),
-      stabilisation_(model),
+      passes_(make_implicit_passes(model, rigid_.get(), fields_)),
+      unknowns_(model, communication, fields_),
+      stabilisation_(model, fields_),
       lags_(TimeRule::lags(input_)) {
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     moves_bodies_ |= passes_->loads().motion(b).kind == BodyMotion::Kind::prescribed &&
@@ -64,7 +66,7 @@ ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communicatio
     held_diagonal_ = std::max(held_diagonal_, body.model->reference_density() * c * c * h);
   }
   if (!(held_diagonal_ > 0)) held_diagonal_ = 1;
-  contact_ = make_rigid_contact(model, rigid_.get(), held_diagonal_);
+  contact_ = make_implicit_contact(model, rigid_.get(), unknowns_);
 }
 
 std::vector<Phase> ImplicitIntegrator::phases() {
@@ -85,10 +87,29 @@ double ImplicitIntegrator::next_step(const Clock& clock) const {
   return clock.step > 0 ? std::min(clock.dt * growth, input_.max_step.value_or(length)) : length;
 }
 
+/// Components that may meet have fields of their own.
+void ImplicitIntegrator::find_fields() {
+  if (contact_) model_.grid->set_components(components_by_slot(*model_.grid, halo_));
+  fields_.find(*model_.grid);
+}
+
+void ImplicitIntegrator::find_contacts() {
+  std::vector<ImplicitContact::NodeMotion> motion;
+  for (const NodeState& at : state_)
+    motion.push_back({at.mass, {at.velocity[0], at.velocity[1], at.velocity[2]}});
+  contact_->find_nodes(*passes_, motion);
+}
+
+void ImplicitIntegrator::distribute(std::span<const double> u) {
+  unknowns_.distribute(u, displacements_);
+  if (contact_) contact_->take_displacements();
+}
+
 /// Masses, velocities, external forces and the forces at the start of the step.
 void ImplicitIntegrator::prepare() {
   const double dt = model_.clock.dt;
   rule_ = TimeRule::of(input_, dt);
+  find_fields();
   passes_->begin_step(dt, rule_.dynamic() ? 0.5 : 1.0);
   if (contact_) contact_->begin_step(passes_->loads(), dt);
   passes_->map_start();
@@ -109,7 +130,6 @@ void ImplicitIntegrator::prepare() {
     state_[i].ground = ground * (1 - volume / hardly_any) * modulus * g.smallest_cell();
   });
   if (moves_bodies_) unknowns_.hold_moved(dt);
-  if (contact_) contact_->find_nodes(*passes_, unknowns_);
   const double cutoff = model_.grid->geometry().mass_cutoff;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     NodeState& at = state_[i];
@@ -122,6 +142,7 @@ void ImplicitIntegrator::prepare() {
     // Where the free motion is unknown, cells and ties alone hold the node.
     if (rule_.dynamic() && !(at.mass > cutoff)) at.ground = 0;
   }
+  if (contact_) find_contacts();
   if (lags_) {
     passes_->map_lag();
     unknowns_.exchange(mapped::implicit_lag);
@@ -131,7 +152,7 @@ void ImplicitIntegrator::prepare() {
     });
   }
   const std::vector<double> at_rest(3 * state_.size(), 0.0);
-  unknowns_.distribute(at_rest, displacements_);
+  distribute(at_rest);
   passes_->map_forces(displacements_);
   unknowns_.exchange(mapped::implicit_force);
   const double damping = model_.scene->solution.damping;
@@ -160,7 +181,7 @@ std::vector<double> ImplicitIntegrator::first_guess() const {
 }
 
 bool ImplicitIntegrator::map_forces(std::span<const double> u) {
-  unknowns_.distribute(u, displacements_);
+  distribute(u);
   const bool usable = passes_->map_forces(displacements_);
   stabilisation_.add_forces(displacements_);
   unknowns_.exchange(mapped::implicit_force);
@@ -192,12 +213,14 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
   const double part = look_ahead(u);
   if (part > 0) {
     map_forces(ahead_);
+    find_contact_forces();
     unknowns_.for_each_own([&](std::size_t i, const double* sum) {
-      for (int a = 0; a < 3; ++a) state_[i].ahead[a] = -sum[4 + a] / part;
+      for (int a = 0; a < 3; ++a)
+        state_[i].ahead[a] = -(sum[4 + a] + (1 + rule_.carry) * state_[i].contact[a]) / part;
     });
   }
   const bool usable = map_forces(u);
-  find_contact_forces(u);
+  find_contact_forces();
   const double damping = model_.scene->solution.damping;
   ExactSum squares;
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
@@ -220,7 +243,7 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
       }
       r[k] = at.reaction[a];
       if (!(part > 0)) continue;
-      const double led = at.ahead[a] + sum[4 + a] / part;
+      const double led = at.ahead[a] + (sum[4 + a] + (1 + rule_.carry) * at.contact[a]) / part;
       r[k] += led;
       size += std::abs(led);
     }
@@ -231,42 +254,24 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
   return !ranks_.any(!usable);
 }
 
-void ImplicitIntegrator::find_contact_forces(std::span<const double> u) {
+void ImplicitIntegrator::find_contact_forces() {
   if (!contact_) return;
   for (NodeState& at : state_) std::fill_n(at.contact, 3, 0.0);
-  for (const RigidContact::Touch& touch : contact_->touches()) {
-    const Vec3<double> f = contact_->response(touch, RigidContact::displacement(u, touch.node)).force;
-    for (int a = 0; a < 3; ++a) state_[touch.node].contact[a] += f[a];
-  }
-}
-
-/// By own node; empty without contact.
-std::vector<Mat3<double>> ImplicitIntegrator::contact_stiffness(std::span<const double> u) const {
-  if (!contact_) return {};
-  std::vector<Mat3<double>> k(state_.size());
-  for (const RigidContact::Touch& touch : contact_->touches()) {
-    const auto found = contact_->response(touch, RigidContact::displacement(u, touch.node));
-    k[touch.node] = k[touch.node] + (1 + rule_.carry) * found.stiffness;
-  }
-  return k;
+  contact_->for_each_force([&](std::size_t i, const Vec3<double>& force) {
+    for (int a = 0; a < 3; ++a) state_[i].contact[a] += force[a];
+  });
 }
 
 void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix) {
-  unknowns_.distribute(u, displacements_);
+  distribute(u);
   passes_->add_tangent(&displacements_, unknowns_, matrix);
   stabilisation_.add_tangent(unknowns_, true, matrix);
-  const std::vector<Mat3<double>> contact = contact_stiffness(u);
+  if (contact_) contact_->add_tangent(1 + rule_.carry, true, matrix);
   const double per_mass = rule_.inertia + model_.scene->solution.damping * rule_.gain;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     double diagonal[9] = {};
     for (int a = 0; a < 3; ++a)
       diagonal[4 * a] = held(i, a) ? held_diagonal_ : per_mass * state_[i].mass + state_[i].ground;
-    if (contact_) {
-      const Mat3<double>& k = contact[i];
-      const double values[9] = {k.xx, k.xy, k.xz, k.yx, k.yy, k.yz, k.zx, k.zy, k.zz};
-      for (int c = 0; c < 9; ++c)
-        if (!held(i, c / 3) && !held(i, c % 3)) diagonal[c] += values[c];
-    }
     const std::int64_t number = unknowns_.first() + static_cast<std::int64_t>(i);
     matrix.add(std::span(&number, 1), diagonal);
   }
@@ -274,7 +279,7 @@ void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix
 
 std::string ImplicitIntegrator::objection(const NewtonReport& report, std::span<const double> u) {
   if (!report.converged) return report.reason;
-  unknowns_.distribute(u, displacements_);
+  distribute(u);
   StepMotion motion = passes_->motion_of(displacements_);
   motion.combine(ranks_);
   std::vector<std::string> names;
@@ -298,9 +303,10 @@ NewtonReport ImplicitIntegrator::solve_once(std::span<double> u, const NewtonOpt
 /// Solves again with the friction that the last solution allows, until it no longer changes.
 void ImplicitIntegrator::settle_friction(std::span<double> u, const NewtonOptions& options,
                                          NewtonReport& report) {
-  double relaxation = shear_share * held_diagonal_, last = 0;
+  double relaxation = shear_share, last = 0;
   for (int i = 0; report.converged; ++i) {
-    RigidContact::Changes mine = contact_->find_friction(u, relaxation);
+    distribute(u);
+    ImplicitContact::Changes mine = contact_->find_friction(relaxation);
     ExactSum sums[2] = {mine.change, mine.most};
     ranks_.sum(std::span(sums));
     const double change = sums[0].value();
@@ -400,6 +406,9 @@ void ImplicitIntegrator::fail(const std::string& why) {
 }
 
 void ImplicitIntegrator::move() {
+  // The last residual of a line search need not be that of the solution.
+  distribute(solution_);
+  find_contact_forces();
   const double cutoff = model_.grid->geometry().mass_cutoff;
   std::vector<double> gained(solution_.size()), lag_gained(lags_ ? solution_.size() : 0);
   for (std::size_t i = 0; i < state_.size(); ++i) {
@@ -426,52 +435,28 @@ void ImplicitIntegrator::move() {
     }
     if (work != 0) of_nodes_.work.add(work);
   }
-  std::vector<RigidContact::Exerted> exerted;
-  if (contact_) exerted = exerted_by_bodies(gained);
-  // The last residual of a line search need not be that of the solution.
-  unknowns_.distribute(solution_, displacements_);
+  if (contact_) stop_contacts(gained);
   if (rule_.dynamic()) unknowns_.distribute(gained, velocities_);
   if (lags_) unknowns_.distribute(lag_gained, lag_increments_);
   passes_->move_particles(displacements_, rule_.dynamic() ? &velocities_ : nullptr,
                           lags_ ? &lag_increments_ : nullptr);
-  if (contact_) contact_->end_step(solution_, exerted, of_nodes_);
+  if (contact_) contact_->end_step(of_nodes_);
 }
 
-/// What the bodies have exerted. In a dynamic step nodes that press go on with the body, those that stick in
-/// all directions. Of a quasi-static one equilibrium gives the forces at the start too: the mean does the
-/// work.
-std::vector<RigidContact::Exerted> ImplicitIntegrator::exerted_by_bodies(std::span<double> gained) const {
-  std::vector<RigidContact::Exerted> exerted;
-  std::vector<RigidContact::Response> found;
-  std::vector<int> bodies(state_.size());  // that act on a node
-  for (const RigidContact::Touch& touch : contact_->touches()) {
-    found.push_back(contact_->response(touch, RigidContact::displacement(solution_, touch.node)));
-    if (found.back().force != Vec3<double>{}) ++bodies[touch.node];
+/// What contact does to the velocities at the end of the step; and the forces of the step.
+void ImplicitIntegrator::stop_contacts(std::span<double> gained) {
+  if (!rule_.dynamic()) {
+    std::vector<Vec3<double>> start;
+    for (const NodeState& at : state_) start.push_back({at.force[0], at.force[1], at.force[2]});
+    return contact_->find_start(start);
   }
-  for (std::size_t t = 0; t < found.size(); ++t) {
-    const RigidContact::Touch& touch = contact_->touches()[t];
-    const NodeState& at = state_[touch.node];
-    RigidContact::Exerted by_body{found[t].force, found[t].force};
-    if (!rule_.dynamic() && bodies[touch.node] > 0) {
-      for (int a = 0; a < 3; ++a)
-        by_body.mean[a] -=
-            0.5 * (found[t].force[a] + (held(touch.node, a) ? 0 : at.force[a] / bodies[touch.node]));
-    } else if (found[t].pressure > 0 && at.mass > model_.grid->geometry().mass_cutoff) {
-      double* const more = gained.data() + 3 * touch.node;
-      Vec3<double> v{}, missing{};
-      for (int a = 0; a < 3; ++a) {
-        v[a] = at.velocity[a] + more[a];
-        if (!held(touch.node, a))
-          missing[a] = solution_[3 * touch.node + static_cast<std::size_t>(a)] / model_.clock.dt - v[a];
-      }
-      if (!touch.sticks) missing = dot(missing, touch.normal) * touch.normal;
-      for (int a = 0; a < 3; ++a) more[a] += missing[a];
-      by_body.stop = at.mass * missing;
-      by_body.gained = dot(by_body.stop, v + 0.5 * missing);
-    }
-    exerted.push_back(by_body);
-  }
-  return exerted;
+  std::vector<double> velocity(gained.begin(), gained.end());
+  for (std::size_t i = 0; i < state_.size(); ++i)
+    for (std::size_t a = 0; a < 3; ++a) velocity[3 * i + a] += state_[i].velocity[a];
+  contact_->stop(velocity, model_.grid->geometry().mass_cutoff,
+                 [&](std::size_t i, const Vec3<double>& change) {
+                   for (int a = 0; a < 3; ++a) gained[3 * i + static_cast<std::size_t>(a)] += change[a];
+                 });
 }
 
 double ImplicitIntegrator::stable_step(const StepStatistics& statistics) const {

@@ -18,9 +18,10 @@
 
 #include <memory>
 
+#include "core/implicit/brick_fields.hpp"
 #include "core/implicit/cell_stabilisation.hpp"
+#include "core/implicit/implicit_contact.hpp"
 #include "core/implicit/implicit_passes.hpp"
-#include "core/implicit/rigid_contact.hpp"
 #include "core/implicit/time_rule.hpp"
 #include "core/step/cells_in_use.hpp"
 #include "core/step/integrator.hpp"
@@ -50,7 +51,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     double lag[3];       ///< of the acceleration, at the start
     double external[3];  ///< force
     double force[3];     ///< all, at the start
-    double contact[3];   ///< force by rigid bodies in the last evaluation
+    double contact[3];   ///< force in the last evaluation
     double reaction[3];  ///< residual of the last evaluation, also of held components
     double ahead[3];     ///< what the rest of the way of held nodes adds to it
   };
@@ -61,12 +62,15 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::int64_t all_nodes() const override { return unknowns_.all(); }
   std::span<const double> coordinates() const override { return unknowns_.coordinates(); }
   std::span<const std::int32_t> lattice() const override { return unknowns_.lattice(); }
+  std::span<const std::int32_t> fields() const override { return unknowns_.components(); }
   std::span<const std::uint8_t> held() const override { return unknowns_.held(); }
+  bool has_springs() const override { return contact_ && contact_->has_springs(); }
   bool residual(std::span<const double> u, std::span<double> r) override;
   double force_scale() const override { return force_scale_; }
   void structure(BlockMatrix& matrix) override {
     passes_->add_tangent(nullptr, unknowns_, matrix);
     stabilisation_.add_tangent(unknowns_, false, matrix);
+    if (contact_) contact_->add_tangent(0, false, matrix);
   }
   void jacobian(std::span<const double> u, BlockMatrix& matrix) override;
 
@@ -75,10 +79,13 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   NewtonReport solve_once(std::span<double> u, const NewtonOptions& options);
   void settle_friction(std::span<double> u, const NewtonOptions& options, NewtonReport& report);
   void move();
-  /// Sets the nodes' contact forces at displacements `u`.
-  void find_contact_forces(std::span<const double> u);
-  std::vector<Mat3<double>> contact_stiffness(std::span<const double> u) const;
-  std::vector<RigidContact::Exerted> exerted_by_bodies(std::span<double> gained) const;
+  void find_fields();
+  void find_contacts();
+  /// Sends displacements of the own nodes to all bricks, and to contact. Collective.
+  void distribute(std::span<const double> u);
+  /// Sets the nodes' contact forces at the displacements distributed.
+  void find_contact_forces();
+  void stop_contacts(std::span<double> gained);
   std::vector<double> first_guess() const;
   /// Why the solution cannot be accepted; empty if it can. The same on all ranks.
   std::string objection(const NewtonReport& report, std::span<const double> u);
@@ -97,14 +104,16 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
 
   Model& model_;
   Reductions& ranks_;
+  NodeHalo& halo_;
   NewtonSolver& solver_;
   const ImplicitInput input_;
   std::unique_ptr<CellsInUse> cells_;
   std::unique_ptr<RigidBodies> rigid_;  ///< in contact; null without
+  BrickFields fields_;
   std::unique_ptr<ImplicitPasses> passes_;
   NodeUnknowns unknowns_;
   CellStabilisation stabilisation_;
-  std::unique_ptr<RigidContact> contact_;  ///< null without
+  std::unique_ptr<ImplicitContact> contact_;  ///< null without
   TimeRule rule_;
   const bool lags_;            ///< particles carry a lag
   bool moves_bodies_ = false;  ///< some body has a prescribed motion

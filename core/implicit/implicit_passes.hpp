@@ -22,15 +22,13 @@ class ImplicitPasses {
   /// Sets the step's length and loads, taken at `part` of it.
   virtual void begin_step(double dt, double part) = 0;
 
-  // Contributions of this rank's bricks to the first node array.
+  // Contributions of this rank's bricks to the first node array, by field.
   /// mapped::implicit_start; gravity and loads are the external force.
   virtual void map_start() = 0;
   /// mapped::implicit_motion.
   virtual void map_motion() = 0;
-  /// mapped::implicit_surface: sums of V grad S and of V S over a rigid body in contact, or over the material
-  /// (no_body).
-  static constexpr int no_body = -1;
-  virtual void map_surface(int body) = 0;
+  /// mapped::implicit_surface: sums of V grad S and of V S, of rigid bodies in contact too.
+  virtual void map_surface() = 0;
   /// mapped::implicit_lag, of particles that carry one.
   virtual void map_lag() = 0;
   /// mapped::implicit_force: internal forces at the end of the step, with the nodes' displacements in
@@ -55,8 +53,9 @@ class ImplicitPasses {
   virtual StepStatistics take_statistics() = 0;
 };
 
-/// For the scene's shape functions. `rigid`: the rigid bodies in contact, which give the nodes nothing else;
-/// null without.
-std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model, const RigidBodies* rigid);
+/// For the scene's shape functions. `rigid`: the rigid bodies in contact, which give the nodes nothing but
+/// their surface; null without. `fields` and `rigid` outlive the passes.
+std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model, const RigidBodies* rigid,
+                                                     const BrickFields& fields);
 
 }  // namespace mpm::core

@@ -24,9 +24,10 @@ namespace mpm::core {
 template <ShapePolicy S>
 class ImplicitPassesWith final : public ImplicitPasses {
  public:
-  ImplicitPassesWith(Model& model, const RigidBodies* rigid)
+  ImplicitPassesWith(Model& model, const RigidBodies* rigid, const BrickFields& fields)
       : model_(model),
         rigid_(rigid),
+        fields_(fields),
         loads_(model),
         failed_(model),
         averages_(model.scene->solution.averaging == VolumeAveraging::cell),
@@ -46,7 +47,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   }
   void map_start() override;
   void map_motion() override;
-  void map_surface(int body) override;
+  void map_surface() override;
   void map_lag() override;
   bool map_forces(const AlignedDoubles& displacements) override;
   void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
@@ -84,12 +85,17 @@ class ImplicitPassesWith final : public ImplicitPasses {
       f(static_cast<Slot>(s), *scratch_[static_cast<std::size_t>(omp_get_thread_num())]);
     });
   }
-  /// f(tile, layout, block, lanes in use) of the material (no_body), which is all but the rigid bodies in
-  /// contact, or of one of these.
   template <class F>
-  void for_each_block(Slot s, F f, int body = no_body) {
-    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
-      if (body == no_body ? rigid(tile.body) >= 0 : tile.body != body) continue;
+  void for_fields(F f) {
+    for_bricks([&](Slot s, Scratch& at) {
+      for (const BrickField& field : fields_.of(s)) f(field, at);
+    });
+  }
+  /// f(tile, layout, block, lanes in use), without rigid bodies in contact unless `all`.
+  template <class F>
+  void for_each_block(const BrickField& field, bool all, F f) {
+    for (const ParticleTile& tile : model_.grid->brick(field.slot).tiles) {
+      if (!field.has(tile) || (!all && rigid(tile.body) >= 0)) continue;
       BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
       for (std::size_t b = 0; b < tile.blocks.size(); ++b)
         f(tile, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
@@ -97,8 +103,9 @@ class ImplicitPassesWith final : public ImplicitPasses {
   }
   /// f(tile, body), without bodies of rigid material unless `all`.
   template <class F>
-  void for_each_tile(Slot s, bool all, F f) {
-    for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
+  void for_each_tile(const BrickField& field, bool all, F f) {
+    for (const ParticleTile& tile : model_.grid->brick(field.slot).tiles) {
+      if (!field.has(tile)) continue;
       const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
       if (all || !body.model->rigid()) f(tile, body);
     }
@@ -129,20 +136,19 @@ class ImplicitPassesWith final : public ImplicitPasses {
   void touch_site_nodes(Scratch& at) const;
   template <class F>
   static void add_site_stiffness(Scratch& at, bool structure_alone, F flush);
-  double* clear_contributions(Slot s) const {
-    double* contributions = model_.grid->contributions(NodeArray::first, s);
+  double* clear_contributions(const BrickField& field) const {
+    double* contributions = model_.grid->contributions(NodeArray::first, field.slot, field.number);
     std::fill_n(contributions, node_doubles * model_.grid->shape().nodes(), 0.0);
     return contributions;
   }
-  void fold(NodeFields what, Slot s, double* contributions) const {
+  void fold(NodeFields what, const BrickField& field, double* contributions) const {
     if constexpr (S::node_block != NodeBlockShape{}) {
-      const BoundaryFaces walls(*model_.grid, s);
+      const BoundaryFaces walls(*model_.grid, field.slot);
       if (!walls.none()) walls.fold(what, contributions);
     }
   }
-  const double* records(const AlignedDoubles& of, Slot s) const {
-    return of.data() + static_cast<std::size_t>(node_doubles * model_.grid->shape().nodes()) *
-                           static_cast<std::size_t>(s);
+  const double* records(const AlignedDoubles& of, const BrickField& field) const {
+    return of.data() + static_cast<std::size_t>(node_doubles * model_.grid->shape().nodes()) * field.index;
   }
   /// Number of the rigid body in contact that is this body; -1: none.
   int rigid(int body) const { return rigid_ == nullptr ? -1 : rigid_->of_body(body); }
@@ -151,11 +157,15 @@ class ImplicitPassesWith final : public ImplicitPasses {
   void find_motion(const ParticleTile& tile, const Body& body, Scratch& at);
   void move_block(const BrickFrame& frame, const ParticleTile& tile, int b, double* block, int used,
                   bool dynamic, bool lags, Scratch& at);
+  void move_field(const BrickField& field, const AlignedDoubles& displacements,
+                  const AlignedDoubles* velocities, const AlignedDoubles* lags,
+                  std::vector<DepartingParticle>& departing, Scratch& at);
   static void add_increments(const ColumnLayout& layout, const Place& place, const typename S::Field& of,
                              Column first, double* block);
 
   Model& model_;
   const RigidBodies* rigid_;
+  const BrickFields& fields_;
   Loads loads_;
   FailedComponent failed_;
   Vec3<double> gravity_{};  ///< of this step

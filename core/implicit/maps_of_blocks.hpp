@@ -14,68 +14,71 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_start() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   const Vec3<double> cell = model_.grid->geometry().cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
-    for_each_block(s, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
-      const Place place(frame, layout, block);
-      for (int l = 0; l < used; ++l) {
-        const double m = block[layout.offset(Column::mass) + l];
-        double per_shape[8] = {0, 0, 0, m, m * gravity_.x, m * gravity_.y, m * gravity_.z, 1};
-        for (int a = 0; a < 3; ++a) per_shape[a] = m * block[layout.offset(next(Column::velocity_x, a)) + l];
-        S::for_each_node(place, l, inverse_cell,
-                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& slope) {
-                           double* to = contributions + node_doubles * node;
-                           for (int i = 0; i < node_doubles; ++i) to[i] += shape * per_shape[i];
-                           to[7] += std::abs(slope.x) * cell.x + std::abs(slope.y) * cell.y +
-                                    std::abs(slope.z) * cell.z;
-                         });
-      }
-      if (loads_.act(*model_.grid, s, tile.body))
-        add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
-    });
-    fold(mapped::implicit_start, s, contributions);
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    for_each_block(
+        field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+          const Place place(frame, layout, block);
+          for (int l = 0; l < used; ++l) {
+            const double m = block[layout.offset(Column::mass) + l];
+            double per_shape[8] = {0, 0, 0, m, m * gravity_.x, m * gravity_.y, m * gravity_.z, 1};
+            for (int a = 0; a < 3; ++a)
+              per_shape[a] = m * block[layout.offset(next(Column::velocity_x, a)) + l];
+            S::for_each_node(place, l, inverse_cell,
+                             [&](int node, const NodeOffset&, double shape, const Vec3<double>& slope) {
+                               double* to = contributions + node_doubles * node;
+                               for (int i = 0; i < node_doubles; ++i) to[i] += shape * per_shape[i];
+                               to[7] += std::abs(slope.x) * cell.x + std::abs(slope.y) * cell.y +
+                                        std::abs(slope.z) * cell.z;
+                             });
+          }
+          if (loads_.act(*model_.grid, field.slot, tile.body))
+            add_load_forces<S>(loads_, model_, field.slot, tile.body, place, block, used, contributions);
+        });
+    fold(mapped::implicit_start, field, contributions);
   });
 }
 
 template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_motion() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
-    for_each_block(s, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
-      const Place place(frame, layout, block);
-      const bool moved = prescribed(tile.body);
-      const ConstitutiveModel& material = *model_.bodies[static_cast<std::size_t>(tile.body)].model;
-      const double c = material.initial_sound_speed(), shear = material.initial_shear_speed();
-      // Nodes of cells cut by a surface can move without changing volumes, and a nearly incompressible
-      // material should not hinder that with a share of its bulk modulus.
-      const double modulus =
-          material.reference_density() * (shear > 0 ? std::min(c * c, 4 * shear * shear) : c * c);
-      for (int l = 0; l < used; ++l) {
-        const double volume = block[layout.offset(Column::volume) + l];
-        double per_shape[6] = {0, 0, 0, 0, volume, volume * modulus};
-        if (moved) {
-          const Vec3<double> v = loads_.motion(tile.body).velocity.velocity(block + l);
-          for (int a = 0; a < 3; ++a) per_shape[a] = volume * v[a];
-          per_shape[3] = volume;
-        }
-        for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
-          for (int i = 0; i < 6; ++i) contributions[node_doubles * node + i] += shape * per_shape[i];
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    for_each_block(
+        field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+          const Place place(frame, layout, block);
+          const bool moved = prescribed(tile.body);
+          const ConstitutiveModel& material = *model_.bodies[static_cast<std::size_t>(tile.body)].model;
+          const double c = material.initial_sound_speed(), shear = material.initial_shear_speed();
+          // Nodes of cells cut by a surface can move without changing volumes, and a nearly incompressible
+          // material should not hinder that with a share of its bulk modulus.
+          const double modulus =
+              material.reference_density() * (shear > 0 ? std::min(c * c, 4 * shear * shear) : c * c);
+          for (int l = 0; l < used; ++l) {
+            const double volume = block[layout.offset(Column::volume) + l];
+            double per_shape[6] = {0, 0, 0, 0, volume, volume * modulus};
+            if (moved) {
+              const Vec3<double> v = loads_.motion(tile.body).velocity.velocity(block + l);
+              for (int a = 0; a < 3; ++a) per_shape[a] = volume * v[a];
+              per_shape[3] = volume;
+            }
+            for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
+              for (int i = 0; i < 6; ++i) contributions[node_doubles * node + i] += shape * per_shape[i];
+            });
+          }
         });
-      }
-    });
-    fold(mapped::implicit_motion, s, contributions);
+    fold(mapped::implicit_motion, field, contributions);
   });
 }
 
 template <ShapePolicy S>
-void ImplicitPassesWith<S>::map_surface(int body) {
+void ImplicitPassesWith<S>::map_surface() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
     const auto map = [&](const ParticleTile&, const ColumnLayout& layout, const double* block, int used) {
       const Place place(frame, layout, block);
       for (int l = 0; l < used; ++l) {
@@ -88,31 +91,32 @@ void ImplicitPassesWith<S>::map_surface(int body) {
                          });
       }
     };
-    for_each_block(s, map, body);
-    fold(mapped::implicit_surface, s, contributions);
+    for_each_block(field, true, map);
+    fold(mapped::implicit_surface, field, contributions);
   });
 }
 
 template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_lag() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
-  for_bricks([&](Slot s, Scratch&) {
-    const BrickFrame frame(*model_.grid, s);
-    double* const contributions = clear_contributions(s);
-    for_each_block(s, [&](const ParticleTile&, const ColumnLayout& layout, double* block, int used) {
-      if (!layout.has(Column::acceleration_lag_x)) return;
-      const Place place(frame, layout, block);
-      for (int l = 0; l < used; ++l) {
-        const double m = block[layout.offset(Column::mass) + l];
-        double lag[3];
-        for (int a = 0; a < 3; ++a)
-          lag[a] = m * dt_ * block[layout.offset(next(Column::acceleration_lag_x, a)) + l];
-        for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
-          for (int a = 0; a < 3; ++a) contributions[node_doubles * node + a] += shape * lag[a];
-        });
-      }
-    });
-    fold(mapped::implicit_lag, s, contributions);
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    for_each_block(field, false,
+                   [&](const ParticleTile&, const ColumnLayout& layout, double* block, int used) {
+                     if (!layout.has(Column::acceleration_lag_x)) return;
+                     const Place place(frame, layout, block);
+                     for (int l = 0; l < used; ++l) {
+                       const double m = block[layout.offset(Column::mass) + l];
+                       double lag[3];
+                       for (int a = 0; a < 3; ++a)
+                         lag[a] = m * dt_ * block[layout.offset(next(Column::acceleration_lag_x, a)) + l];
+                       for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
+                         for (int a = 0; a < 3; ++a) contributions[node_doubles * node + a] += shape * lag[a];
+                       });
+                     }
+                   });
+    fold(mapped::implicit_lag, field, contributions);
   });
 }
 

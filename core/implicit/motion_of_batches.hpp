@@ -54,11 +54,11 @@ void ImplicitPassesWith<S>::find_motion(const ParticleTile& tile, const Body& bo
 template <ShapePolicy S>
 StepMotion ImplicitPassesWith<S>::motion_of(const AlignedDoubles& displacements) {
   for (const auto& w : scratch_) w->motion = StepMotion(model_.bodies.size());
-  for_bricks([&](Slot s, Scratch& at) {
-    const BrickFrame frame(*model_.grid, s);
-    at.displacements.take_strain(frame, records(displacements, s));
-    at.displacements.take_motion(records(displacements, s));
-    for_each_tile(s, true, [&](const ParticleTile& tile, const Body& body) {
+  for_fields([&](const BrickField& field, Scratch& at) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    at.displacements.take_strain(frame, records(displacements, field));
+    at.displacements.take_motion(records(displacements, field));
+    for_each_tile(field, true, [&](const ParticleTile& tile, const Body& body) {
       if (averages(body)) find_dilatations(tile, body, frame, at);
       for_each_batch(tile, frame, Blocks::copies, at, [&](std::size_t) {
         if (!body.model->rigid()) take_strains(frame, body, at);

@@ -32,6 +32,11 @@ class NonlinearProblem {
   /// three bits per node, of components that are given; for a hierarchy of coarser grids.
   virtual std::span<const std::int32_t> lattice() const = 0;
   virtual std::span<const std::uint8_t> held() const = 0;
+  /// Of this rank's nodes: the field that each belongs to; nodes of several fields may be at one place.
+  virtual std::span<const std::int32_t> fields() const = 0;
+  /// Whether stiff springs couple nodes that move (contact), which smoothers of single nodes do not reach.
+  /// The same on all ranks.
+  virtual bool has_springs() const = 0;
 
   /// Residual forces. False, on all ranks, where the state cannot be evaluated (a particle inverts).
   virtual bool residual(std::span<const double> u, std::span<double> r) = 0;

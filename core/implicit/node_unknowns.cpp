@@ -6,11 +6,13 @@
 
 namespace mpm::core {
 
-NodeUnknowns::NodeUnknowns(Model& model, Communication& communication)
+NodeUnknowns::NodeUnknowns(Model& model, Communication& communication, const BrickFields& fields)
     : model_(model),
       ranks_(communication.reductions),
       halo_(communication.halo),
+      fields_(fields),
       shared_(model.grid->shape()) {
+  shared_.for_each_node([&](int, auto shares) { shares_.push_back(shares); });
   buffer_.resize(static_cast<std::size_t>(node_doubles * shared_.nodes()));
 }
 
@@ -19,40 +21,40 @@ void NodeUnknowns::exchange(NodeFields fields) {
   halo_.end(grid());
 }
 
-/// The first brick in summation order that exists owns a shared node.
-bool NodeUnknowns::owns(Slot s, std::span<const SharedNodes::Share> shares) const {
-  const Brick& brick = model_.grid->brick(s);
+/// The first brick in summation order that has the field owns a shared node.
+bool NodeUnknowns::owns(const BrickField& field, std::span<const SharedNodes::Share> shares) const {
+  const Brick& brick = model_.grid->brick(field.slot);
   for (const SharedNodes::Share& share : shares)
-    if (brick.neighbour[static_cast<std::size_t>(share.neighbour)] != no_slot)
+    if (has(brick.neighbour[static_cast<std::size_t>(share.neighbour)], field.component))
       return share.neighbour == self_index;
   return false;
 }
 
-/// value_of_own(number of the own node, record) sets the fields; all else is zero.
-template <class F>
-void NodeUnknowns::send(F value_of_own, NodeFields fields) {
-  for (Slot s = 0; s < grid().owned(); ++s)
-    std::fill_n(grid().contributions(NodeArray::first, s), node_doubles * per_brick(), 0.0);
-  for (std::size_t i = 0; i < own_.size(); ++i)
-    value_of_own(i, grid().contributions(NodeArray::first, own_[i].slot) + node_doubles * own_[i].node);
-  exchange(fields);
+NodeUnknowns::Copy NodeUnknowns::owner(Slot s, std::int32_t node, std::int32_t component) const {
+  for (const SharedNodes::Share& share : shares_[static_cast<std::size_t>(node)]) {
+    const Slot there = model_.grid->brick(s).neighbour[static_cast<std::size_t>(share.neighbour)];
+    if (has(there, component)) return {there, model_.grid->field_of(there, component), share.node};
+  }
+  return {};
 }
 
 std::vector<double> NodeUnknowns::number() {
   const NodeBlockShape shape = grid().shape();
-  nodes_.assign(static_cast<std::size_t>(grid().owned()) * per_brick(), {});
+  nodes_.assign(fields_.count() * per_brick(), {});
   own_.clear();
   coordinates_.clear();
   lattice_.clear();
+  components_.clear();
   std::vector<double> start;
-  for (Slot s = 0; s < grid().owned(); ++s) {
-    const double* sum = sums(s);
+  for (const BrickField& field : fields_.all()) {
+    const Slot s = field.slot;
+    const double* sum = sums(field.index);
     std::vector<std::uint8_t> mine(per_brick());
     shared_.for_each_node([&](int node, auto shares) {
       mine[static_cast<std::size_t>(node)] =
-          sum[node_doubles * node + node_field::support.first] >= least_support && owns(s, shares);
+          sum[node_doubles * node + node_field::support.first] >= least_support && owns(field, shares);
     });
-    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
+    Node* const of = nodes_.data() + field.index * per_brick();
     for (int n = 0; n < nodes(); ++n) of[n].from = static_cast<std::int16_t>(n);
     BoundaryFaces(grid(), s).for_each_tie([&](int outer, int inner, const bool(&reverses)[3]) {
       of[outer].from = of[inner].from;
@@ -64,7 +66,8 @@ std::vector<double> NodeUnknowns::number() {
         for (int i = shape.lowest(); i <= shape.highest(); ++i) {
           const int n = shape.index(i, j, k);
           if (!mine[static_cast<std::size_t>(n)] || of[n].from != n) continue;
-          own_.push_back({s, n});
+          own_.push_back({field.index, n});
+          components_.push_back(field.component);
           start.insert(start.end(), sum + node_doubles * n, sum + node_doubles * (n + 1));
           const Vec3<double> x = grid().geometry().node_place(grid().brick(s).coord, i, j, k);
           coordinates_.insert(coordinates_.end(), {x.x, x.y, x.z});
@@ -87,9 +90,9 @@ std::vector<double> NodeUnknowns::number() {
   send([&](std::size_t i,
            double* record) { record[0] = static_cast<double>(first_ + static_cast<std::int64_t>(i) + 1); },
        node_field::momentum);
-  for (Slot s = 0; s < grid().owned(); ++s) {
-    const double* sum = sums(s);
-    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
+  for (const BrickField& field : fields_.all()) {
+    const double* sum = sums(field.index);
+    Node* const of = nodes_.data() + field.index * per_brick();
     for (int n = 0; n < nodes(); ++n)
       of[n].number = static_cast<std::int64_t>(sum[node_doubles * of[n].from]) - 1;
   }
@@ -100,14 +103,16 @@ std::vector<double> NodeUnknowns::number() {
 
 void NodeUnknowns::hold_walls() {
   const double* const base = buffer_.data();
-  for (Slot s = 0; s < grid().owned(); ++s) {
-    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
-    BoundaryFaces(grid(), s).for_each_node(buffer_.data(), [&](int axis, int, Boundary boundary, double* at) {
-      const auto bits = boundary == Boundary::fixed ? 7 : 1 << axis;
-      of[(at - base) / node_doubles].held |= static_cast<std::uint8_t>(bits);
-    });
+  for (const BrickField& field : fields_.all()) {
+    Node* const of = nodes_.data() + field.index * per_brick();
+    BoundaryFaces(grid(), field.slot)
+        .for_each_node(buffer_.data(), [&](int axis, int, Boundary boundary, double* at) {
+          const auto bits = boundary == Boundary::fixed ? 7 : 1 << axis;
+          of[(at - base) / node_doubles].held |= static_cast<std::uint8_t>(bits);
+        });
   }
-  for (std::size_t i = 0; i < own_.size(); ++i) held_[i] = of_brick(own_[i].slot)[own_[i].node].held;
+  for (std::size_t i = 0; i < own_.size(); ++i)
+    held_[i] = of(fields_.all()[own_[i].field])[own_[i].node].held;
 }
 
 void NodeUnknowns::hold_moved(double dt) {
@@ -115,9 +120,9 @@ void NodeUnknowns::hold_moved(double dt) {
     const double all = record[node_field::volume.first];
     return all > 0 && record[node_field::moved_volume.first] >= held_share * all;
   };
-  for (Slot s = 0; s < grid().owned(); ++s) {
-    const double* sum = sums(s);
-    Node* const of = nodes_.data() + static_cast<std::size_t>(s) * per_brick();
+  for (const BrickField& field : fields_.all()) {
+    const double* sum = sums(field.index);
+    Node* const of = nodes_.data() + field.index * per_brick();
     for (int n = 0; n < nodes(); ++n)
       if (is_moved(sum + node_doubles * n)) of[n].held = 7;
   }
@@ -139,16 +144,18 @@ void NodeUnknowns::distribute(std::span<const double> u, AlignedDoubles& records
         for (std::size_t a = 0; a < 3; ++a) record[a] = u[3 * i + a];
       },
       node_field::momentum);
-  records.resize(static_cast<std::size_t>(grid().owned() * node_doubles) * per_brick());
-  for_each_by_threads(0, grid().owned(), 8, [&](int s) {
-    double* const record = records.data() + static_cast<std::size_t>(s * node_doubles) * per_brick();
-    sums(s, record);
+  const std::size_t doubles = static_cast<std::size_t>(node_doubles) * per_brick();
+  records.resize(fields_.count() * doubles);
+  for_each_by_threads(0, static_cast<int>(fields_.count()), 8, [&](int f) {
+    const BrickField& field = fields_.all()[static_cast<std::size_t>(f)];
+    double* const record = records.data() + field.index * doubles;
+    sums(field, record);
     for (int n = 0; n < nodes(); ++n) {
       double* const at = record + node_doubles * n;
       for (int a = 0; a < 3; ++a) at[4 + a] = at[a];
       at[3] = at[7] = 0;
     }
-    BoundaryFaces(grid(), s).fill(record);
+    BoundaryFaces(grid(), field.slot).fill(record);
   });
 }
 

@@ -62,39 +62,45 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::move_particles(const AlignedDoubles& displacements,
                                            const AlignedDoubles* velocities, const AlignedDoubles* lags) {
   departing_.resize(static_cast<std::size_t>(model_.grid->owned()));
+  for (auto& of_slot : departing_) of_slot.clear();
   for_bricks([&](Slot s, Scratch& at) {
-    const BrickFrame frame(*model_.grid, s);
-    auto& departing = departing_[static_cast<std::size_t>(s)];
-    departing.clear();
-    at.displacements.take_strain(frame, records(displacements, s));
-    at.displacements.take_motion(records(displacements, s));
-    if (velocities != nullptr) at.velocities.take_motion(records(*velocities, s));
-    if (lags != nullptr) at.lags.take_motion(records(*lags, s));
-    for_each_tile(s, true, [&](const ParticleTile& tile, const Body& body) {
-      if (averages(body)) find_dilatations(tile, body, frame, at);
-      for_each_batch(tile, frame, Blocks::own, at, [&](std::size_t first) {
-        Batch& batch = at.batch;
-        take_strains(frame, body, at);
-        for (int b = 0; b < batch.blocks; ++b)
-          move_block(frame, tile, b, batch.block[b], tile.used_lanes(first + static_cast<std::size_t>(b)),
-                     velocities != nullptr, lags != nullptr, at);
-        body.model->update(batch, model_.options);
-        at.statistics.events += batch.events;
-        if (batch.layout->has(Column::sound_speed)) {
-          for (int b = 0; b < batch.blocks; ++b)
-            std::copy_n(batch.sound_speed + block_lanes * b, block_lanes,
-                        batch.column(Column::sound_speed, b));
-        }
-        at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
-        const auto c = static_cast<int>(&tile - model_.grid->brick(s).tiles.data());
-        for (int b = 0; b < batch.blocks; ++b) {
-          const std::size_t at_block = first + static_cast<std::size_t>(b);
-          find_departing(c, at_block, frame, 0, failed_.of(tile), *batch.layout, batch.block[b],
-                         tile.used_lanes(at_block), departing);
-        }
-      });
-    });
+    for (const BrickField& field : fields_.of(s))
+      move_field(field, displacements, velocities, lags, departing_[static_cast<std::size_t>(s)], at);
     at.add_work_of_brick();
+  });
+}
+
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::move_field(const BrickField& field, const AlignedDoubles& displacements,
+                                       const AlignedDoubles* velocities, const AlignedDoubles* lags,
+                                       std::vector<DepartingParticle>& departing, Scratch& at) {
+  const BrickFrame frame(*model_.grid, field.slot);
+  at.displacements.take_strain(frame, records(displacements, field));
+  at.displacements.take_motion(records(displacements, field));
+  if (velocities != nullptr) at.velocities.take_motion(records(*velocities, field));
+  if (lags != nullptr) at.lags.take_motion(records(*lags, field));
+  for_each_tile(field, true, [&](const ParticleTile& tile, const Body& body) {
+    if (averages(body)) find_dilatations(tile, body, frame, at);
+    for_each_batch(tile, frame, Blocks::own, at, [&](std::size_t first) {
+      Batch& batch = at.batch;
+      take_strains(frame, body, at);
+      for (int b = 0; b < batch.blocks; ++b)
+        move_block(frame, tile, b, batch.block[b], tile.used_lanes(first + static_cast<std::size_t>(b)),
+                   velocities != nullptr, lags != nullptr, at);
+      body.model->update(batch, model_.options);
+      at.statistics.events += batch.events;
+      if (batch.layout->has(Column::sound_speed)) {
+        for (int b = 0; b < batch.blocks; ++b)
+          std::copy_n(batch.sound_speed + block_lanes * b, block_lanes, batch.column(Column::sound_speed, b));
+      }
+      at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
+      const auto c = static_cast<int>(&tile - model_.grid->brick(field.slot).tiles.data());
+      for (int b = 0; b < batch.blocks; ++b) {
+        const std::size_t at_block = first + static_cast<std::size_t>(b);
+        find_departing(c, at_block, frame, 0, failed_.of(tile), *batch.layout, batch.block[b],
+                       tile.used_lanes(at_block), departing);
+      }
+    });
   });
 }
 

@@ -2,11 +2,9 @@
 // (core/setup/prepare_model.cpp).
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
-#include "core/contact/component_contact.hpp"
 #include "io/input/build.hpp"
 
 namespace mpm::io {
@@ -46,28 +44,13 @@ void check_faces(const Node& root, const core::GridInput& grid, const BuildConte
         "(fixed) or 2 (symmetry)");
 }
 
-/// Nodes have one displacement: that of the material, which touches rigid bodies
-/// (core/implicit/rigid_contact.hpp).
-void check_rigid_contact(const Node& root, const core::Scene& scene, const BuildContext& context) {
+/// core/implicit/implicit_contact.hpp.
+void check_implicit_contact(const Node& root, const core::Scene& scene, const BuildContext& context) {
   const auto contact = root.child("Contact");
   if (!contact) return;
   const auto refuse = [&](std::string_view attribute, std::string why) {
     contact->report(context.diagnostics, attribute, std::move(why));
   };
-  std::set<int> deformable;
-  bool rigid = false;
-  core::for_each_active_body(scene, [&](int component, const core::BodyInput& body) {
-    if (body.material >= scene.materials.size()) return;
-    if (core::is_rigid(scene.materials[body.material]))
-      rigid = true;
-    else
-      deformable.insert(component);
-  });
-  if (deformable.size() > 1 || !rigid)
-    refuse("enable",
-           "with implicit steps contact is between one deformable component and rigid bodies: join the "
-           "deformable bodies in one component, in which they stick to each other, give the others the "
-           "material Rigid, or set it to 0");
   const core::ContactInput& input = scene.contact;
   if (scene.solution.implicit && scene.solution.implicit->linearised())
     refuse("enable",
@@ -76,11 +59,13 @@ void check_rigid_contact(const Node& root, const core::Scene& scene, const Build
     refuse("distance_type", "must be 0 with implicit steps, which find contact at nodes that both reach");
   if (input.regression)
     refuse("contact_normal",
-           "regression is not available with implicit steps: normals are those of the rigid body; remove it");
+           "regression is not available with implicit steps, whose normals are those of rigid bodies and "
+           "gradients of "
+           "volume; remove it");
   if (input.limits_time_step)
     refuse("contact_time_step", "must be 0 with implicit steps, whose length Newton's method decides");
   if (input.failed_to_component)
-    refuse("failure_to_component", "must be 0 with implicit steps, which have one deformable component");
+    refuse("failure_to_component", "must be 0 with implicit steps: failed particles keep their component");
 }
 
 }  // namespace
@@ -90,7 +75,7 @@ void check_implicit(const Node& root, const core::Scene& scene, const BuildConte
   if (!solution || scene.solution.integration != core::Integration::implicit) return;
   check_settings(*solution, scene.solution, context);
   check_faces(root, scene.grid, context);
-  if (scene.contact.enable) check_rigid_contact(root, scene, context);
+  if (scene.contact.enable) check_implicit_contact(root, scene, context);
 }
 
 }  // namespace mpm::io

@@ -13,13 +13,14 @@ void must_succeed(int code) {
   if (code != MPI_SUCCESS) throw std::runtime_error("MPI fails while grids are made coarser");
 }
 
-/// A place in 64 bits, whose order is that of places, z first.
-constexpr int bits = 21;
-std::int64_t key_of(const std::int32_t (&place)[3]) {
-  std::int64_t key = 0;
+/// A field and a place in 64 bits, whose order is that of fields, then places, z first.
+constexpr int bits = 18, field_bits = 9;
+std::int64_t key_of(std::int32_t field, const std::int32_t (&place)[3]) {
+  std::int64_t key = field + 1;
   for (int a = 2; a >= 0; --a) key = key << bits | (place[a] + 1);
   return key;
 }
+std::int32_t field_of(std::int64_t key) { return static_cast<std::int32_t>(key >> 3 * bits) - 1; }
 std::int32_t place_of(std::int64_t key, int axis) {
   return static_cast<std::int32_t>(key >> bits * axis & ((std::int64_t{1} << bits) - 1)) - 1;
 }
@@ -32,20 +33,20 @@ struct Parent {
 
 /// f(key, weight) of the coarse nodes that a node interpolates from: one or two along each axis.
 template <class F>
-void for_each_parent(const std::int32_t* place, F f) {
+void for_each_parent(std::int32_t field, const std::int32_t* place, F f) {
   const int n[3] = {1 + (place[0] & 1), 1 + (place[1] & 1), 1 + (place[2] & 1)};
   const double weight = 1.0 / (n[0] * n[1] * n[2]);
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
       for (int i = 0; i < n[0]; ++i)
-        f(key_of({(place[0] >> 1) + i, (place[1] >> 1) + j, (place[2] >> 1) + k}), weight);
+        f(key_of(field, {(place[0] >> 1) + i, (place[1] >> 1) + j, (place[2] >> 1) + k}), weight);
 }
 
 /// Of this rank's nodes, sorted by key.
 std::vector<Parent> parents_of(const LatticeNodes& fine) {
   std::vector<Parent> parents;
   for (std::size_t i = 0; i < fine.own(); ++i)
-    for_each_parent(fine.places.data() + 3 * i, [&](std::int64_t key, double) {
+    for_each_parent(fine.fields[i], fine.places.data() + 3 * i, [&](std::int64_t key, double) {
       parents.push_back({key, -1, static_cast<std::uint8_t>(7 & ~fine.held[i])});
     });
   std::ranges::sort(parents, {}, &Parent::key);
@@ -129,6 +130,12 @@ class Rendezvous {
 
 }  // namespace
 
+bool has_keys(const LatticeNodes& nodes) {
+  const auto below = [](std::int32_t n, int width) { return n >= -1 && n < (1 << width) - 2; };
+  return std::ranges::all_of(nodes.places, [&](std::int32_t n) { return below(n, bits); }) &&
+         std::ranges::all_of(nodes.fields, [&](std::int32_t n) { return below(n, field_bits); });
+}
+
 LatticeNodes coarsen(MPI_Comm comm, const LatticeNodes& fine, Interpolation& interpolation) {
   std::vector<Parent> parents = parents_of(fine);
   const Rendezvous meeting(comm, parents);
@@ -150,6 +157,7 @@ LatticeNodes coarsen(MPI_Comm comm, const LatticeNodes& fine, Interpolation& int
   for (std::size_t i = 0; i < parents.size(); ++i) {
     if (mine[i] == 0) continue;
     for (int a = 0; a < 3; ++a) coarse.places.push_back(place_of(parents[i].key, a));
+    coarse.fields.push_back(field_of(parents[i].key));
     coarse.held.push_back(static_cast<std::uint8_t>(7 & ~parents[i].moves));
   }
   const auto own = static_cast<std::int64_t>(coarse.own());
@@ -169,7 +177,7 @@ LatticeNodes coarsen(MPI_Comm comm, const LatticeNodes& fine, Interpolation& int
   interpolation.sources.clear();
   interpolation.begin.assign(1, 0);
   for (std::size_t i = 0; i < fine.own(); ++i) {
-    for_each_parent(fine.places.data() + 3 * i, [&](std::int64_t key, double weight) {
+    for_each_parent(fine.fields[i], fine.places.data() + 3 * i, [&](std::int64_t key, double weight) {
       const Parent& parent = *std::ranges::lower_bound(parents, key, {}, &Parent::key);
       Interpolation::Source source{parent.number, {}};
       for (std::size_t a = 0; a < 3; ++a) {

@@ -51,8 +51,12 @@ Mat matrix_of(MPI_Comm comm, const LatticeNodes& fine, const LatticeNodes& coars
 
 GridHierarchy::GridHierarchy(MPI_Comm comm, const core::NonlinearProblem& problem)
     : places_(problem.lattice().begin(), problem.lattice().end()),
+      fields_(problem.fields().begin(), problem.fields().end()),
       held_(problem.held().begin(), problem.held().end()) {
-  LatticeNodes fine{places_, held_, problem.first_node(), problem.all_nodes()};
+  LatticeNodes fine{places_, fields_, held_, problem.first_node(), problem.all_nodes()};
+  int all = has_keys(fine) ? 1 : 0;
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, comm));
+  if (all == 0) return;
   Interpolation from;
   while (fine.all > coarsest) {
     LatticeNodes coarse = coarsen(comm, fine, from);
@@ -68,7 +72,8 @@ GridHierarchy::~GridHierarchy() {
 }
 
 bool GridHierarchy::is_of(const core::NonlinearProblem& problem) const {
-  return std::ranges::equal(places_, problem.lattice()) && std::ranges::equal(held_, problem.held());
+  return std::ranges::equal(places_, problem.lattice()) && std::ranges::equal(fields_, problem.fields()) &&
+         std::ranges::equal(held_, problem.held());
 }
 
 void GridHierarchy::choose(PC pc) const {

@@ -28,7 +28,7 @@ class GridHierarchy {
   void choose(PC pc) const;
 
  private:
-  std::vector<std::int32_t> places_;
+  std::vector<std::int32_t> places_, fields_;
   std::vector<std::uint8_t> held_;
   bool usable_ = false;
   std::vector<Mat> interpolations_;  ///< from the finest grid on

@@ -8,23 +8,28 @@ namespace mpm::parallel {
 
 namespace {
 
-/// Unknowns up to which systems are solved directly.
-constexpr std::int64_t direct_up_to = 5000;
+/// Unknowns up to which systems are solved directly; with stiff springs, at which multigrid may fail.
+constexpr std::int64_t direct_up_to = 5000, direct_with_springs = 50000;
+
+bool few(std::int64_t unknowns, bool springs) {
+  return unknowns <= (springs ? direct_with_springs : direct_up_to);
+}
 
 }  // namespace
 
-bool takes_multigrid(std::int64_t unknowns, bool slender) {
+bool takes_multigrid(std::int64_t unknowns, bool springs, bool slender) {
   PetscBool other = PETSC_FALSE;
   check_petsc(PetscOptionsHasName(nullptr, nullptr, "-pc_type", &other));
-  return unknowns > direct_up_to && !slender && other == PETSC_FALSE;
+  return !few(unknowns, springs) && !slender && other == PETSC_FALSE;
 }
 
-void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender, const GridHierarchy* grids) {
+void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool slender,
+                          const GridHierarchy* grids) {
   KSP ksp = nullptr;
   PC pc = nullptr;
   check_petsc(SNESGetKSP(snes, &ksp));
   check_petsc(KSPGetPC(ksp, &pc));
-  if (unknowns <= direct_up_to || slender) {
+  if (few(unknowns, springs) || slender) {
     check_petsc(KSPSetType(ksp, KSPPREONLY));
     check_petsc(PCSetType(pc, PCLU));
     // A package that the user has named is not changed: in a later solution PETSc refuses that.

@@ -23,8 +23,10 @@ namespace mpm::parallel {
 inline constexpr std::size_t slender_up_to = 24;
 
 /// Whether such systems are solved with multigrid on coarser grids, and the user has not chosen otherwise.
-bool takes_multigrid(std::int64_t unknowns, bool slender);
-void choose_linear_solver(SNES snes, std::int64_t unknowns, bool slender, const GridHierarchy* grids);
+/// `springs`: NonlinearProblem::has_springs().
+bool takes_multigrid(std::int64_t unknowns, bool springs, bool slender);
+void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool slender,
+                          const GridHierarchy* grids);
 /// For the one system of a linearised step.
 void choose_conjugate_gradients(SNES snes, double tolerance);
 /// PETSc's own factorisation does not exchange rows, MUMPS does.

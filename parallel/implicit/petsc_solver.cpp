@@ -132,7 +132,7 @@ void PetscSolver::set_up(NonlinearProblem& problem, bool linear) {
     check_petsc(MatCreateVecs(of_->values->matrix(), &of_->solution, &of_->residual));
     check_petsc(SNESCreate(comm_, &of_->snes));
     set_functions(of_->snes, of_->residual, now_);
-    if (takes_multigrid(3 * problem.all_nodes(), of_->slender) && !linear)
+    if (takes_multigrid(3 * problem.all_nodes(), problem.has_springs(), of_->slender) && !linear)
       of_->grids = std::make_unique<GridHierarchy>(comm_, problem);
   }
   give_rigid_motions(problem, of_->values->matrix());
@@ -202,7 +202,8 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   if (options.linear) {
     choose_conjugate_gradients(snes, options.relative_tolerance);
   } else {
-    choose_linear_solver(snes, 3 * problem.all_nodes(), of_->slender, of_->grids.get());
+    choose_linear_solver(snes, 3 * problem.all_nodes(), problem.has_springs(), of_->slender,
+                         of_->grids.get());
     choose_full_steps(snes, now_);
   }
   if (SNESSetFromOptions(snes) != 0)

@@ -12,22 +12,26 @@ using namespace mpm::parallel::test;
 
 namespace {
 
-using Place = std::array<std::int32_t, 3>;
+using Place = std::array<std::int32_t, 4>;  // and the field
 
-/// Nodes of a box with holes, each on some rank; some are held.
+/// Nodes of a box with holes, of two fields that meet, each on some rank; some are held.
 LatticeNodes nodes_on_ranks() {
   LatticeNodes nodes;
   const auto ranks = static_cast<std::uint64_t>(world().size());
-  for (std::int32_t k = -1; k < 9; ++k)
+  for (std::int32_t n = -1; n < 19; ++n) {
+    // The fields share a layer.
+    const std::int32_t field = n < 9 ? 0 : 3, k = field == 0 ? n : n - 10 + 7;
     for (std::int32_t j = 0; j < 7; ++j)
       for (std::int32_t i = -1; i < 12; ++i) {
-        const auto at = static_cast<std::uint64_t>(i + 1 + 16 * (j + 16 * (k + 1)));
+        const auto at = static_cast<std::uint64_t>(i + 1 + 16 * (j + 16 * (n + 1)));
         // Neighbours are mostly on one rank, as with bricks.
         if (mix(at, 1) % 5 == 0 || mix(at / 4, 2) % ranks != static_cast<std::uint64_t>(world().rank()))
           continue;
         nodes.places.insert(nodes.places.end(), {i, j, k});
+        nodes.fields.push_back(field);
         nodes.held.push_back(k < 2 ? 7 : static_cast<std::uint8_t>(mix(at, 3) % 8));
       }
+  }
   const auto own = static_cast<std::int64_t>(nodes.own());
   const Gathered<std::int64_t> all = world().all_gather(std::span(&own, 1));
   for (int r = 0; r < world().size(); ++r) {
@@ -46,11 +50,12 @@ TEST_CASE("Coarser grids interpolate linear fields exactly, whatever ranks own t
     const LatticeNodes coarse = coarsen(world().handle(), fine, from);
     // All coarse nodes, in the order of their numbers.
     const auto places = world().all_gather(std::span<const std::int32_t>(coarse.places)).items;
+    const auto fields = world().all_gather(std::span<const std::int32_t>(coarse.fields)).items;
     const auto held = world().all_gather(std::span<const std::uint8_t>(coarse.held)).items;
     REQUIRE(static_cast<std::int64_t>(held.size()) == coarse.all);
     std::set<Place> there_are;
     for (std::size_t n = 0; n < held.size(); ++n)
-      there_are.insert({places[3 * n], places[3 * n + 1], places[3 * n + 2]});
+      there_are.insert({places[3 * n], places[3 * n + 1], places[3 * n + 2], fields[n]});
     CHECK(there_are.size() == held.size());
     if (coarse.own() > 0) {
       const auto first = static_cast<std::size_t>(3 * coarse.first);
@@ -67,6 +72,7 @@ TEST_CASE("Coarser grids interpolate linear fields exactly, whatever ranks own t
           const double weight = s.weight[static_cast<std::size_t>(a)];
           const bool coarse_given = (held[n] >> a & 1) != 0;
           CHECK((weight != 0) == (given == coarse_given));
+          CHECK(fields[n] == fine.fields[i]);
           if (!given) moves[n] |= static_cast<std::uint8_t>(1 << a);
           sum += weight;
           for (std::size_t b = 0; b < 3; ++b) x[b] += weight * 2 * places[3 * n + b];
