@@ -9,8 +9,8 @@ JOB = "ball_through_a_plate"
 BALL = 5.0  # mm, radius
 
 
-def text(cell, radius=40, shape="linear", normal="regression", kind=1, distance=2, contact=True, end=0.2):
-    """`radius`: of the plate; `distance`: type of the criterion of contact."""
+def text(cell, radius=40, shape="linear", normal="regression", kind=1, distance=2, gap=0.05, contact=True, end=0.2):
+    """`radius`: of the plate; `distance`: type of the criterion of contact, and `gap` of it in cells."""
     changes = _gallery.resolution(cell, shape, normal, kind)
     del changes[".//Geometry"]
     across = (-(-radius // cell) + 2) * cell
@@ -19,8 +19,7 @@ def text(cell, radius=40, shape="linear", normal="regression", kind=1, distance=
                                                     "Top_Outer_Radius": radius},
                 ".//XMax": {"value": across}, ".//YMax": {"value": across},
                 ".//EndTime": {"value": end}, ".//PostProcessing": {"time_interval": end / 4, "vtk_data": 0}}
-    if distance != 2:
-        changes[".//Contact"] |= {"distance_type": distance}
+    changes[".//Contact"] |= {"distance_type": distance, "min_distance": gap}
     root = _gallery.scene(JOB)
     if not contact:
         root.remove(root.find("Contact"))

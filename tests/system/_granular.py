@@ -1,6 +1,8 @@
 """Heaps of soil in plane strain, one cell thick (apps/scenes/sand_column, aluminium_rods), with other cells and
 proportions, and what is measured of them."""
 
+import xml.etree.ElementTree as ElementTree
+
 import _cases
 import _gallery
 import _mpm
@@ -18,18 +20,60 @@ def lube_run_out(a):
     return 1.2 * a if a <= 1.8 else 1.9 * a ** (2 / 3)
 
 
-def sand_column(a, cells, changes=None, d0=0.1):
-    """`cells`: along the column's foot. To 10 times sqrt(height/g): then it has long stopped, and the
-    few lone grains, which nothing slows down, have left the grid."""
+FRICTION = 0.6009  # of the sand, tan 31 degrees
+
+
+def rigid_floor(root, cell, length, friction):
+    """The sand's fixed wall at z = 0 becomes the surface of a rigid body with this coefficient of friction."""
+    root.find(".//ZMin").attrib.update(boundary="0", value=repr(-2 * cell))
+    body = f"""<Floor>
+      <Material name="rigid"> <ReferenceDensity value="1600"/> <StrengthModel type="Rigid"/> </Material>
+      <Friction> <Coefficient value="{friction}" mat1="sand" mat2="rigid"/> </Friction>
+      <Component name="floor" normal_vector_weight="1"> <Body name="floor" material="rigid" type="Block">
+        <Geometry x0="0" y0="0" z0="{-2 * cell}" lx="{length}" ly="{cell}" lz="{2 * cell}" dp="{cell / SPACINGS}"/>
+        <PrescribedVelocity vx="0" vy="0" vz="0"/> </Body> </Component>
+      <Contact enable="1" contact_type="1" distance_type="2" min_distance="0.05" contact_normal="regression"/> </Floor>"""
+    material, rubs, floor, contact = ElementTree.fromstring(body)
+    for what, before in ((material, "Component"), (rubs, "Component"), (floor, "Grid"), (contact, "Solution")):
+        root.insert(list(root).index(root.find(before)), what)
+
+
+def sand_column(a, cells, changes=None, d0=0.1, friction=None):
+    """`cells`: along the column's foot; `friction`: on a rigid floor, or None: the sand sticks to the grid's fixed wall. To 10 times
+    sqrt(height/g): then it has long stopped, and the few lone grains, which nothing slows down, have left the grid."""
     cell, height = d0 / cells, a * d0
     end = 10 * (height / 9.81) ** 0.5
     length, above = d0 * (1 + 2.5 * lube_run_out(a)), height + 3 * cell
     grid = {".//XMax": length, ".//YMax": cell, ".//ZMax": above}
     every = {path: {"value": max(1, round(value / cell)) * cell} for path, value in grid.items()}
-    return _gallery.text(_gallery.scene("sand_column"), {
+    root = _gallery.scene("sand_column")
+    text = _gallery.text(root, {
         **every, ".//Geometry": {"dp": cell / SPACINGS, "lx": d0, "ly": cell, "lz": height},
         ".//DCell": dict.fromkeys(("dx", "dy", "dz"), cell), ".//EndTime": {"value": end},
         ".//Console": {"print_time": end / 200}, ".//PostProcessing": {"time_interval": end, "vtk_data": 0}, **(changes or {})})
+    if friction is None:
+        return text
+    rigid_floor(root, cell, every[".//XMax"]["value"], friction)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def sand_sheet(layers, cells=20, speed=0.5, friction=None, d0=0.1):
+    """A sheet of so many layers of particles that slides on the floor, far from the walls."""
+    cell = d0 / cells
+    root = ElementTree.fromstring(sand_column(1, cells, {".//Geometry": {"x0": 0.2 * d0, "dp": cell / SPACINGS, "lx": d0, "ly": cell, "lz": layers * cell / SPACINGS},
+                                                         ".//EndTime": {"value": 0.4}, ".//PostProcessing": {"time_interval": 0.4, "vtk_data": 0}}, d0, friction))
+    root.find(".//Body[@name='sand']").append(ElementTree.Element("InitialVelocity", {"vx": repr(speed), "vy": "0", "vz": "0"}))
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def measure_sand_sheet(folder, speed=0.5):
+    """The mean way of the sand over that of Coulomb's friction, v^2/(2 mu g), and of its top layer; its velocity at the end over the first."""
+    states, summary = _cases.States(folder, "sand_column"), _mpm.summary(folder, "sand_column")
+    height = states.column("z", 0)
+    way = (states.column("x") - states.column("x", 0)) / (speed**2 / (2 * FRICTION * 9.81))
+    top = height > height.max() - 1e-6
+    return {"steps": summary["steps"], "way": float(way[height > 0].mean()), "top": float(way[top].mean()),
+            "left": float(states.column("velocity_0")[height > 0].mean() / speed)}
 
 
 class Heap:
@@ -70,13 +114,14 @@ class Heap:
 
 
 def measure_sand_column(folder, a, d0=0.1):
-    """Run-out over d0, to where the heap is thinner than 1 % of d0 (a grain of the experiments) or 5 %, the error of the former,
-    the height over d0, the kinetic energy over what gravity released, of all and of the heap alone, and the density."""
+    """Run-out over d0, to where the heap is thinner than 1 % of d0 (a grain of the experiments), 2 or 5 %, the error of the first; the place
+    within which 98 % of the sand is, the height over d0, the kinetic energy over what gravity released, of all and of the heap alone, and the density."""
     heap, summary = Heap(folder, "sand_column", 1600), _mpm.summary(folder, "sand_column")
-    run_out, thick = ((heap.front(thin * d0) - d0) / d0 for thin in (0.01, 0.05))
+    run_out, two, thick = ((heap.front(thin * d0) - d0) / d0 for thin in (0.01, 0.02, 0.05))
     released = summary["energy"]["external_work"]
     pressed = heap.pressure > 1e-3 * 1600 * 9.81 * a * d0
-    return {"particles": summary["particles"], "steps": summary["steps"], "run_out": run_out, "thick": thick,
+    return {"particles": summary["particles"], "steps": summary["steps"], "run_out": run_out, "two": two, "thick": thick,
+            "most": (np.quantile(heap.x, 0.98) - d0) / d0,
             "error": 100 * (run_out / lube_run_out(a) - 1), "height": (heap.z.max() + heap.spacing / 2) / d0,
             "farthest": (heap.x.max() - d0) / d0, "kinetic": summary["energy"]["kinetic"] / released,
             "heap": heap.kinetic(d0 * (1 + run_out)) / released, "density": heap.density.mean(),

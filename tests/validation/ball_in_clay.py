@@ -24,7 +24,8 @@ SMALL = {"cells": 4, "width": 3, "travel": 0.3}
 ROUGH, SMOOTH = {"ball": "rough", "inset": 0, **SMALL}, {"ball": "smooth", "inset": 0, **SMALL}
 CHOICES = [ROUGH | {"width": 4}, ROUGH | {"cells": 6}, *({"ball": "rough", "cells": 4, "travel": 0.5, "inset": 0.5, "width": width} for width in (3, 4, 5)),
            {"ball": "smooth", "cells": 4, "travel": 0.5, "inset": 0.35}, {"ball": "smooth", "cells": 4, "travel": 0.5, "transfer": "AFLIP"},
-           {"ball": "smooth", "cells": 4, "travel": 0.5, "flip": 0.99}, {"ball": "smooth", **SMALL, "cells": 6, "flip": 0.99}, {"ball": "smooth", **SMALL, "cells": 6},
+           {"ball": "smooth", "cells": 4, "travel": 0.5, "flip": 0.99},
+           *({"ball": "smooth", **SMALL, "flip": 0.99, **what} for what in ({"cells": 6, "width": 4}, {"cells": 8, "width": 4}, {"cells": 6}, {"cells": 8})), {"ball": "smooth", **SMALL, "cells": 6},
            *(ball | what for ball in (ROUGH, SMOOTH)
              for what in ({}, {"width": 2.5}, {"speed": 0.0025}, {"averaging": "none"}, {"kind": 0}, {"normal": "mass_gradient"},
                           {"shape": "linear", "width": 4}, {"shape": "SGMP", "width": 4}))]

@@ -10,7 +10,7 @@ import _granular
 
 SAND = {"a": ("height / foot", "g"), "cells": ("cells along the foot", "d"),
         "particles": ("particles", "d"), "steps": ("steps", "d"), "run_out": ("run-out / foot", ".2f"), "error": ("error %", "+.1f"),
-        "thick": ("to 5 % of the foot", ".2f"),
+        "thick": ("to 5 % of the foot", ".2f"), "two": ("to 2 %", ".2f"), "most": ("98 % of the sand within", ".2f"),
         "height": ("height at the end / foot", ".2f"), "kinetic": ("kinetic energy left", ".1e"), "heap": ("of the heap", ".1e"),
         "density": ("mean density", ".3f"), "pressed": ("least under pressure", ".3f"), "loose": ("loose %", ".1f"), "drift": ("energy drift %", "+.1f"),
         "cpu_seconds": ("processor s", ".1f")}
@@ -18,7 +18,9 @@ RODS = {"base": ("base", ""), "cells": ("cells over the height", "d"), "particle
         "repose": ("repose, degrees", ".1f"), "foot": ("foot of the slope m", ".3f"), "flow": ("flow s", ".2f"),
         "kinetic": ("kinetic energy left", ".1e"), "density": ("mean density", ".3f"), "drift": ("energy drift %", "+.1f"),
         "cpu_seconds": ("processor s", ".1f")}
-
+SHEETS = {"floor": ("floor", ""), "layers": ("layers", "d"), "way": ("way over Coulomb's", ".2f"), "top": ("of the top layer", ".2f"), "left": ("velocity left", ".3f")}
+# The coefficient of friction of a rigid body, or None: the scene's fixed wall.
+FLOORS = {"wall": None, "rigid body, sticks": 10, "rigid body, friction of the sand": _granular.FRICTION}
 
 # From the defaults to the scene, one change after the other: name, changes of the scene.
 ANGLE = {"qfai": 0.4937, "closes": 0, "VarSoundspeed": 0}  # what phi=31 psi=0 match=3 (inscribed cone) mean
@@ -49,9 +51,25 @@ def sand(options, verdict):
     _common.write(options.out, "sand", rows, SAND)
 
 
+def floors(options):
+    rows = []
+    for floor, friction in FLOORS.items():
+        for layers in (1, 2, 4):
+            folder = options.out / f"sheet-{layers}-{friction}"
+            _common.run(folder, _granular.sand_sheet(layers, friction=friction), "sand_column")
+            rows.append({"floor": floor, "layers": layers, **_granular.measure_sand_sheet(folder)})
+    _common.write(options.out, "sheets", rows, SHEETS)
+    rows = []
+    for floor, friction in FLOORS.items():
+        folder = options.out / f"floor-{friction}"
+        seconds = _common.run(folder, _granular.sand_column(1, options.floors, friction=friction), "sand_column")
+        rows.append({"floor": floor, "a": 1, "cells": options.floors, **_granular.measure_sand_column(folder, 1), "cpu_seconds": seconds})
+    _common.write(options.out, "floors", rows, {"floor": ("floor", ""), **SAND})
+
+
 def settings(options):
     rows = [sand_run(options, 1, options.settings, name, changes) for name, changes in STEPS]
-    _common.write(options.out, "settings", rows, {"name": ("setting", ""), **SAND})
+    _common.write(options.out, "settings", rows, {"name": ("setting", ""), **{key: how for key, how in SAND.items() if key not in ("two", "most")}})
 
 
 def rods(options, verdict):
@@ -72,14 +90,19 @@ def main():
     parser = _common.arguments(__doc__, "granular")
     parser.add_argument("--a", nargs="+", type=float, default=[0.5, 1, 3], help="height of the sand over its foot")
     parser.add_argument("--cells", nargs="+", type=int, default=[20, 20, 10], help="finest cells along the foot, one for each")
-    parser.add_argument("--settings", type=int, default=20, help="cells along the foot, from the defaults to the scene")
-    parser.add_argument("--rods", nargs="+", type=int, default=[10, 20], help="cells over the height of the rods")
+    parser.add_argument("--settings", type=int, default=20, help="cells along the foot, from the defaults to the scene; 0: none")
+    parser.add_argument("--floors", type=int, default=20, help="cells along the foot, on other floors; 0: none")
+    parser.add_argument("--rods", nargs="*", type=int, default=[10, 20], help="cells over the height of the rods")
     options = parser.parse_args()
     verdict = _common.Verdict()
     print(_common.machine(), "\n", flush=True)
     sand(options, verdict)
-    rods(options, verdict)
-    settings(options)
+    if options.floors:
+        floors(options)
+    if options.rods:
+        rods(options, verdict)
+    if options.settings:
+        settings(options)
     verdict.finish()
 
 

@@ -62,9 +62,9 @@ def main():
 
     vary = [{"cell": 2.0}, {"cell": 0.5},
             {"split": 2}, {"split": 3}, {"split": 4}, {"split": 8},
-            {"factor": 0.4}, {"factor": 0.1},
+            {"factor": 0.9}, {"factor": 0.4}, {"factor": 0.1},
             {"bq2": 0.0}, {"bq2": 0.2}, {"bq2": 0.5}, {"bq1": 0.0, "bq2": 0.0}, {"bq1": 4.0},
-            {"algorithm": "USF", "factor": 0.1}, {"algorithm": "USF"}, {"algorithm": "USL", "factor": 0.1}, {"algorithm": "USL"}]
+            *({"algorithm": scheme, "factor": factor} for scheme in ("USF", "USL") for factor in (0.9, 0.2, 0.1))]
     rows += [measure(options.out, speed=500.0, **how)[0] for how in vary]
     rows += [measure(options.out, speed=speed, split=2)[0] for speed in (200.0, 1000.0)]
     print()

@@ -14,8 +14,7 @@ DEFAULT = {"speed": 749, "cells": 32, "radius": 200, "shape": "linear", "kind": 
 SPEEDS = [{"speed": speed} for speed in concrete.EXPERIMENT]
 COARSE = {"cells": 22}
 CASES = [*SPEEDS, *(COARSE | speed for speed in SPEEDS), COARSE | {"speed": 434, "strength": {"D1": 1000}}, COARSE | {"radius": 120},
-         COARSE | {"normal": "mass_gradient"}, COARSE | {"kind": 0}, COARSE | {"kind": 0, "speed": 1058},
-         COARSE | {"kind": 0, "speed": 434}, COARSE | {"shape": "QuadraticBSpline"}]
+         COARSE | {"normal": "mass_gradient"}, COARSE | {"kind": 0}, COARSE | {"shape": "QuadraticBSpline"}]
 
 
 def main():
