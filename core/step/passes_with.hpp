@@ -266,7 +266,7 @@ class PassesWith final : public Passes {
   template <NodeArray of>
   [[gnu::always_inline]] ContributionPrefetch<of> prefetch_nodes(Slot s) const {
     const BrickGrid& grid = *model_.grid;
-    return {grid, shared<of>(), s + 1, block_count(grid.brick(s))};
+    return {grid, of == NodeArray::first ? moving_shared_ : shared<of>(), s + 1, block_count(grid.brick(s))};
   }
   /// Only the first array holds forces.
   template <NodeArray of>
