@@ -136,12 +136,12 @@ std::size_t ImplicitContact::add_member(const Surface& surface, const Vec3<doubl
   return members_.size() - 1;
 }
 
-void ImplicitContact::find_nodes(ImplicitPasses& passes, std::span<const NodeMotion> of_own) {
+void ImplicitContact::find_nodes(ImplicitPasses& passes, std::span<const double> mass) {
   const std::vector<Meeting> meetings = find_meetings(passes);
   unknowns_.share([&](std::size_t i, double* record) {
     record[0] = static_cast<double>(unknowns_.first() + static_cast<std::int64_t>(i) + 1);
     record[1] = unknowns_.held()[i];
-    record[2] = of_own[i].mass;
+    record[2] = mass[i];
   });
   members_.clear();
   touches_.clear();

@@ -60,12 +60,8 @@ class ImplicitContact {
 
   /// Begins a step, or begins it anew with another length.
   void begin_step(const Loads& loads, double dt);
-  /// Finds where components meet, with mass and velocity of the own nodes. Collective.
-  struct NodeMotion {
-    double mass;
-    Vec3<double> velocity;
-  };
-  void find_nodes(ImplicitPasses& passes, std::span<const NodeMotion> of_own);
+  /// Finds where components meet; `mass`: of the own nodes. Collective.
+  void find_nodes(ImplicitPasses& passes, std::span<const double> mass);
 
   static constexpr std::size_t no_own = static_cast<std::size_t>(-1);
   /// A component at a node where it meets others.

@@ -94,10 +94,9 @@ void ImplicitIntegrator::find_fields() {
 }
 
 void ImplicitIntegrator::find_contacts() {
-  std::vector<ImplicitContact::NodeMotion> motion;
-  for (const NodeState& at : state_)
-    motion.push_back({at.mass, {at.velocity[0], at.velocity[1], at.velocity[2]}});
-  contact_->find_nodes(*passes_, motion);
+  std::vector<double> mass;
+  for (const NodeState& at : state_) mass.push_back(at.mass);
+  contact_->find_nodes(*passes_, mass);
 }
 
 void ImplicitIntegrator::distribute(std::span<const double> u) {
