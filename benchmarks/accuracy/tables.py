@@ -48,7 +48,8 @@ def write(case, path, rows, head, earlier):
     kept.update({identity(r): r for r in rows})
     if len(kept) > len({identity(r) for r in rows}):
         words = part_of(rows, list(kept.values()))
-        head = [*(line for line in before if not line.startswith(f"{words}: ")), f"{words}: {', '.join(head)}"]
+        line = [] if before[:len(head)] == head else [f"{words}: {', '.join(head)}"]
+        head = [*(line for line in before if not line.startswith(f"{words}: ")), *line]
     places = {}
     for point in [*case.points(), *case.points(quick=True)]:
         m = point.method

@@ -44,7 +44,8 @@ from its momentum (0.6 GPa). *Velocity*: of the plate, against zones that move w
               "velocity": Error("velocity, %", "+.1f", 100, order=False), "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {"plate": Study("cells along the explosive, factor 0.5.", (50,), 0.5),
                "plate_averaged": Study("the same, averaged.", (50,), 0.5),
-               "plate_relaxed": Study("averaged and relaxed.", (50,), 0.5)}
+               "plate_relaxed": Study("averaged and relaxed.", (50,), 0.5),
+               "plate_relaxed_1": Study('with `relaxation="1"`.', (50,), 0.5)}
 
     def methods(self):
         return rest.CASE.methods()
@@ -53,9 +54,10 @@ from its momentum (0.6 GPa). *Velocity*: of the plate, against zones that move w
         h, end = CHARGE / point.cells, sandwich().end
         bodies = [support.block("TNT", (0, 0, 0), (CHARGE, h, h), h / point.split, "TNT"),
                   support.block("plate", (CHARGE, 0, 0), (PLATE, h, h), h / point.split, "copper")]
+        averages = rest.averages(point, 1 if point.study.endswith("1") else rest.RELAXATION)
         left, right = (h * np.ceil(share * _blast.TNT["D"] * end / h) for share in (2, 0.5))
         text = support.scene(bodies, _blast.column(float(-left), float(CHARGE + PLATE + right), h, "00"),
-                             support.solution(end, point.factor, rest.averages(point)),
+                             support.solution(end, point.factor, averages),
                              [_blast.explosive(), _cases.copper('type="Null"')], support.pictures(end / PICTURES, ["pres"]))
         return text.replace("</PeneBlast>", _blast.lit_at(0.0) + "</PeneBlast>")
 

@@ -19,10 +19,10 @@ FULL = 4  # particles of a cell that counts
 COVERED = 2  # cells above it
 
 
-def averages(point):
-    """The element of the studies *_averaged and *_relaxed."""
-    relaxation = f' relaxation="{RELAXATION}"' if point.study.endswith("relaxed") else ""
-    return f'<Volumetric averaging="cell"{relaxation}/>' if "_" in point.study else ""
+def averages(point, relaxation=RELAXATION):
+    """The element of the studies with averages, `relaxation` where they relax."""
+    relaxed = f' relaxation="{relaxation}"' if "relaxed" in point.study else ""
+    return f'<Volumetric averaging="cell"{relaxed}/>' if "_" in point.study else ""
 
 
 class Rest(Case):
