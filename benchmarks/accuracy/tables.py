@@ -221,7 +221,7 @@ def refusal_block(rows_of):
 def plot(case, rows, path):
     """Error against run time, a line per method; the Pareto front is the grey band with rings."""
     main = next(iter(case.errors))
-    names = [name for name in plotted(case) if series(case, rows, name)]
+    names = [name for name in plotted(case) if any(r["study"] == name and value(r, main) is not None for r in rows)]
     if not names:
         return False
     palette = plt.get_cmap("tab10")

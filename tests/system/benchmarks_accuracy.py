@@ -279,6 +279,11 @@ class Merged(_mpm.Case):
             self.assertEqual(accuracy.tables.read(path)[0], heads)
         self.assertEqual([r["transfer"] for r in accuracy.tables.read(path)[1]], ["FLIP", "APIC", "XPIC", "FMPM"])
 
+    def test_nothing_but_failures_has_no_picture(self):
+        case = CASES["plane_shock"]
+        rows = [{"study": "cells", "status": "failed", **dict.fromkeys(case.errors, "")}]
+        self.assertFalse(accuracy.tables.plot(case, rows, self.folder / "plane_shock.png"))
+
 
 class Refusals(unittest.TestCase):
     def refused(self, *words):
