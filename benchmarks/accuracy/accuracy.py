@@ -132,10 +132,11 @@ def measure(case, points, options):
 
 def run(options):
     for name, points in selected(options).items():
-        case = CASES[name]
+        case, path, rows = CASES[name], options.out / f"{name}.csv", []
+        earlier = tables.read(path)
         for study in dict.fromkeys(p.study for p in points):  # what is measured is on disk when the next one begins
-            rows = measure(case, [p for p in points if p.study == study], options)
-            tables.write(case, options.out / f"{name}.csv", rows, [machine(), f"jobs at a time {options.jobs}"])
+            rows += measure(case, [p for p in points if p.study == study], options)
+            tables.write(case, path, rows, [machine(), f"jobs at a time {options.jobs}"], earlier)
     render(options)
 
 

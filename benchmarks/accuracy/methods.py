@@ -23,11 +23,13 @@ def shapes():
     return choices("Grid", "shape")
 
 
-CONSISTENT = "consistent"  # FLIP with the consistent mass matrix: in the tables a transfer of its own
+CONSISTENT = "consistent"  # FLIP with the consistent mass matrix
+# What the tables show as transfers of their own: {name: attributes of Solution}.
+VARIANTS = {"FMPM(5)": {"transfer": "FMPM", "xpic_order": "5"}, CONSISTENT: {"mass": "consistent"}}
 
 
 def transfers():
-    return (*choices("Solution", "transfer"), CONSISTENT)
+    return (*choices("Solution", "transfer"), *VARIANTS)
 
 
 def schemes():
@@ -75,8 +77,6 @@ def short():
 def choose(root, method):
     """Puts the method into a scene, the root of an input file."""
     root.find("Grid").set("shape", method.shape)
-    if method.transfer == CONSISTENT:
-        root.find("Solution").set("mass", "consistent")
-    else:
-        root.find("Solution").set("transfer", method.transfer)
+    for name, value in VARIANTS.get(method.transfer, {"transfer": method.transfer}).items():
+        root.find("Solution").set(name, value)
     root.find("Solution").set("algorithm", method.scheme)

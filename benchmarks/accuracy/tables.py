@@ -14,7 +14,7 @@ import runner
 from case import order
 
 STYLES = {"FLIP": "-", "APIC": "--", "TPIC": "-.", "AFLIP": ":", "PIC": (0, (1, 4)), "XPIC": (0, (5, 1, 1, 1)),
-          "FMPM": (0, (3, 3)), methods.CONSISTENT: (0, (8, 2))}
+          "FMPM": (0, (3, 3)), "FMPM(5)": (0, (3, 1, 1, 1, 1, 1)), methods.CONSISTENT: (0, (8, 2))}
 MARKERS = {"MUSL": "o", "USF": "s", "USL": "^"}
 
 
@@ -27,14 +27,29 @@ def identity(row):
 
 
 def read(path):
-    head, rows = results.read(path)
-    return head, rows
+    return results.read(path) if path.exists() else ([], [])
 
 
-def write(case, path, rows, head):
-    """Rows of this run, and those that the file had and this run did not measure, in the order of the case's points."""
-    kept = {identity(r): r for r in read(path)[1]} if path.exists() else {}
+def part_of(rows, among):
+    """Words for `rows`, some of those `among`: the transfers or the studies that are all theirs, or how many they are."""
+    mine = {identity(r) for r in rows}
+    for column in ("transfer", "study"):
+        names = list(dict.fromkeys(r[column] for r in rows))
+        if len(names) < len({r[column] for r in among}) and all(identity(r) in mine for r in among if r[column] in names):
+            return ", ".join(names)
+    return f"{len(mine)} of the rows"
+
+
+def write(case, path, rows, head, earlier):
+    """Rows of this run, and those of the `earlier` ones (as `read` gives them) that it did not measure, in the order of the
+    case's points. The head says where each was measured."""
+    before, had = earlier
+    kept = {identity(r): r for r in had}
     kept.update({identity(r): r for r in rows})
+    if len(kept) > len({identity(r) for r in rows}):
+        words = part_of(rows, list(kept.values()))
+        line = [] if before[:len(head)] == head else [f"{words}: {', '.join(head)}"]
+        head = [*(line for line in before if not line.startswith(f"{words}: ")), *line]
     places = {}
     for point in [*case.points(), *case.points(quick=True)]:
         m = point.method
@@ -206,7 +221,7 @@ def refusal_block(rows_of):
 def plot(case, rows, path):
     """Error against run time, a line per method; the Pareto front is the grey band with rings."""
     main = next(iter(case.errors))
-    names = [name for name in plotted(case) if series(case, rows, name)]
+    names = [name for name in plotted(case) if any(r["study"] == name and value(r, main) is not None for r in rows)]
     if not names:
         return False
     palette = plt.get_cmap("tab10")

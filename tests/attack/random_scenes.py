@@ -50,7 +50,6 @@ def scene(number, seed):
         scheme = "USF" if scheme == "USL" else scheme
         shape = "CubicBSpline" if "CPDI" in shape else shape
     faces = "".join(rng.choice("01234") if rng.random() < 0.5 else rng.choice("02") for _ in range(6))
-    faces = faces.replace("3", "2")
     more = "".join(text for text in ('<Gravity ax="0" ay="0" az="-9.81"/>', f'<Volume update_type="{rng.randrange(5)}"/>',
                                      '<LimitVelocity max="8000"/>') if rng.random() < 0.3)
     factor = rng.choice((0.3, 0.6, 0.9, 0.9, 1.0))

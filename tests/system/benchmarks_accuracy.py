@@ -263,6 +263,28 @@ class Document(_mpm.Case):
         self.assertEqual(path.read_text(), document, "run accuracy.py tables --docs")
 
 
+class Merged(_mpm.Case):
+    def test_rows_keep_where_they_were_measured(self):
+        case, path = CASES["plane_shock"], self.folder / "plane_shock.csv"
+        points = [p for p in case.points() if p.cells == 50 and p.method.shape == "QuadraticBSpline" and p.method.scheme == "MUSL"]
+
+        def rows(transfers):
+            return [{"study": p.study, "shape": p.method.shape, "transfer": p.method.transfer, "scheme": p.method.scheme, "cells": p.cells,
+                     "split": p.split, "factor": p.factor, "status": "failed"} for p in points if p.method.transfer in transfers]
+
+        for transfers, machine, heads in (({"FLIP", "APIC"}, "first", ["first"]), ({"XPIC"}, "second", ["first", "XPIC: second"]),
+                                          ({"XPIC", "FMPM"}, "third", ["first", "XPIC: second", "XPIC, FMPM: third"]),
+                                          ({"XPIC"}, "fourth", ["first", "XPIC, FMPM: third", "XPIC: fourth"])):
+            accuracy.tables.write(case, path, rows(transfers), [machine], accuracy.tables.read(path))
+            self.assertEqual(accuracy.tables.read(path)[0], heads)
+        self.assertEqual([r["transfer"] for r in accuracy.tables.read(path)[1]], ["FLIP", "APIC", "XPIC", "FMPM"])
+
+    def test_nothing_but_failures_has_no_picture(self):
+        case = CASES["plane_shock"]
+        rows = [{"study": "cells", "status": "failed", **dict.fromkeys(case.errors, "")}]
+        self.assertFalse(accuracy.tables.plot(case, rows, self.folder / "plane_shock.png"))
+
+
 class Refusals(unittest.TestCase):
     def refused(self, *words):
         with self.assertRaises(SystemExit) as left:

@@ -29,7 +29,8 @@ cell), over the mean exact pressure."""
 
     def methods(self):
         return list(dict.fromkeys([*methods.every_scheme(), *methods.product(("QuadraticBSpline", "CubicBSpline", "cpGIMP"),
-                                                                             ("APIC", "AFLIP"), ("MUSL", "USF"))]))
+                                                                             ("APIC", "AFLIP"), ("MUSL", "USF")),
+                                   *methods.every_transfer(("QuadraticBSpline",))]))
 
     def scene(self, point):
         h = LENGTH / point.cells

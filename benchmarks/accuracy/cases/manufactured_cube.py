@@ -60,11 +60,15 @@ methods in time."""
                                       methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline",), ("APIC", "TPIC"))],
                                       fine=(32,), fine_methods=(*methods.product(("QuadraticBSpline", "CubicBSpline")),
                                                                 *methods.product(("QuadraticBSpline",), ("APIC", "TPIC")))),
+        "slab, six particles": Study("the same with six.", (4, 8, 16, 32), lambda n: 3.2 / n, splits=(6,),
+                                     methods=lambda: methods.product(("QuadraticBSpline",), ("FLIP", "APIC"))),
         "mild slab, fine steps": Study("a fifth of the motion, stretches of 0.94 to 1.06: where crossing disturbs less.", (4, 8, 16, 32),
                                        lambda n: 3.2 / n, methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline",
                                                                                                   "CubicBSpline"), ("APIC",))]),
         "slab, time": Study("16 cells, time step falling.", (16,), (0.8, 0.4, 0.2, 0.1, 0.05), axis="factor",
                             methods=lambda: methods.product(("QuadraticBSpline", "CubicBSpline"), some_schemes=methods.schemes())),
+        "slab, six particles, time": Study("the same with 16 cells, with half the step.", (16,), (0.2, 0.1), splits=(6,), axis="factor",
+                                           methods=lambda: methods.product(("QuadraticBSpline",), ("FLIP", "APIC"))),
     }
 
     def methods(self):

@@ -19,6 +19,12 @@ FULL = 4  # particles of a cell that counts
 COVERED = 2  # cells above it
 
 
+def averages(point, relaxation=RELAXATION):
+    """The element of the studies with averages, `relaxation` where they relax."""
+    relaxed = f' relaxation="{relaxation}"' if "relaxed" in point.study else ""
+    return f'<Volumetric averaging="cell"{relaxed}/>' if "_" in point.study else ""
+
+
 class Rest(Case):
     name = "rest"
     title = "Pressure at rest"
@@ -44,9 +50,7 @@ below the surface, count. *velocity*: root mean square of what is left, over the
         return list(dict.fromkeys([*methods.short(), *methods.product(("CubicBSpline", "uGIMP"), ("APIC", "AFLIP"))]))
 
     def scene(self, point):
-        relaxation = f' relaxation="{RELAXATION}"' if point.study.endswith("relaxed") else ""
-        averaged = f'<Volumetric averaging="cell"{relaxation}/>' if "_" in point.study else ""
-        return (self.water if point.study.startswith("water") else self.sand)(point, averaged)
+        return (self.water if point.study.startswith("water") else self.sand)(point, averages(point))
 
     @staticmethod
     def water(point, averaged):
