@@ -96,7 +96,8 @@ class Rigid(_mpm.Case):
                 self.assertLess(entered, 0.2)
 
     def test_free_body_and_block(self):
-        """Momentum is exact. The books of energy close to 2 %; the angular momentum, which is lost as by any two bodies (docs/contact.md), to 3.4 and 0.9 %. Nothing depends on contact_type."""
+        """Momentum is exact. The books of energy close to 2 %; the angular momentum, which is lost as by any two bodies (docs/contact.md),
+        to 3.4 and 0.9 %. Nothing depends on contact_type."""
         for cells, most_turned, most_drift in ((1, 0.05, 0.03), (2, 0.015, 0.03)):
             with self.subTest(cells=cells):
                 state, summary, status = self.go(thrown(cells=cells))
