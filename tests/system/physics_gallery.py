@@ -69,7 +69,7 @@ class Gallery(_mpm.Case):
                 print(f"{motion} {plane} ", end="")
                 found = self.measured("ball_on_a_slope", _friction.slope(0.4, motion, plane), _friction.measure_slope, motion)
                 self.assertAlmostEqual(found["centre"], error, delta=1)
-                self.assertLess(abs(found["drift"]), 1)
+                self.assertLess(abs(found["drift"]), 1.5)
 
     def test_block_between_plates(self):
         """Dragged off all axes over one plate, and below a second one that it drags along: Coulomb's accelerations and heat."""
@@ -78,11 +78,11 @@ class Gallery(_mpm.Case):
                 print(f"{plates} {normal} ", end="")
                 found = self.measured("sliding_block", _friction.block(normal=normal, weight=weight, plates=plates), _friction.measure_block, 0.3, plates)
                 self.assertLess(abs(found["acceleration"]), 1)
-                self.assertLess(abs(found["heat"]), 1)
-                self.assertLess(found["across"], 1.5)
+                self.assertLess(abs(found["heat"]), 1.5)
+                self.assertLess(found["across"], 0.5)
                 self.assertLess(found["entered"], 0.05)
                 if plates == 2:
-                    self.assertLess(abs(found["plate"]), 1)
+                    self.assertLess(abs(found["plate"]), 2)
 
     def test_pressed_cube(self):
         """A platen presses a cube by a quarter, which widens freely: uniaxial stress; the platen does not leak."""

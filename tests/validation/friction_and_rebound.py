@@ -108,7 +108,7 @@ def main():
     parser = _common.arguments(__doc__, "friction_and_rebound")
     parts = {"slope": (slope, SLOPE), "block": (block, BLOCK), "cube": (cube, CUBE), "discs": (discs, DISCS)}
     parser.add_argument("--parts", nargs="+", default=list(parts), choices=parts)
-    parser.add_argument("--finest", nargs="*", type=float, default=[0.1], help="cells of the finest ball that rolls")
+    parser.add_argument("--finest", nargs="*", type=float, default=[], help="cells of further balls that roll, for example 0.1")
     options = parser.parse_args()
     verdict = _common.Verdict()
     print(_common.machine(), "\n", flush=True)
