@@ -44,6 +44,9 @@ struct FieldNodes {
   std::int32_t component = all_components;
   std::vector<double> motion;   ///< MotionRecords
   std::vector<double> surface;  ///< records of node_doubles: sum of m grad S in 0..2 (4-31), of m S in 3
+  /// MotionRecords with the velocities that blows give to the nodes at the end of the step; their masses are
+  /// 0.
+  std::vector<double> blow;
 };
 
 /// Where fields meet in the node block of a brick: once per step, before anything is updated.
@@ -144,6 +147,7 @@ class Contact {
   /// these, and the answer of such a node to a trial motion of the bodies. The fields have the motion of the
   /// end of the step, without contact.
   bool sees_free_body(Slot s) const;
+  bool is_rigid(std::int32_t component) const { return rigid(component) >= 0; }
   void find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNodes> fields,
                         std::vector<RigidNode>& to) const;
   void respond(const RigidNode& node, std::span<RigidResponse> to) const;
@@ -182,7 +186,9 @@ class Contact {
   static Vec3<double> increment(const Node& at, std::size_t field);
   double share_of_particles(const Node& at, const ContactPair& pair) const;
   void correct_start(Node& at, ContactInput::Method method) const;
+  void find_first_impulses(Node& at) const;
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
+  void find_blows(const Node& at, std::span<Vec3<double>> by_field) const;
   void book(const Node& at, ContactSums& sums) const;
 
   const Model& model_;

@@ -26,6 +26,7 @@ struct Contact::Node {
   std::vector<Vec3<double>> start, nodal_start, taken;
   std::vector<double> share;
   std::vector<Vec3<double>> first_impulse;
+  std::vector<Vec3<double>> stops;  ///< of each pair the impulse that stops the approach at the start
 
   void clear() {
     fields.clear(), rigid.clear(), wave.clear(), records.clear(), number.clear(), pairs.clear(),
@@ -129,6 +130,30 @@ void Contact::correct_start(Node& at, ContactInput::Method method) const {
   }
 }
 
+/// What would stop the approach of the velocities at the start.
+void Contact::find_first_impulses(Node& at) const {
+  for (std::size_t f = 0; f < at.fields.size(); ++f) at.fields[f].velocity = at.start[f];
+  resolve_contacts(at.fields, at.pairs);
+  at.stops.clear();
+  for (const ContactPair& pair : at.pairs) at.stops.push_back(pair.impulse);
+}
+
+/// An impulse consists of a blow, which stops the approach at the start of the step, and of the part that
+/// opposes the other forces. Here the velocities by the blows, as far as the particles get them.
+void Contact::find_blows(const Node& at, std::span<Vec3<double>> by_field) const {
+  std::ranges::fill(by_field, Vec3<double>{});
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    const ContactPair& pair = at.pairs[p];
+    const Vec3<double> first = at.share[p] * at.stops[p], all = pair.impulse + at.first_impulse[p];
+    const double size = dot(first, first);
+    if (!(size > 0)) continue;
+    const Vec3<double> blow = std::clamp(dot(all, first) / size, 0.0, 1.0) * first;
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    if (at.rigid[a] < 0) by_field[a] = by_field[a] - (1 / at.fields[a].mass) * blow;
+    if (at.rigid[b] < 0) by_field[b] = by_field[b] + (1 / at.fields[b].mass) * blow;
+  }
+}
+
 /// Velocities at the end of the step, and what the particles get.
 void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   const std::size_t count = at.fields.size();
@@ -140,6 +165,8 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   for (std::size_t f = 0; f < count; ++f)
     at.taken[f] = at.fields[f].velocity, at.start[f] = at.taken[f] - increment(at, f);
   at.nodal_start = at.start;
+  find_first_impulses(at);
+  for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.taken[f];
   if (method != ContactInput::Method::bardenhagen) correct_start(at, method);
   for (const ContactPair& pair : at.pairs) {
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
@@ -232,15 +259,32 @@ void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<F
   const BoundaryFaces faces(grid, s);
   sums.record.impulses.resize(3 * pairs_.size());
   if (rigid_ != nullptr) sums.rigid.resize(rigid_->count());
+  const bool of_end = which == Velocity::of_end;
+  if (of_end)
+    for (FieldNodes& field : fields) field.blow.assign(field.motion.size(), 0.0);
   Node at;
+  std::vector<Vec3<double>> blows;
   for (const MeetingNodes::Node& node : meetings(s).nodes) {
     if (!take_node(grid, s, which, fields, node, at)) continue;
-    if (which == Velocity::of_end)
-      resolve_end(at, sums, node.counts);
-    else
+    if (!of_end) {
       resolve_strain(at, which);
+      continue;
+    }
+    resolve_end(at, sums, node.counts);
+    blows.resize(at.fields.size());
+    find_blows(at, blows);
+    for (std::size_t f = 0; f < blows.size(); ++f) {
+      double* const to = Motion{fields[at.number[f]].blow.data() + node_doubles * node.number}.velocity();
+      for (int a = 0; a < 3; ++a) to[a] = blows[f][a];
+      // Of the nodes, for that of the particles (contact_operations.hpp, book_blows()).
+      if (node.counts && at.rigid[f] < 0)
+        sums.record.dissipated.add(0.5 * at.fields[f].mass * dot(blows[f], blows[f]));
+    }
   }
-  for (FieldNodes& field : fields) faces.fill(field.motion.data());
+  for (FieldNodes& field : fields) {
+    faces.fill(field.motion.data());
+    if (of_end) faces.fill(field.blow.data());
+  }
 }
 
 bool Contact::sees_free_body(Slot s) const {

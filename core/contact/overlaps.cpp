@@ -18,11 +18,11 @@ struct Overlap {
   std::int64_t particles = 0;  ///< of both
   Vec3<double> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
 
-  void add(const Vec3<double>& x, double half_edge) {
-    ++particles;
+  /// What the cubes around x and y, with edges of twice `half`, have in common.
+  void add(const Vec3<double>& x, const Vec3<double>& y, double half) {
     for (int a = 0; a < 3; ++a) {
-      lower[a] = std::min(lower[a], x[a] - half_edge);
-      upper[a] = std::max(upper[a], x[a] + half_edge);
+      lower[a] = std::min(lower[a], std::max(x[a], y[a]) - half);
+      upper[a] = std::max(upper[a], std::min(x[a], y[a]) + half);
     }
   }
 };
@@ -30,12 +30,17 @@ struct Overlap {
 /// Pairs a < b of components, numbered (0, 1), (0, 2), (1, 2), (0, 3) ...
 std::size_t number_of(std::size_t a, std::size_t b) { return b * (b - 1) / 2 + a; }
 
+std::size_t pair_number(std::int32_t a, std::int32_t b) {
+  return number_of(static_cast<std::size_t>(std::min(a, b)), static_cast<std::size_t>(std::max(a, b)));
+}
+
 /// Adds the particles of a brick that overlap other components.
 void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::vector<Overlap>& found) {
   const BrickGrid& grid = *model.grid;
   const GridGeometry& g = grid.geometry();
   const BrickCoord coord = grid.brick(s).coord;
   const std::int64_t brick[3] = {coord.x, coord.y, coord.z};
+  std::vector<std::int32_t> met;  // components, by one particle
   for (const ParticleTile& tile : grid.brick(s).tiles) {
     for (const ConstParticleBlock& block : blocks_of(model, grid.brick(s), tile)) {
       for (const ConstParticle p : block) {
@@ -47,17 +52,17 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
           lowest[a] = std::max(cell - 1, -PointsByCell::layers);
           highest[a] = std::min(cell + 1, brick_cells + PointsByCell::layers - 1);
         }
-        std::int32_t met = -1;
+        met.clear();
         others.for_each(lowest, highest, [&](const Vec3<double>& y, std::int32_t component) {
           const Vec3<double> d = x - y;
           const double apart = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-          if (component != tile.component && apart < half && (met < 0 || component < met)) met = component;
+          if (component == tile.component || apart >= half) return;
+          Overlap& overlap = found[pair_number(component, tile.component)];
+          overlap.add(x, y, half);
+          if (std::ranges::find(met, component) != met.end()) return;
+          met.push_back(component);
+          ++overlap.particles;
         });
-        if (met < 0) continue;
-        // By value: of two arguments, minmax returns references to temporaries.
-        const auto [a, b] =
-            std::minmax({static_cast<std::size_t>(met), static_cast<std::size_t>(tile.component)});
-        found[number_of(a, b)].add(x, half);
       }
     }
   }
@@ -107,12 +112,12 @@ std::vector<std::string> overlaps_in_words(const Model& model, Communication& co
       if (counts[n] == 0) continue;
       const double* box = bounds.data() + 6 * n;
       words.push_back(fmt::format(
-          "components '{}' and '{}' overlap at the start: {} of their particles are within half a spacing of "
-          "the "
-          "other's, in the box from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); contact will push "
-          "them apart. Move the bodies, or give them one component",
-          scene.components[a].name, scene.components[b].name, counts[n], box[0], box[2], box[4], 0 - box[1],
-          0 - box[3], 0 - box[5]));
+          "components '{}' and '{}' overlap at the start by {:.3g} x {:.3g} x {:.3g}, from ({:.6g}, {:.6g}, "
+          "{:.6g}) to ({:.6g}, {:.6g}, {:.6g}): {} of their particles are within half a spacing of the "
+          "other's; "
+          "contact will push them apart. Move the bodies, or give them one component",
+          scene.components[a].name, scene.components[b].name, -box[1] - box[0], -box[3] - box[2],
+          -box[5] - box[4], box[0], box[2], box[4], 0 - box[1], 0 - box[3], 0 - box[5], counts[n]));
     }
   }
   return words;

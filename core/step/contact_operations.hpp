@@ -6,6 +6,38 @@
 
 namespace mpm::core {
 
+/// The box of the particles that some nodes may reach: a particle is among its nodes, so that those in
+/// question are no farther away than these are wide.
+struct NearNodes {
+  Vec3<double> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
+
+  /// A node of a brick's block; its place.
+  Vec3<double> add(const BrickGrid& grid, Slot s, int node, int nodes_per_axis) {
+    const NodeBlockShape shape = grid.shape();
+    const int side = shape.side(), low = shape.lowest();
+    const Vec3<double> x = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
+                                                      node / side % side + low, node / (side * side) + low);
+    const double cells = nodes_per_axis - 1 + 1e-6;
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], x[a] - cells * grid.geometry().cell[a]);
+      upper[a] = std::max(upper[a], x[a] + cells * grid.geometry().cell[a]);
+    }
+    return x;
+  }
+  /// Bit mask of a block's particles in the box.
+  unsigned lanes(const ColumnLayout& layout, const double* block, int used) const {
+    const double* x = block + layout.offset(Column::position_x);
+    unsigned mask = 0;
+    for (int l = 0; l < used; ++l) {
+      bool in = true;
+      for (int a = 0; a < 3; ++a)
+        in = in && x[a * block_lanes + l] >= lower[a] && x[a * block_lanes + l] <= upper[a];
+      mask |= static_cast<unsigned>(in) << l;
+    }
+    return mask;
+  }
+};
+
 // --- velocity fields --------------------------------------------------------------------------------------
 
 /// f(component) for the velocity fields of a brick's particles: every component where there is one field.
@@ -64,6 +96,39 @@ template <class Update>
 [[gnu::noinline]] void PassesWith<S, T>::meet(Slot s, Scratch& at, Contact::Velocity which, Update update) {
   take_fields(s, at, update);
   contact_->resolve(*model_.grid, s, which, at.fields, at.contact);
+  if (which != Contact::Velocity::of_end) return;
+  for (const FieldNodes& field : at.fields)
+    if (model_.grid->field_of(s, field.component) >= 0 && !contact_->is_rigid(field.component))
+      book_blows(s, field, at);
+}
+
+/// The kinetic energy that a field's particles get from blows (contact_impulses.cpp). The nodes' velocities c
+/// by them change it by sum m_i c_i.v_i + sum m_p (sum S c)^2/2. The last term is about half of the nodes'
+/// sum m_i c_i^2/2, since c ends at the surface: what is struck loses more energy than its nodes.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::book_blows(Slot s, const FieldNodes& field, Scratch& at) {
+  const BrickFrame frame = this->frame(s);
+  const auto blow = [&](int node) {
+    const double* c = field.blow.data() + node_doubles * node + Motion::velocity_at;
+    return Vec3<double>{c[0], c[1], c[2]};
+  };
+  NearNodes near;
+  for (int n = 0; n < model_.grid->shape().nodes(); ++n)
+    if (blow(n) != Vec3<double>{}) near.add(*model_.grid, s, n, S::nodes_per_axis);
+  for_each_block(s, field.component, columns_to_mass,
+                 [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+                   const unsigned wanted = near.lanes(layout, block, used);
+                   if (wanted == 0) return;
+                   const Place place(frame, layout, block);
+                   const double* mass = block + layout.offset(Column::mass);
+                   for (int l = 0; l < used; ++l) {
+                     if ((wanted >> l & 1u) == 0) continue;
+                     Vec3<double> c{};
+                     for_each_weight<S>(place, l, frame.inverse_cell,
+                                        [&](int node, double weight) { c = c + weight * blow(node); });
+                     at.contact.record.dissipated.add(-0.5 * mass[l] * dot(c, c));
+                   }
+                 });
 }
 
 /// MUSL: keeps the motion of the fields that meet a brick's own ones.
@@ -127,32 +192,18 @@ void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
     bool meets = false;
   };
   std::vector<At> at(static_cast<std::size_t>(shape.nodes()));
-  Vec3<double> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
+  NearNodes near;
   for (std::size_t n = 0; n < meetings.nodes.size(); ++n) {
     const Vec3<double>& normal = meetings.outward[n * seen.size() + field];
     if (normal == Vec3<double>{}) continue;
-    const int node = meetings.nodes[n].number, side = shape.side(), low = shape.lowest();
-    const Vec3<double> x = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
-                                                      node / side % side + low, node / (side * side) + low);
-    at[static_cast<std::size_t>(node)] = {x, normal, true};
-    // A particle is among its nodes: those in question are no farther away than these are wide.
-    constexpr double cells = S::nodes_per_axis - 1 + 1e-6;
-    for (int a = 0; a < 3; ++a) {
-      lower[a] = std::min(lower[a], x[a] - cells * grid.geometry().cell[a]);
-      upper[a] = std::max(upper[a], x[a] + cells * grid.geometry().cell[a]);
-    }
+    const int node = meetings.nodes[n].number;
+    at[static_cast<std::size_t>(node)] = {near.add(grid, s, node, S::nodes_per_axis), normal, true};
   }
-  const auto near = [&](const double* x) {
-    bool is = true;
-    for (int a = 0; a < 3; ++a) is = is && x[a * block_lanes] >= lower[a] && x[a * block_lanes] <= upper[a];
-    return is;
-  };
   for_each_block(s, component, columns_to_mass + 1,
                  [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
-                   const double* x = block + layout.offset(Column::position_x);
-                   unsigned wanted = 0;
-                   for (int l = 0; l < used; ++l) wanted |= static_cast<unsigned>(near(x + l)) << l;
+                   const unsigned wanted = near.lanes(layout, block, used);
                    if (wanted == 0) return;
+                   const double* x = block + layout.offset(Column::position_x);
                    const Place place(frame, layout, block);
                    const double* volume = block + layout.offset(Column::volume);
                    for (int l = 0; l < used; ++l) {

@@ -146,6 +146,7 @@ class PassesWith final : public Passes {
   void take_fields(Slot s, Scratch& at, Update update);
   template <class Update>
   void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
+  void book_blows(Slot s, const FieldNodes& field, Scratch& at);
   void keep_motion_of_others(Slot s, const Scratch& at);
   template <NodeArray of>
   void sum(const SharedNodes& shared, Slot s, std::int32_t component, Scratch& at, double* sums) const {

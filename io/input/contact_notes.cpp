@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
@@ -45,6 +46,40 @@ void note_driven(const core::Scene& scene, std::vector<core::Diagnostic>& notes)
        fmt::format("rigid bodies '{}' and '{}' both have a prescribed motion: where they meet they pass "
                    "through each other",
                    moves->name, other->name)});
+}
+
+/// A plate that falls, or is pushed away, where it was to be held.
+void note_without_law(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const std::vector<Node> components = root.children("Component");
+  const core::BodyInput* first = nullptr;
+  int more = 0;
+  for (std::size_t c = 0; c < std::min(components.size(), scene.components.size()); ++c) {
+    const std::vector<Node> bodies = components[c].children("Body");
+    for (std::size_t b = 0; b < std::min(bodies.size(), scene.components[c].bodies.size()); ++b) {
+      const core::BodyInput& body = scene.components[c].bodies[b];
+      if (body.deactivated || body.for_bool || !is_rigid(scene, body)) continue;
+      constexpr std::string_view laws[] = {"InitialVelocity", "PrescribedVelocity", "PrescribedAcceleration",
+                                           "HarmExcit",       "BodyForce",          "ConstrainRigidPosition"};
+      if (std::ranges::any_of(laws, [&](std::string_view law) { return bodies[b].child(law).has_value(); }))
+        continue;
+      if (first == nullptr)
+        first = &body;
+      else
+        ++more;
+    }
+  }
+  if (first == nullptr) return;
+  notes.push_back(
+      {first->source.file,
+       first->source.line,
+       "Body",
+       {},
+       {},
+       fmt::format(
+           "rigid body '{}'{} has no law of motion: from rest, it moves freely under contact{}. Give it "
+           "PrescribedVelocity where it is held or driven, InitialVelocity where it is free",
+           first->name, more > 0 ? fmt::format(" (and {} more)", more) : "",
+           scene.solution.gravity == core::Vec3<double>{} ? "" : " and gravity")});
 }
 
 /// Where a free rigid body touches, contact is always of type 1 (core/contact/contact_impulses.cpp).
@@ -171,6 +206,7 @@ std::string touching(const core::Scene& scene) {
 
 void note_contact(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   note_driven(scene, notes);
+  note_without_law(root, scene, notes);
   note_free(root, scene, notes);
   note_scheme(root, scene, notes);
   note_tied_weights(root, scene, notes);

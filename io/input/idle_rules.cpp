@@ -14,6 +14,12 @@ using core::Scene;
 using Place = SettingPlace;
 
 bool contact_is_off(const Place& at) { return !at.scene.contact.enable; }
+bool gaps_at_nodes(const Place& at) {
+  return at.scene.contact.enable && at.scene.contact.distance == core::ContactInput::Distance::shared_node;
+}
+bool gaps_without_limit(const Place& at) {
+  return at.scene.contact.enable && !gaps_at_nodes(at) && !at.scene.contact.measures_gaps();
+}
 bool regression(const Place& at) { return at.scene.contact.enable && at.scene.contact.regression; }
 
 const MaterialInput& material_of(const Scene& scene, const core::BodyInput& body) {
@@ -245,6 +251,12 @@ const std::vector<IdleRule>& idle_rules() {
        {"auto_normal_vector_weight", "normal_vector_excluding_failure_particle"},
        regression,
        no_weights},
+      {"Contact",
+       {"distance_type"},
+       gaps_without_limit,
+       "without min_distance bodies touch at all nodes that both reach, up to two cells apart; give "
+       "min_distance=\"0.5\" with distance_type 1, 0.05 with 2"},
+      {"Contact", {"min_distance"}, gaps_at_nodes, "used only with distance_type=\"1\" or \"2\""},
       {"Component/Body",
        {"ForBoolBody"},
        [](const Place& at) { return operand(at) && !at.operands->contains(at.body); },

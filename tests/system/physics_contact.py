@@ -74,6 +74,22 @@ def gliding(shape, cells, weight, distance, friction=0.0, output="", end=1.2):
                  f'<Console print_time="{end / 4}"/>' + EVERY_STEP + output, shape, 1, distance, friction)
 
 
+def dust(shape, kind, algorithm, walls, rigid):
+    """Two blocks without stiffness that meet obliquely, the second one rigid and free or not: contact alone changes their motion. `walls`: a
+    symmetry plane cuts both."""
+    bodies = [_mpm.block("a", (2.2, 2.3, 2.1), (4, 4, 4), (1, 0.3, 0.2)), _mpm.block("b", (6.5, 3.1, 2.6), (3, 3, 3), (-1, 0, 0))]
+    if walls:
+        bodies = [_mpm.block("a", (2.2, 2, 2.1), (4, 4, 4), (1, 0, 0.2)), _mpm.block("b", (6.5, 2, 2.6), (3, 3, 3), (-1, 0, 0))]
+    text = scene([component("a", bodies[0]), component("b", bodies[1])],
+                 _mpm.grid((0, 2 if walls else 0, 0), (12, 9, 9), "002000" if walls else "000000"),
+                 _mpm.solution(1.2, algorithm).replace('factor="0.5"', 'factor="0.5" specified="0.01"'),
+                 '<Console print_time="0.1"/>', shape, kind, SURFACES, 0.3, 1e-9, normal="regression")
+    if rigid:
+        text = text.replace('name="b" material="soft"', 'name="b" material="iron"')
+        text = text.replace("<Friction>", _mpm.material("iron", 4.0, 'type="Rigid"') + '<Friction><Coefficient value="0.3" mat1="soft" mat2="iron"/>')
+    return text
+
+
 CORNER = {"left": _mpm.block("left", (1.4, 2, 1.2), (3, 3, 3), (0.6, 0.1, 0)),
           "right": _mpm.block("right", (4.5, 2.2, 1.4), (3, 3, 3), (-0.5, 0, 0.2)),
           "above": _mpm.block("above", (2.6, 1.8, 4.5), (4, 3, 2), (0, 0.2, -0.8))}
@@ -213,6 +229,21 @@ class Contact(_mpm.Case):
                     self.assertLess(gap, 0.055 if normal == "regression" else 0.17)
                 else:
                     self.assertGreater(gap, 0.5, "bodies that share nodes touch from afar")
+
+    def test_energy_that_contact_takes(self):
+        """Without stiffness, and so without other losses, all that the particles lose is in the books. What the nodes lose is less, by 8 to
+        14 % of the energy here: particles take means of velocities that end at the surface."""
+        for shape, (kind, algorithm), walls, rigid in itertools.chain(
+                itertools.product(SHAPES, ((1, "MUSL"),), (False, True), (False, True)),
+                itertools.product(("linear",), ((0, "MUSL"), (2, "MUSL"), (1, "USF"), (1, "USL")), (False,), (False, True))):
+            with self.subTest(shape=shape, kind=kind, algorithm=algorithm, walls=walls, rigid=rigid):
+                _, summary, _ = self.go(dust(shape, kind, algorithm, walls, rigid))
+                energy = summary["energy"]
+                lost, drift = energy["dissipated_by_contact"] / energy["initial_total"], energy["relative_drift"]
+                print(f"dust {shape:16} type {kind} {algorithm} {'symmetry plane ' if walls else ''}{'rigid ' if rigid else ''}lost {lost:.3f} drift {drift:+.1e}")
+                self.assertGreater(lost, 0.2)
+                # The impulse on a free rigid body is not quite that which its velocity at the start would have.
+                self.assertLess(abs(drift), 1e-3 if rigid else 1e-10)
 
     def test_gap_between_faces(self):
         """The first force comes in the step in which the faces, or centres, come as near as min_distance; with type 0, whose forces are

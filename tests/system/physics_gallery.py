@@ -1,11 +1,12 @@
-"""The scenes of apps/scenes that have known answers, with coarse cells; finer ones: the scripts of the same names, elastic_balls.py and
-granular.py of tests/validation.
+"""The scenes of apps/scenes that have known answers, with coarse cells; finer ones: the scripts of the same names, elastic_balls.py,
+friction_and_rebound.py and granular.py of tests/validation.
 
 Prints what it measures."""
 
 import _ball_in_clay
 import _ball_through_plate
 import _bar_on_plate
+import _friction
 import _gallery
 import _granular
 import _hemisphere
@@ -60,6 +61,46 @@ class Gallery(_mpm.Case):
         self.assertAlmostEqual(found["over_finite"], 1, delta=0.1)  # coarse cells are stiff
         self.assertAlmostEqual(found["largest"], 1, delta=0.03)
         self.assertAlmostEqual(found["duration"], 1, delta=0.03)
+
+    def test_ball_on_a_slope(self):
+        """Thesis 4.4.3 and 5.3.2, with twice its cells, on a rigid and an elastic plane: one that slides is exact; one that rolls is 13 % slow."""
+        for motion, plane, error in (("sliding", "rigid", 0), ("sliding", "elastic", 0), ("rolling", "rigid", -13)):
+            with self.subTest(motion=motion, plane=plane):
+                print(f"{motion} {plane} ", end="")
+                found = self.measured("ball_on_a_slope", _friction.slope(0.4, motion, plane), _friction.measure_slope, motion)
+                self.assertAlmostEqual(found["centre"], error, delta=1)
+                self.assertLess(abs(found["drift"]), 1.5)
+
+    def test_block_between_plates(self):
+        """Dragged off all axes over one plate, and below a second one that it drags along: Coulomb's accelerations and heat."""
+        for plates, normal, weight in ((1, "regression", 0), (2, "regression", 0), (2, "mass_gradient", 1)):
+            with self.subTest(plates=plates, normal=normal):
+                print(f"{plates} {normal} ", end="")
+                found = self.measured("sliding_block", _friction.block(normal=normal, weight=weight, plates=plates), _friction.measure_block, 0.3, plates)
+                self.assertLess(abs(found["acceleration"]), 1)
+                self.assertLess(abs(found["heat"]), 1.5)
+                self.assertLess(found["across"], 0.5)
+                self.assertLess(found["entered"], 0.05)
+                if plates == 2:
+                    self.assertLess(abs(found["plate"]), 2)
+
+    def test_pressed_cube(self):
+        """A platen presses a cube by a quarter, which widens freely: uniaxial stress; the platen does not leak."""
+        found = self.measured("pressed_cube", _friction.cube(), _friction.measure_cube)
+        self.assertAlmostEqual(found["stretch"], 0.75, delta=1e-3)
+        self.assertAlmostEqual(found["force"], 0, delta=7)  # four cells along an edge
+        self.assertLess(abs(found["width"]), 0.5)
+        self.assertLess(found["entered"], 0.05)
+
+    def test_two_discs(self):
+        """Head on and grazing: at most 1 % of the energy is lost, and the first force comes at a gap below 0.05 cells."""
+        for offset in (0.0, 8.0):
+            with self.subTest(offset=offset):
+                found = self.measured("two_discs", _friction.discs(offset=offset), _friction.measure_discs, 1.0, offset)
+                self.assertLess(found["momentum"], 1e-12)
+                self.assertLess(found["angular"], 1)
+                self.assertLess(abs(found["lost"]), 1)
+                self.assertLess(found["gap"], 0.05)
 
     def test_taylor_bar_rebounds(self):
         """Thesis 5.3.3, with two thirds of its particles along the bar. The plate holds the foot of no shape."""

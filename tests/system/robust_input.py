@@ -170,6 +170,34 @@ class BadInput(Case):
         text = text.replace('material="soft"', 'material="sooft"')
         self.check_scene("three faults", text, ['Young="nan"', 'dp="0"', 'material="sooft"'])
 
+    def test_faults_of_contact_at_once(self):
+        """No second component, friction below zero, and friction with a material that is not there: each said once, nothing else."""
+        more = ('<Friction><Coefficient value="-0.3" mat1="soft" mat2="soft"/><Coefficient value="0.3" mat1="soft" mat2="sofd"/></Friction>'
+                '<Contact enable="1"/>')
+        self.check_scene("contact", _mpm.scene([BODY], ROOMY, SHORT, more=more),
+                         ['value="-0.3">: expected a number of at least 0', 'mat2="sofd"', "did you mean 'soft'",
+                          "components of their own, or set enable to 0"])
+
+    def test_contact_warns(self):
+        """Of what it can do, but hardly as meant: in the log and by mpm_check, in the same words on any ranks."""
+        components = "".join(f'<Component name="{name}">{_mpm.block(name, lower, (2, 2, 2))}</Component>'
+                             for name, lower in (("a", (1, 1, 1)), ("b", (3.2, 1, 1)), ("c", (1, 3.2, 1))))
+        ram = _mpm.block("ram", (1, 1, 3), (2, 2, 2), of="iron").replace('<InitialVelocity vx="0" vy="0" vz="0"/>', "")
+        text = _mpm.scene([ram], ROOMY, SHORT, [_mpm.material(), _mpm.material("iron", 8.0, 'type="Rigid"')],
+                          more=components + '<Contact enable="1" contact_type="1" distance_type="2"/>')
+        self.write(text)
+        checked = _mpm.run([self.folder / "case.xmp"], program="mpm_check")
+        notes = [line for line in checked.out.splitlines() if line.startswith("note ")]
+        for words in (["rigid body 'ram' has no law of motion", "moves freely", "PrescribedVelocity"],
+                      ['distance_type="2"', "without min_distance", "up to two cells apart", "0.05"],
+                      ["components 'a', 'b' and 'c' have the same normal_vector_weight", "three of them meet"]):
+            self.assertEqual(len([line for line in notes if all(word in line for word in ["case.xmp:", *words])]), 1, (words, checked.out))
+        self.assertEqual(len(notes), 3, checked.out)
+        for ranks in (1, 2):
+            outcome = self.run_in("out", [self.folder / "case.xmp"], ranks=ranks)
+            for note in notes:
+                self.assertEqual(outcome.out.count(note), 1, note)
+
     def test_command_lines(self):
         here = str(self.folder)
         self.write(GOOD, "good.xmp")

@@ -32,17 +32,19 @@ std::vector<std::string> words(double gap, double aside = 0) {
 
 }  // namespace
 
-TEST_CASE("Overlaps at the start: with the number of particles and the place") {
+TEST_CASE("Overlaps at the start: with their size, place and number of particles") {
   CHECK(words(0.3).empty());
   CHECK(words(0).empty());                             // the faces touch
   CHECK(words(0, 0.25).empty());                       // also with lattices that do not fit
   CHECK(words(-0.2).empty());                          // particles are 0.3 apart
   const std::vector<std::string> found = words(-0.3);  // 0.2, in two layers of 64
   REQUIRE(found.size() == 1);
-  CHECK(
-      found[0] ==
-      "components 'one' and 'two' overlap at the start: 128 of their particles are within half a spacing of "
-      "the other's, in the box from (6.5, 4.3, 4.2) to (7.2, 8.3, 8.2); contact will push them apart. Move "
-      "the bodies, or give them one component");
-  CHECK(words(-4, 0.1).front().find("1024 of their particles") != std::string::npos);
+  CHECK(found[0] ==
+        "components 'one' and 'two' overlap at the start by 0.3 x 4 x 4, from (6.7, 4.3, 4.2) to (7, 8.3, "
+        "8.2): 128 "
+        "of their particles are within half a spacing of the other's; contact will push them apart. Move the "
+        "bodies, "
+        "or give them one component");
+  const std::string deep = words(-3.8, 0.1).front();  // several layers: still the whole of what is in common
+  CHECK(deep.find("by 3.8 x 3.9 x 4, from (3.2, 4.4, 4.2) to (7, 8.3, 8.2): 1024 of") != std::string::npos);
 }

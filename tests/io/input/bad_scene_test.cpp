@@ -8,7 +8,10 @@
 namespace {
 
 using namespace mpm;
+using test::bar;
 using test::check_faults;
+using test::faults;
+using test::replaced;
 
 TEST_CASE("laws are checked by their own tables") {
   check_faults({
@@ -166,6 +169,15 @@ TEST_CASE("names that refer to others") {
        "mat2='cu'/></Friction><WorkPlane",
        {"line 10: <Coefficient>: the friction of this pair of materials is given twice"}},
   });
+  // A wrong coefficient is said once, and not again as one that differs from itself.
+  std::string text = replaced(
+      bar, "<WorkPlane", "<Friction><Coefficient value='-0.1' mat1='cu' mat2='cu'/></Friction><WorkPlane");
+  text = replaced(text, "</Component>",
+                  "</Component><Component name='other'><Body name='second' material='cu' "
+                  "type='Block'><Geometry dp='0.38' "
+                  "x0='9' y0='9' z0='9' lx='1' ly='1' lz='1'/></Body></Component>");
+  CHECK(faults(replaced(text, "<Solution>", "<Contact enable='1'/><Solution>")) ==
+        std::vector<std::string>{"line 10: <Coefficient value=\"-0.1\">: expected a number of at least 0"});
 }
 
 TEST_CASE("bodies and work planes") {

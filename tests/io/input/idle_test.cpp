@@ -382,6 +382,53 @@ TEST_CASE("driven rigid bodies pass through each other, in contact too") {
   CHECK(passing(still, still) == 0);  // they never meet
 }
 
+TEST_CASE("gaps that contact does not measure") {
+  const auto notes = [](const std::string& contact) {
+    return notes_of(replaced(two_bodies(bar, 6, true), "<Solution>",
+                             "<Contact enable='1' contact_normal='regression' " + contact + "/><Solution>"),
+                    true);
+  };
+  const std::string without =
+      "no effect: without min_distance bodies touch at all nodes that both reach, up to two cells apart; "
+      "give "
+      "min_distance=\"0.5\" with distance_type 1, 0.05 with 2";
+  CHECK(notes("distance_type='1'") ==
+        std::vector<std::string>{"line 25: <Contact distance_type=\"1\">: " + without});
+  CHECK(notes("distance_type='2' min_distance='0'") ==
+        std::vector<std::string>{"line 25: <Contact distance_type=\"2\">: " + without});
+  CHECK(notes("min_distance='0.5'") ==
+        std::vector<std::string>{"line 25: <Contact min_distance=\"0.5\">: no effect: used only with "
+                                 "distance_type=\"1\" or \"2\""});
+  CHECK(notes("distance_type='2' min_distance='0.05'").empty());
+  CHECK(notes("").empty());
+}
+
+TEST_CASE("a rigid body without a law of motion") {
+  // `motion`: of a rigid body beside a deformable one.
+  const auto notes = [](const std::string& motion, const std::string& gravity = "") {
+    std::string text =
+        replaced(two_bodies(bar, 6, true), "<Solution>",
+                 "<Contact enable='1' contact_type='1' contact_normal='regression'/><Solution>");
+    text = replaced(text, "<EndTime", gravity + "<EndTime");
+    text = replaced(text, "lz='1'/></Body>", "lz='1'/>" + motion + "</Body>");
+    text = replaced(text, "name='second' material='cu'", "name='second' material='iron'");
+    return notes_of(replaced(text, "</Material>",
+                             "</Material><Material name='iron'><ReferenceDensity value='1'/><StrengthModel "
+                             "type='Rigid'/></Material>"),
+                    true);
+  };
+  const std::string
+      start =
+          "line 16: <Body>: rigid body 'second' has no law of motion: from rest, it moves freely under "
+          "contact",
+      end = ". Give it PrescribedVelocity where it is held or driven, InitialVelocity where it is free";
+  CHECK(notes("") == std::vector{start + end});
+  CHECK(notes("", "<Gravity ax='0' ay='0' az='-1'/>") == std::vector{start + " and gravity" + end});
+  for (const std::string motion :
+       {"<InitialVelocity vx='0' vy='0' vz='0'/>", "<PrescribedVelocity vx='0' vy='0' vz='0'/>"})
+    CHECK(notes(motion).empty());
+}
+
 TEST_CASE("a free rigid body is in contact of type 1 whatever the type") {
   const auto named = [](const std::string& type, const std::string& motion) {
     const std::string text =
