@@ -279,8 +279,10 @@ class Run {
     if (report.reason.empty()) report.reason = watch_->words_of_drift();
     log_->say("\n{}", io::timing_table(report));
     if (const std::string words = stepper_->words_of_run(); !words.empty()) log_->say("implicit   {}", words);
-    log_->say("state      {:016x} is the hash of all particles; the same on any ranks and threads",
-              io::state_hash(model_, communication_));
+    log_->say(
+        "state      {:016x} is the hash of all particles; {}", io::state_hash(model_, communication_),
+        newton_ ? "implicit steps promise the solver's tolerance on any ranks and threads, not the same bits"
+                : "the same on any ranks and threads");
     if (totals.left_grid > 0 || totals.eroded > 0) {
       log_->say(
           "{} particle(s) left the grid, {} eroded; mass {:.6g} with kinetic energy {:.6g} and internal "

@@ -169,12 +169,24 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
   if (rigid(second.component) >= 0) return false;
   if (rigid(first.component) >= 0) {
     // Of a body's volume around a node over that of a cell: at its corners it is an eighth, at its faces a
-    // half; beyond them it is less. Inside, where wide shape functions of the material still reach, the
-    // body's surface has no direction, and that of the material counts.
-    constexpr double least_volume = 0.1, inside = 0.9;
-    const double part = first.volume / g.cell_volume();
-    if (part < least_volume) return false;
-    const Vec3<double> surface = part < inside ? first.gradient : -1.0 * second.gradient;
+    // half; beyond them it is less.
+    constexpr double least_volume = 0.1;
+    if (first.volume < least_volume * g.cell_volume()) return false;
+    // The steeper one is that of a face. At an edge of the body, and inside it, where wide shape functions of
+    // the material still reach, that is the material's; at an edge of the material the body's. Between them
+    // the weight passes over steadily: a normal that jumps from step to step keeps friction from settling.
+    constexpr double steepest = 8;
+    const auto steepness = [&](const Vec3<double>& gradient) {
+      double square = 0;
+      for (int a = 0; a < 3; ++a) square += g.cell[a] * gradient[a] * g.cell[a] * gradient[a];
+      return square;
+    };
+    const double body = steepness(first.gradient), material = steepness(second.gradient);
+    const double steeper = std::max(body, material);
+    if (!(steeper > 0)) return false;
+    const double weight = std::pow(std::min(body, material) / steeper, steepest);
+    const Vec3<double> surface =
+        (body < material ? weight : 1) * first.gradient - (body < material ? 1 : weight) * second.gradient;
     const double length = std::sqrt(dot(surface, surface));
     if (length > 0) normal = (1 / length) * surface;
     return length > 0;

@@ -13,15 +13,17 @@
 // residual and, with its derivative, the Jacobian. Of more than two components at a node every two touch.
 //
 // A node touches a rigid body that fills at least a tenth of a cell around it; the normal is that of the
-// body's surface. Two deformable components touch where, with the volumes V that they fill around the node
-// and their gradients along the normal over a cell, V_1 + V_2 >= least_cover max(|dV_1|, |dV_2|): the sum of
-// the volumes is the larger gradient or more where no gap is between them, whatever part of the cell's width
-// they cover, and falls to 0.4 to 0.5 of it at a gap of a cell (linear functions). The normal is that of the
-// component of the larger normal_vector_weight, as in explicit steps. With equal weights it is the direction
-// of what grad V_1 and -grad V_2 have in common, the smaller one of each component of the same sign: where
-// the two fill the cell both are equal; a free side of one or both, which tilts the mean of the two normals,
-// is not in common. Along the axes of the grid that is exact. Where they have nothing in common, as in the
-// middle of a body of two cells, it is V_2 grad V_1 - V_1 grad V_2, in which V_1/(V_1 + V_2) grows.
+// steeper of the two volumes, the body's and the material's: where both have a face these are opposite, and
+// at an edge of one, whose normal is that of the corner, the face of the other decides. Two deformable
+// components touch where, with the volumes V that they fill around the node and their gradients along the
+// normal over a cell, V_1 + V_2 >= least_cover max(|dV_1|, |dV_2|): the sum of the volumes is the larger
+// gradient or more where no gap is between them, whatever part of the cell's width they cover, and falls to
+// 0.4 to 0.5 of it at a gap of a cell (linear functions). The normal is that of the component of the larger
+// normal_vector_weight, as in explicit steps. With equal weights it is the direction of what grad V_1 and
+// -grad V_2 have in common, the smaller one of each component of the same sign: where the two fill the cell
+// both are equal; a free side of one or both, which tilts the mean of the two normals, is not in common.
+// Along the axes of the grid that is exact. Where they have nothing in common, as in the middle of a body of
+// two cells, it is V_2 grad V_1 - V_1 grad V_2, in which V_1/(V_1 + V_2) grows.
 //
 // Which nodes stick, and the friction of those that slide, are those of the last solution: a step is solved
 // again, from there, until they agree. A node that sticks with more than mu p slides; one that slides against

@@ -1,12 +1,16 @@
 #include "core/implicit/implicit_integrator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/contact/contact_points.hpp"
+#include "core/particle_range.hpp"
 #include "core/step/speeds.hpp"
 #include "core/step/stepper.hpp"
 
@@ -373,7 +377,29 @@ std::string ImplicitIntegrator::words_of_run() const {
       total_.linear_seconds);
 }
 
-/// Names the node of the largest residual.
+/// " of bodies a, b": those with particles within a cell and a half of a place. Collective.
+std::string ImplicitIntegrator::bodies_around(const std::array<double, 3>& place) {
+  constexpr double reach = 1.5;
+  const GridGeometry& g = model_.grid->geometry();
+  std::vector<double> none(model_.bodies.size(), 1.0);
+  for (const ConstParticleBlock& block : blocks_of(std::as_const(model_))) {
+    for (const ConstParticle p : block) {
+      const Vec3<double> x = p.vector(Column::position_x);
+      bool near = true;
+      for (std::size_t a = 0; a < 3; ++a)
+        near &= std::abs(x[static_cast<int>(a)] - place[a]) <= reach * g.cell[static_cast<int>(a)];
+      if (near) none[static_cast<std::size_t>(block.body)] = 0;
+    }
+  }
+  ranks_.minimum(none);
+  std::vector<std::string> names;
+  for (std::size_t b = 0; b < none.size(); ++b)
+    if (none[b] == 0) names.push_back(fmt::format("\"{}\"", model_.bodies[b].name));
+  if (names.empty()) return {};
+  return fmt::format(" of {} {}", names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "));
+}
+
+/// Names the node of the largest residual, and the bodies with particles around it.
 void ImplicitIntegrator::fail(const std::string& why) {
   OffendingParticle worst;
   double largest = 0;
@@ -386,14 +412,15 @@ void ImplicitIntegrator::fail(const std::string& why) {
     }
   }
   const double of_all = ranks_.largest(largest);
-  std::string mine;
-  if (largest == of_all && largest > 0) {
-    const double* x = unknowns_.coordinates().data() + 3 * at;
-    mine = fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
-  }
-  std::string where;
-  for (const std::string& of_rank : ranks_.gather(mine))
-    if (where.empty()) where = of_rank;
+  const bool mine = largest > 0 && largest == of_all;
+  const int from = static_cast<int>(ranks_.smallest(mine ? ranks_.rank() : ranks_.size()));
+  std::array<double, 3> place;
+  place.fill(std::numeric_limits<double>::infinity());
+  if (from == ranks_.rank()) std::copy_n(unknowns_.coordinates().data() + 3 * at, 3, place.begin());
+  ranks_.minimum(place);
+  const std::string where = from == ranks_.size() ? "unknown"
+                                                  : fmt::format("({:.6g}, {:.6g}, {:.6g}){}", place[0],
+                                                                place[1], place[2], bodies_around(place));
   throw NumericalFailure(
       fmt::format("step {}, time {:.9g}: no equilibrium with the smallest step, {:.4g}: {}; the largest "
                   "residual force, "

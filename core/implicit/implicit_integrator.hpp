@@ -16,6 +16,7 @@
 // invert as soon as they move by more than a cell.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/implicit/brick_fields.hpp"
@@ -101,6 +102,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   bool held(std::size_t node, int axis) const { return (unknowns_.held()[node] >> axis & 1) != 0; }
   void shorten(const std::string& why);
   [[noreturn]] void fail(const std::string& why);
+  std::string bodies_around(const std::array<double, 3>& place);
 
   Model& model_;
   Reductions& ranks_;

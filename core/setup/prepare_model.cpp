@@ -89,15 +89,23 @@ void refuse_implicit(const Scene& scene, const BodyInput& input, const Constitut
                     "(vx, vy, vz with PrescribedVelocity; 0 0 0 holds it)",
                     input.name));
   }
+  const auto refuse = [&](std::string_view why) {
+    throw InputErrors(input.source, "Body",
+                      fmt::format("material '{}' of body '{}' is not available with implicit steps: {}",
+                                  material.name(), input.name, why));
+  };
   const auto& implicit = scene.solution.implicit;
+  if (material.columns({}).has(Column::burn_fraction))
+    refuse("explosives burn in explicit steps alone; remove Solution@Integration");
+  const bool fluid = !material.uniaxial() && !(material.initial_shear_speed() > 0);
+  if (implicit && implicit->quasistatic() && fluid)
+    refuse(
+        "without stiffness in shear nothing decides where it is at rest; use Implicit@type \"dynamic\" "
+        "or \"semi\"");
   if (implicit && implicit->difference_tangent) return;
   const std::string fault = material.tangent_fault();
   if (!fault.empty())
-    throw InputErrors(
-        input.source, "Body",
-        fmt::format("material '{}' of body '{}' is not available with implicit steps: {}. Implicit@jacobian "
-                    "\"differences\" takes its derivatives by differences",
-                    material.name(), input.name, fault));
+    refuse(fault + ". Implicit@jacobian \"differences\" takes its derivatives by differences");
 }
 
 }  // namespace

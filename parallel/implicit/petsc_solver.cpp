@@ -8,6 +8,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <mpi.h>
 #include <petscsnes.h>
 
@@ -91,6 +92,7 @@ class PetscSolver final : public core::NewtonSolver {
   void set_up(NonlinearProblem& problem, bool linear);
   bool try_otherwise(SNES snes, bool linear);
   void refuse_unused_options();
+  [[noreturn]] void refuse_options();
 
   /// What solves with the same places of entries share: PETSc keeps the symbolic part of a factorisation.
   struct SetUp {
@@ -165,6 +167,28 @@ void PetscSolver::refuse_unused_options() {
                              "; check their spelling, or remove them");
 }
 
+void PetscSolver::refuse_options() {
+  throw WrongSolverOptions(
+      fmt::format("options of PETSc after -- ({}): {}; check their values, or remove them",
+                  fmt::join(words_.begin() + 1, words_.end(), " "), take_petsc_error()));
+}
+
+/// An error that no shorter step changes: the options ask for what PETSc cannot do.
+bool is_of_options(PetscErrorCode code) {
+  switch (code) {
+    case PETSC_ERR_SUP:
+    case PETSC_ERR_USER:
+    case PETSC_ERR_ARG_WRONG:
+    case PETSC_ERR_ARG_OUTOFRANGE:
+    case PETSC_ERR_ARG_INCOMP:
+    case PETSC_ERR_ARG_WRONGSTATE:
+    case PETSC_ERR_ARG_UNKNOWN_TYPE:
+    case PETSC_ERR_MISSING_FACTOR:
+    case PETSC_ERR_USER_INPUT: return true;
+    default: return false;
+  }
+}
+
 std::string why_not_converged(SNES snes, PetscErrorCode code, SNESConvergedReason reason, bool linear) {
   if (code != 0) return take_petsc_error();
   if (reason > 0) return "a particle inverts";
@@ -206,13 +230,12 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
                          of_->grids.get());
     choose_full_steps(snes, now_);
   }
-  if (SNESSetFromOptions(snes) != 0)
-    throw WrongSolverOptions("options of PETSc after --: " + take_petsc_error() +
-                             "; check their values, or remove them");
+  if (SNESSetFromOptions(snes) != 0) refuse_options();
   description_ = description_of(snes);
   report.structure_seconds = MPI_Wtime() - start;
 
   PetscErrorCode code = SNESSolve(snes, nullptr, solution);
+  if (given_ && !looked_ && !now_.failure && is_of_options(code)) refuse_options();
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   check_petsc(SNESGetConvergedReason(snes, &reason));
   PetscInt linear = 0, iterations = 0;

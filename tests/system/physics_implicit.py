@@ -104,6 +104,7 @@ class Implicit(_mpm.Case):
             folder = f"{ranks}x{threads}"
             self.run_in(folder, [self.write(whole)], ranks=ranks, threads=threads)
             results[folder] = self.state_of(folder)
+        self.assertIn("not the same bits", (self.folder / "1x1" / "case.out").read_text())
         restart = _mpm.restarts(self.folder / "1x1")[0]
         self.run_in("again", [restart], ranks=2)
         results["again"] = self.state_of("again")
@@ -459,6 +460,12 @@ class Refused(_mpm.Case):
         failing = _mpm.material("soft", 1.0, 'type="ElaPlastic" Young="1000" Poisson="0.3" Yield0="20"',
                                 '<FailureModel type="PlaStrain" epmax="0.3"/>')
         self.refused(column(material=failing), "soft", "not available with implicit steps", "FailureModel")
+        fluid = _mpm.material("soft", 1.0, 'type="Null"', '<EquationOfState type="Gruneisen" C0="37" S1="1.5" gamma0="2" E0="0"/>')
+        explosive = _mpm.material("soft", 1.0, 'type="HighExpBurn" D="100" beta="0" PCJ="2000"',
+                                  '<EquationOfState type="JWL" A="371e3" B="3200" R1="4.2" R2="0.95" w="0.3" E0="7000"/>')
+        for more in ("", 'jacobian="differences"'):
+            self.refused(column(material=fluid, more=more), "case.xmp:6:", "'soft'", "stiffness in shear", "dynamic")
+            self.refused(column(material=explosive, more=more), "case.xmp:6:", "'soft'", "explosives", "remove Solution@Integration")
         self.refused(column(more='newmark_beta="0.1"').replace("quasistatic", "dynamic"), "newmark_beta")
         self.refused(column(more='min_step="1"'), "time_step")
 
@@ -468,6 +475,8 @@ class Refused(_mpm.Case):
         for job, options, code in ((path, ("-ksp_type", "gmres", "-pc_type", "bjacobi"), _mpm.DONE),
                                    (path, ("-pc_factor_mat_solver_type", "mumps"), _mpm.DONE),
                                    (path, ("-ksp_typo", "gmres"), _mpm.INPUT_ERROR),
+                                   (path, ("-ksp_type", "gmrez"), _mpm.INPUT_ERROR),
+                                   (path, ("-pc_factor_mat_solver_type", "nosuch"), _mpm.INPUT_ERROR),
                                    (explicit, ("-ksp_type", "cg"), _mpm.INPUT_ERROR)):
             with self.subTest(options=options, job=job.name):
                 outcome = _mpm.run([job, "--output-dir", self.folder / "out", "--", *options])
@@ -481,10 +490,15 @@ class Refused(_mpm.Case):
         text = _mpm.scene([_mpm.block("column", (1, 1, 0), (2, 2, 6))], _mpm.grid((0, 0, 0), (4, 4, 8), "000010"),
                           implicit(1.0, step=0.1, more='min_step="0.05" max_newton="8" gravity_ramp="1"',
                                    extra='<Gravity ax="0" ay="0" az="-20"/>'), [weak])
-        outcome = self.run_in("failed", [self.write(text)], code=_mpm.NUMERICAL_FAILURE)
-        self.assertIn("no equilibrium", outcome.err)
-        self.assertTrue(_mpm.restarts(self.folder / "failed"))
-        self.assertEqual(_mpm.summary(self.folder / "failed")["status"], "failed")
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                folder = f"failed{ranks}"
+                outcome = self.run_in(folder, [self.write(text)], ranks=ranks, code=_mpm.NUMERICAL_FAILURE)
+                self.assertIn("no equilibrium", outcome.err)
+                self.assertRegex(outcome.err, r'residual force, [\d.e+-]+, is at node \([\d, ]+\) of body "column"')
+                self.assertEqual(outcome.err.count("no equilibrium"), 1)  # not from every rank
+                self.assertTrue(_mpm.restarts(self.folder / folder))
+                self.assertEqual(_mpm.summary(self.folder / folder)["status"], "failed")
 
 
 _mpm.main()

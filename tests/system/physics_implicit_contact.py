@@ -82,6 +82,22 @@ class ImplicitContact(_mpm.Case):
                         self.assertLess(np.hypot(*drag), 0.5 * friction * pressure)
                     self.assertLess(abs(self.drift(folder)), 0.05)
 
+    def test_the_edge_of_a_smooth_strip_carries_its_part(self):
+        """L. Prandtl's load of a strip on cohesive soil, (2 + pi) c over its width, is the same without friction: the normal at the
+        strip's edge is that of the soil. Two cells over the half of the width; the normal of a corner lost a third of the load."""
+        cohesion, half, pressed = 1.0, 2.0, 0.16
+        soil = _mpm.material("soft", 1.0, f'type="DruckerPrager" Young="500" Poisson="0.3" qfai="0" kfai="{cohesion}" qpsi="0" ten_f="1e6"')
+        for friction, error in ((0.0, 0.05), (0.3, 0.05)):
+            with self.subTest(friction=friction):
+                text = scene(((0, 0, 0), (8, 1, 4)), ((0, 0, 4), (half, 1, 2)), (0, 0, -pressed), "QuadraticBSpline", friction, 40, "222210",
+                             grid=((0, 0, 0), (8, 1, 8))).replace(SOFT, soil)
+                folder = f"strip{friction}"
+                self.run_in(folder, [self.write(text)])
+                found = self.forces(folder)[:, 2]
+                # The body is one cell thick along the strip.
+                self.assertLess(abs(found.max() / ((2 + np.pi) * cohesion * half) - 1), error)
+                self.assertGreater(found[-1], 0.95 * found.max())
+
     def test_a_block_rebounds_and_momentum_is_balanced(self):
         """Thrown at a plate that is held: the impulse of the plate is the change of the block's momentum."""
         block, plate = ((2, 2, 2.5), (2, 2, 2)), ((1, 1, 0), (4, 4, 2))

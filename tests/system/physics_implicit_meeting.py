@@ -88,6 +88,31 @@ class Meeting(_mpm.Case):
                 self.run_in(shape, [self.write(scene(pulled, "202022", ((0, 0, 0), (7, 7, 4)), steps=3, shape=shape))])
                 self.assertLessEqual(np.abs(self.forces(shape)).max(), most)
 
+    def test_the_gap_at_which_blocks_touch(self):
+        """A block, led at its top, comes down on another, whose face is at a node, in steps of a tenth of a cell, presses, and goes up again.
+        They touch across a gap of 0.7 cells, with splines of 1.2; pressed, faces are nearer by what the particles beside them are compressed;
+        and no force holds the block that leaves."""
+        way, down = 0.1, 8
+        for shape, start, touches in (("linear", 1.05, 0.7), ("QuadraticBSpline", 1.45, 1.2)):
+            with self.subTest(shape=shape):
+                speed = f"t &lt; 0.5 ? {-2 * way * down} : {2 * way * down}"
+                bodies = [_mpm.block("base", (1, 1, 0), (3, 3, 2)),
+                          _mpm.block("block", (1, 1, 2 + start), (3, 3, 2))
+                          + _mpm.block("grip", (1, 1, 4 + start), (3, 3, 1), more=f'<PrescribedVelocity vx="0" vy="0" vz="{speed}"/>')]
+                output = f'<PostProcessing time_interval="{0.5 / down}" h5part="1" var="SigmaZ"/>'
+                self.run_in(shape, [self.write(scene(bodies, "000010", ((0, 0, 0), (5, 5, 8)), steps=2 * down, shape=shape, output=output))])
+                states = _cases.States(self.folder / shape)
+                force, first = self.forces(shape)[:, 2], states.column("z", 0)
+                low, high = first == first[first < 2].max(), first == first[first > 2].min()
+                gap = np.array([z[high].mean() - z[low].mean() - 0.5 for z in (states.column("z", i) for i in range(len(states.steps)))])
+                print(f"gap, {shape}: {gap.round(3)}, forces {force.round(3)}")
+                touched = np.flatnonzero(force > 1e-6)[0]
+                self.assertLess(abs(gap[touched] - touches), 0.1)
+                self.assertGreater(gap.min(), 0.6 * touches)
+                self.assertEqual(gap.argmin(), force.argmax())
+                self.assertGreaterEqual(force.min(), -1e-6 * force.max())
+                np.testing.assert_allclose(force[gap > gap[touched - 1] + 0.02], 0, atol=1e-6 * force.max())
+
     def test_sliding_friction_is_coulombs(self):
         """A block, led at its top, presses and drags on a larger one, along a direction off the axes. Its edges do not plough:
         without friction there is no force along the surface."""
