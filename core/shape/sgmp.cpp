@@ -34,25 +34,23 @@ void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, do
   for (auto& row : below) {
     for (Record& r : row) r = Record(0.0);
   }
-  for (int i = 0; i < nodes; ++i) {
-    Record first[centres][nodes] = {}, second[centres][nodes] = {};  // sums along z: (p m | X), (Y | Z)
-    if (i < centres) {
-      for (int j = 0; j < centres; ++j) {
-        Record first_below(0.0), second_below(0.0);
-        for (int k = 0; k < centres; ++k) {
-          const int c = centre_index(i, j, k);
-          const Record all = load<Record>(centre + node_doubles * c);
-          const Record rest = join(load<Half>(centre + rest_of_sums + 4 * c), Half(0.0));
-          const Record yz = __builtin_shufflevector(all.v, rest.v, 5, 7, 8, 10, 6, 8, 9, 10);  // (Y | Z)
-          const Record a = first_scale * all, b = second_scale * yz;
-          first[j][k] = a + first_below;
-          second[j][k] = b + sum_and_difference * second_below;
-          first_below = a;
-          second_below = b;
-        }
-        first[j][centres] = first_below;
-        second[j][centres] = sum_and_difference * second_below;
+  for (int i = 0; i < centres; ++i) {
+    Record first[centres][nodes], second[centres][nodes];  // sums along z: (p m | X), (Y | Z)
+    for (int j = 0; j < centres; ++j) {
+      Record first_below(0.0), second_below(0.0);
+      for (int k = 0; k < centres; ++k) {
+        const int c = centre_index(i, j, k);
+        const Record all = load<Record>(centre + node_doubles * c);
+        const Record rest = join(load<Half>(centre + rest_of_sums + 4 * c), Half(0.0));
+        const Record yz = __builtin_shufflevector(all.v, rest.v, 5, 7, 8, 10, 6, 8, 9, 10);  // (Y | Z)
+        const Record a = first_scale * all, b = second_scale * yz;
+        first[j][k] = a + first_below;
+        second[j][k] = b + sum_and_difference * second_below;
+        first_below = a;
+        second_below = b;
       }
+      first[j][centres] = first_below;
+      second[j][centres] = sum_and_difference * second_below;
     }
     for (int k = 0; k < nodes; ++k) {
       Record mean_below(0.0);
@@ -60,7 +58,7 @@ void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, do
       for (int j = 0; j < nodes; ++j) {
         Record mean_here(0.0);
         Half force(0.0), next(0.0);
-        if (i < centres && j < centres) {
+        if (j < centres) {
           mean_here = first[j][k];
           force = upper_half(second[j][k]) + lower_half(second[j][k]);
           next = upper_half(second[j][k]) - lower_half(second[j][k]);
@@ -70,12 +68,13 @@ void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, do
         mean_below = mean_here;
         force_below = next;
         const Half momentum = lower_half(means), xx = upper_half(means);
-        double* at = node + node_doubles * node_index(i, j, k);
-        put<onto>(at, join(momentum, yz + xx) + below[k][j]);
+        put<onto>(node + node_doubles * node_index(i, j, k), join(momentum, yz + xx) + below[k][j]);
         below[k][j] = join(momentum, yz - xx);
       }
     }
   }
+  for (int k = 0; k < nodes; ++k)
+    for (int j = 0; j < nodes; ++j) put<onto>(node + node_doubles * node_index(centres, j, k), below[k][j]);
 }
 
 template <Onto onto>
@@ -84,31 +83,30 @@ void centres_to_nodes(const double* centre, double* node) {
   for (auto& row : below) {
     for (Half& r : row) r = Half(0.0);
   }
-  for (int i = 0; i < nodes; ++i) {
+  for (int i = 0; i < centres; ++i) {
     Half along_z[centres][nodes];
-    if (i < centres) {
-      for (int j = 0; j < centres; ++j) {
-        Half last(0.0);
-        for (int k = 0; k < centres; ++k) {
-          const Half a = Half(0.125) * load<Half>(centre + 4 * centre_index(i, j, k));
-          along_z[j][k] = a + last;
-          last = a;
-        }
-        along_z[j][centres] = last;
+    for (int j = 0; j < centres; ++j) {
+      Half last(0.0);
+      for (int k = 0; k < centres; ++k) {
+        const Half a = Half(0.125) * load<Half>(centre + 4 * centre_index(i, j, k));
+        along_z[j][k] = a + last;
+        last = a;
       }
+      along_z[j][centres] = last;
     }
     for (int k = 0; k < nodes; ++k) {
       Half last(0.0);
       for (int j = 0; j < nodes; ++j) {
-        const Half here = i < centres && j < centres ? along_z[j][k] : Half(0.0);
+        const Half here = j < centres ? along_z[j][k] : Half(0.0);
         const Half sum = here + last;
         last = here;
-        double* at = node + 4 * node_index(i, j, k);
-        put<onto>(at, sum + below[k][j]);
+        put<onto>(node + 4 * node_index(i, j, k), sum + below[k][j]);
         below[k][j] = sum;
       }
     }
   }
+  for (int k = 0; k < nodes; ++k)
+    for (int j = 0; j < nodes; ++j) put<onto>(node + 4 * node_index(centres, j, k), below[k][j]);
 }
 
 template void centres_to_nodes<Onto::nothing>(const Vec3<double>&, const double*, double*);
