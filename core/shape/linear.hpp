@@ -367,6 +367,8 @@ struct Linear {
     });
   }
 
+  /// In the brick's node block, of the particle of a lane.
+  static int lowest_of(const Place& place, int lane) { return place.node[lane]; }
   /// Of the particles at coordinate `x`.
   static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) { return g.cell_index(x, axis); }
   /// f(node, offset, S, gradient of S) for the nodes of the cell that holds the particle of a lane: for terms

@@ -133,6 +133,10 @@ struct Sgmp {
     }
   }
 
+  static int lowest_of(const Place& place, int lane) {
+    const int side = lattice_points.side(), centre = place.node[lane];
+    return node_block.index(centre % side - 1, centre / side % side - 1, centre / (side * side) - 1);
+  }
   static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
     return g.site_index(x, axis) - 1;
   }
@@ -149,12 +153,11 @@ struct Sgmp {
         slope[a][i] = slopes[i] * inverse_cell[a];
       }
     }
-    const int side = lattice_points.side(), centre = place.node[lane];
-    const int x = centre % side - 1, y = centre / side % side - 1, z = centre / (side * side) - 1;
+    const int lowest = lowest_of(place, lane), side_of_nodes = node_block.side();
     for (int k = 0; k < nodes_per_axis; ++k) {
       for (int j = 0; j < nodes_per_axis; ++j) {
         for (int i = 0; i < nodes_per_axis; ++i) {
-          f(node_block.index(x + i, y + j, z + k), NodeOffset{{i, j, k}}, w[0][i] * w[1][j] * w[2][k],
+          f(lowest + i + side_of_nodes * (j + side_of_nodes * k), NodeOffset{{i, j, k}}, w[0][i] * w[1][j] * w[2][k],
             Vec3<double>{slope[0][i] * w[1][j] * w[2][k], w[0][i] * slope[1][j] * w[2][k],
                          w[0][i] * w[1][j] * slope[2][k]});
         }

@@ -19,6 +19,7 @@
 //   settle              optional: domains that Sample has carried along become those of the next step
 //   first_of_domain, columns_of_domain   optional: those of them that locating a particle reads
 //   nodes_per_axis, lowest_node   the nodes of a particle along an axis
+//   lowest_of           optional: the lowest of a particle's nodes in its brick's node block
 //   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: for
 //                       infrequent terms
 //   for_each_weight     optional: the same without the gradient, where that costs much

@@ -64,8 +64,12 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
       can_replace && !(maps_force(what) && std::ranges::any_of(brick.tiles, [&](const ParticleTile& tile) {
                          return loads_.act(grid, s, tile.body);
                        }));
-  if (!replaces) std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
-  SpreadPrefetch room(s + 1 < grid.owned() ? grid.contributions(what.array, s + 1) : nullptr,
+  if (!replaces && selects_)
+    sparse_.clear(what.array, grid.shape(), s, width, contributions);
+  else if (!replaces)
+    std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  const bool next_has_all = s + 1 < grid.owned() && reached(s + 1) == nullptr;
+  SpreadPrefetch room(next_has_all ? grid.contributions(what.array, s + 1) : nullptr,
                       width * grid.shape().nodes(), block_count(brick));
   Sums sums(contributions);
   typename S::template Scatter<what> cell;
@@ -109,6 +113,31 @@ void PassesWith<S, T>::fold_at_walls(Slot s, int field, double* contributions) {
   }
 }
 
+/// Those of a brick with few particles, inside the grid's faces and without loads.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::find_reached(Slot s) {
+  if constexpr (selects) {
+    const BrickGrid& grid = *model_.grid;
+    const Brick& brick = grid.brick(s);
+    constexpr int most = SparseBricks::most_particles(S::node_block, S::nodes_per_axis);
+    std::size_t particles = 0;
+    for (const ParticleTile& tile : brick.tiles) particles += tile.count;
+    if (particles > most) return sparse_.set_all(s);
+    const auto loaded = [&](const ParticleTile& tile) { return loads_.act(grid, s, tile.body); };
+    if (!faces(s).none() || std::ranges::any_of(brick.tiles, loaded)) return sparse_.set_all(s);
+    NodeMask& nodes = sparse_.set_some(s);
+    const BrickFrame frame = this->frame(s);
+    for (const ParticleTile& tile : brick.tiles) {
+      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+      for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+        const Place place(frame, pool.layout(), pool.block(tile.blocks[b]));
+        for (int l = 0; l < tile.used_lanes(b); ++l)
+          nodes.add(grid.shape(), S::lowest_of(place, l), S::nodes_per_axis);
+      }
+    }
+  }
+}
+
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
 void PassesWith<S, T>::map_to_grid() {
@@ -116,6 +145,7 @@ void PassesWith<S, T>::map_to_grid() {
   if (finds_ranges) ranges_.resize(static_cast<std::size_t>(model_.grid->owned()));
   map_bricks<what>([&](Slot s, Scratch& at) {
     if (finds_ranges) ranges_[static_cast<std::size_t>(s)] = velocity_range(model_, s);
+    if (selects_) find_reached(s);
     for_each_own_field(s, [&](std::int32_t component) {
       map_brick<what>(s, component, at, [](int, const Place&, double*, int) {});
     });
@@ -128,10 +158,12 @@ void PassesWith<S, T>::map_to_grid() {
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
-  sum<NodeArray::first>(moving_shared_, s, component, at, at.nodes.data());
+  const NodeMask* some = reached(s);
+  double* nodes = at.nodes.data();
+  sum<NodeArray::first>(moving_shared_, s, component, at, nodes, some);
   // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
-  if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at, at.nodes.data());
-  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(), at.nodes.data());
+  if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
+  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(some), nodes);
 }
 
 /// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the
