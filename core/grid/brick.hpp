@@ -177,6 +177,20 @@ class NodeMask {
     }
   }
 
+  /// f(i, j, k) with the lowest node of every cell of which it has all nodes.
+  template <class F>
+  void for_each_cell(const NodeBlockShape& shape, F f) const {
+    const auto row = [&](int j, int k) -> unsigned {
+      return rows_[static_cast<std::size_t>(j + shape.below + shape.side() * (k + shape.below))];
+    };
+    for (int k = shape.lowest(); k < shape.highest(); ++k) {
+      for (int j = shape.lowest(); j < shape.highest(); ++j) {
+        unsigned left = row(j, k) & row(j + 1, k) & row(j, k + 1) & row(j + 1, k + 1);
+        for (left &= left >> 1; left != 0; left &= left - 1) f(shape.lowest() + std::countr_zero(left), j, k);
+      }
+    }
+  }
+
  private:
   static constexpr int widest = NodeBlockShape{most_layers, most_layers}.side();
   static_assert(widest <= 8);

@@ -327,13 +327,13 @@ struct Linear {
   struct Sums {
     double* records;
     explicit Sums(double* contributions) : records(contributions) {}
-    void finish(const BrickFrame&) {}
+    void finish(const BrickFrame&, const NodeMask* = nullptr) {}
   };
   /// ... and read them.
   struct Field {
     const double* nodes = nullptr;
-    void take_motion(const double* records) { nodes = records; }
-    void take_strain(const BrickFrame&, const double* records) { nodes = records; }
+    void take_motion(const double* records, const NodeMask* = nullptr) { nodes = records; }
+    void take_strain(const BrickFrame&, const double* records, const NodeMask* = nullptr) { nodes = records; }
     const double* velocity() const { return nodes + Motion::velocity_at; }
     const double* increment() const { return nodes + Motion::increment_at; }
   };

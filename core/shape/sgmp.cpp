@@ -114,7 +114,96 @@ template void centres_to_nodes<Onto::contributions>(const Vec3<double>&, const d
 template void centres_to_nodes<Onto::nothing>(const double*, double*);
 template void centres_to_nodes<Onto::contributions>(const double*, double*);
 
-void nodes_to_centres(const double* node, double* centre) {
+namespace {
+
+/// Of the eight cells around a node those of a brick: f(0 or 1 along each axis, centre), the upper ones last.
+template <class F>
+void for_each_centre(int node, F f) {
+  const int at[3] = {node % nodes, node / nodes % nodes, node / (nodes * nodes)};
+  const auto has = [&](int a, int upper) { return 0 <= at[a] - 1 + upper && at[a] - 1 + upper < centres; };
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (int k = 0; k < 2; ++k)
+        if (has(0, i) && has(1, j) && has(2, k))
+          f(i, j, k, centre_index(at[0] - 1 + i, at[1] - 1 + j, at[2] - 1 + k));
+}
+
+/// f(node) for nodes of a mask.
+template <class F>
+void for_each_node(const NodeMask& some, F f) {
+  some.for_each(Sgmp::node_block, [&](int first, int count) {
+    for (int n = first; n < first + count; ++n) f(n);
+  });
+}
+
+/// f(lowest node, centre) for cells of which a mask has all nodes.
+template <class F>
+void for_each_centre(const NodeMask& some, F f) {
+  some.for_each_cell(Sgmp::node_block, [&](int i, int j, int k) {
+    f(Sgmp::node_block.index(i, j, k), centre_index(i + 1, j + 1, k + 1));
+  });
+}
+
+}  // namespace
+
+// The sums are those above, in their order.
+void centres_to_nodes(const NodeMask& some, const Vec3<double>& inverse_cell, const double* centre,
+                      double* node) {
+  const Half mean(0.125), y(0.25 * inverse_cell.y), z(0.25 * inverse_cell.z);
+  Half x(0.25 * inverse_cell.x);
+  x.set(3, 0);  // where yy is
+  const Record first_scale = join(mean, x), second_scale = join(y, z);
+  for_each_node(some, [&](int n) {
+    Record first[2][2][2] = {}, second[2][2][2] = {};  // (p m | X), (Y | Z)
+    for_each_centre(n, [&](int i, int j, int k, int c) {
+      const Record all = load<Record>(centre + node_doubles * c);
+      const Record rest = join(load<Half>(centre + rest_of_sums + 4 * c), Half(0.0));
+      const Record yz = __builtin_shufflevector(all.v, rest.v, 5, 7, 8, 10, 6, 8, 9, 10);
+      first[i][j][k] = first_scale * all;
+      second[i][j][k] = second_scale * yz;
+    });
+    Record plane[2];
+    for (int i = 0; i < 2; ++i) {
+      Record means(0.0);
+      Half force(0.0);
+      for (int j = 0; j < 2; ++j) {
+        means += first[i][j][1] + first[i][j][0];
+        const Half y_sum = lower_half(second[i][j][1]) + lower_half(second[i][j][0]);
+        const Half z_difference = upper_half(second[i][j][1]) - upper_half(second[i][j][0]);
+        force += j == 1 ? z_difference + y_sum : z_difference - y_sum;
+      }
+      const Half xx = upper_half(means);
+      plane[i] = join(lower_half(means), i == 1 ? force + xx : force - xx);
+    }
+    store(node + node_doubles * n, plane[1] + plane[0]);
+  });
+}
+
+void centres_to_nodes(const NodeMask& some, const double* centre, double* node) {
+  for_each_node(some, [&](int n) {
+    Half at[2][2][2] = {};
+    for_each_centre(
+        n, [&](int i, int j, int k, int c) { at[i][j][k] = Half(0.125) * load<Half>(centre + 4 * c); });
+    Half plane[2];
+    for (int i = 0; i < 2; ++i) plane[i] = (at[i][1][1] + at[i][1][0]) + (at[i][0][1] + at[i][0][0]);
+    store(node + 4 * n, plane[1] + plane[0]);
+  });
+}
+
+void nodes_to_centres(const NodeMask* some, const double* node, double* centre) {
+  if (some != nullptr) {
+    return for_each_centre(*some, [&](int lowest, int c) {
+      Record plane[2];
+      for (int i = 0; i < 2; ++i) {
+        const auto sum = [&](int j) {
+          const double* at = node + node_doubles * (lowest + node_index(i, j, 0));
+          return load<Record>(at) + load<Record>(at + node_doubles * node_index(0, 0, 1));
+        };
+        plane[i] = sum(0) + sum(1);
+      }
+      store(centre + node_doubles * c, Record(0.125) * (plane[0] + plane[1]));
+    });
+  }
   Record planes[2][centres][centres];  // of sums along z and y: of this plane of nodes and the last one
   for (int i = 0; i < nodes; ++i) {
     Record(&here)[centres][centres] = planes[i % 2];
@@ -138,14 +227,37 @@ void nodes_to_centres(const double* node, double* centre) {
   }
 }
 
-void gradients_at_centres(const Vec3<double>& inverse_cell, const double* node, double* gradient) {
+void gradients_at_centres(const NodeMask* some, const Vec3<double>& inverse_cell, const double* node,
+                          double* gradient) {
   struct Plane {
     Half x[centres][centres];  // sums along y and z: their difference along x is the derivative
     Half y[centres][centres];  // differences along y of sums along z
     Half z[centres][centres];  // sums along y of differences along z
   };
-  Plane planes[2];
   const Half scale_x(0.25 * inverse_cell.x), scale_y(0.25 * inverse_cell.y), scale_z(0.25 * inverse_cell.z);
+  if (some != nullptr) {
+    return for_each_centre(*some, [&](int lowest, int c) {
+      Half x[2], y[2], z[2];
+      for (int i = 0; i < 2; ++i) {
+        Half sum[2], difference[2];
+        for (int j = 0; j < 2; ++j) {
+          const double* at =
+              node + node_doubles * (lowest + node_index(i, j, 0)) + Motion::strain_velocity_at;
+          const Half below = load<Half>(at), above = load<Half>(at + node_doubles * node_index(0, 0, 1));
+          sum[j] = below + above;
+          difference[j] = above - below;
+        }
+        x[i] = sum[0] + sum[1];
+        y[i] = sum[1] - sum[0];
+        z[i] = difference[0] + difference[1];
+      }
+      double* at = gradient + gradient_doubles * c;
+      store(at, scale_x * (x[1] - x[0]));
+      store(at + 4, scale_y * (y[1] + y[0]));
+      store(at + 8, scale_z * (z[1] + z[0]));
+    });
+  }
+  Plane planes[2];
   const auto velocity = [&](int i, int j, int k) {
     return load<Half>(node + node_doubles * node_index(i, j, k) + Motion::strain_velocity_at);
   };

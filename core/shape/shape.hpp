@@ -8,7 +8,8 @@
 //   Sums<fields>        sums over a brick's particles; finish() adds them to its nodes' contributions;
 //                       optional: replace() puts them in their place
 //   Field               the nodal motion of a brick as its particles read it: take_motion() for the velocity
-//                       and its increment, take_strain() for the strain velocity
+//                       and its increment, take_strain() for the strain velocity; like finish() for the nodes
+//                       of a mask alone, if there is one
 //   Interpolation       sum_i S_i u_i of the velocity or its increment at a block's particles
 //   gradient            sum_i u_i (x) grad S_i of the strain velocity, into rows 0..8 (order of Mat3),
 //                       columns at .. at + 7

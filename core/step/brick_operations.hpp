@@ -60,16 +60,17 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   using Sums = typename S::template Sums<what>;
   constexpr bool can_replace = requires(Sums sums) { sums.replace(frame); };
   // Loads add to the nodes themselves.
-  const bool replaces =
-      can_replace && !(maps_force(what) && std::ranges::any_of(brick.tiles, [&](const ParticleTile& tile) {
-                         return loads_.act(grid, s, tile.body);
-                       }));
-  if (!replaces && selects_)
-    sparse_.clear(what.array, grid.shape(), s, width, contributions);
+  const NodeMask* some = reached(s);
+  const bool replaces = can_replace && some == nullptr &&
+                        !(maps_force(what) && std::ranges::any_of(brick.tiles, [&](const ParticleTile& tile) {
+                            return loads_.act(grid, s, tile.body);
+                          }));
+  if (selects_)
+    sparse_.begin_map(what.array, grid.shape(), s, width, replaces, contributions);
   else if (!replaces)
     std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
-  const bool next_has_all = s + 1 < grid.owned() && reached(s + 1) == nullptr;
-  SpreadPrefetch room(next_has_all ? grid.contributions(what.array, s + 1) : nullptr,
+  const bool next_is_full = s + 1 < grid.owned() && !has_few_particles(s + 1);
+  SpreadPrefetch room(next_is_full ? grid.contributions(what.array, s + 1) : nullptr,
                       width * grid.shape().nodes(), block_count(brick));
   Sums sums(contributions);
   typename S::template Scatter<what> cell;
@@ -82,7 +83,7 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   if constexpr (can_replace) {
     if (replaces) sums.replace(frame);
   }
-  if (!replaces) sums.finish(frame);
+  if (!replaces) sums.finish(frame, some);
   if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, field, contributions);
 }
 
@@ -119,13 +120,10 @@ void PassesWith<S, T>::find_reached(Slot s) {
   if constexpr (selects) {
     const BrickGrid& grid = *model_.grid;
     const Brick& brick = grid.brick(s);
-    constexpr int most = SparseBricks::most_particles(S::node_block, S::nodes_per_axis);
-    std::size_t particles = 0;
-    for (const ParticleTile& tile : brick.tiles) particles += tile.count;
-    if (particles > most) return sparse_.set_all(s);
+    if (!has_few_particles(s)) return sparse_.set_all(s);
     const auto loaded = [&](const ParticleTile& tile) { return loads_.act(grid, s, tile.body); };
     if (!faces(s).none() || std::ranges::any_of(brick.tiles, loaded)) return sparse_.set_all(s);
-    NodeMask& nodes = sparse_.set_some(s);
+    NodeMask nodes;
     const BrickFrame frame = this->frame(s);
     for (const ParticleTile& tile : brick.tiles) {
       BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
@@ -135,6 +133,7 @@ void PassesWith<S, T>::find_reached(Slot s) {
           nodes.add(grid.shape(), S::lowest_of(place, l), S::nodes_per_axis);
       }
     }
+    sparse_.set_some(s, nodes);
   }
 }
 
@@ -171,7 +170,7 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::take_updated_nodes(Slot s, Scratch& at) {
   take_solved_motion(s, at);
-  at.field.take_motion(at.nodes.data());
+  at.field.take_motion(at.nodes.data(), reached(s));
   if constexpr (corrects) {
     if (!correcting_) return;
     add_order(s, orders_, at);

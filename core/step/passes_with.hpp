@@ -175,6 +175,12 @@ class PassesWith final : public Passes {
   template <NodeFields what>
   void map_to_grid();
   void find_reached(Slot s);
+  bool has_few_particles(Slot s) const {
+    if (!selects_) return false;
+    std::size_t particles = 0;
+    for (const ParticleTile& tile : model_.grid->brick(s).tiles) particles += tile.count;
+    return particles <= SparseBricks::most_particles(S::node_block, S::nodes_per_axis);
+  }
   /// The nodes that the particles of a brick reach; null: all of them.
   const NodeMask* reached(Slot s) const {
     if constexpr (selects)
@@ -315,7 +321,7 @@ class PassesWith final : public Passes {
   SharedNodes shared_;
   SharedNodes momentum_shared_;
   SharedNodes moving_shared_;  ///< of the first array, where the nodes' motion is found
-  const bool selects_;  ///< selects_nodes()
+  const bool selects_;         ///< selects_nodes()
   SparseBricks sparse_;
   NodeForces forces_;
   Loads loads_;

@@ -86,8 +86,9 @@ void PassesWith<S, T>::update_stress_and_move() {
     };
     for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
                    [&](std::int32_t component, std::size_t) {
-                     at.field.take_motion(at.nodes.data());
-                     at.field.take_strain(frame(s), at.nodes.data());
+                     const NodeMask* some = reached(s);
+                     at.field.take_motion(at.nodes.data(), some);
+                     at.field.take_strain(frame(s), at.nodes.data(), some);
                      auto nodes = prefetch_nodes<NodeArray::second>(s);
                      SpreadPrefetch room = prefetch_motion(s);
                      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
@@ -111,7 +112,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
       take_solved_strain(s, at);
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
-      at.field.take_strain(frame(s), at.nodes.data());
+      at.field.take_strain(frame(s), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::second>(s);
       stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
       map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});
@@ -146,7 +147,7 @@ void PassesWith<S, T>::update_all() {
       take_updated_nodes(s, at);
       velocities_of_brick(s, component, at);
       regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
-      at.field.take_strain(frame(s), at.nodes.data());
+      at.field.take_strain(frame(s), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
     });

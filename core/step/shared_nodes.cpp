@@ -210,10 +210,10 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
   sum_over_neighbours<of>(grid, shared, slot, of_component, nullptr, sums);
 }
 
-#define MPM_INSTANTIATE(of)                                                                         \
-  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, double*);         \
-  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, CarriedSums<of>&, \
-                                      double*);                                                     \
+#define MPM_INSTANTIATE(of)                                                                                  \
+  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, double*);                  \
+  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, CarriedSums<of>&,          \
+                                      double*);                                                              \
   template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, const NodeMask&, double*); \
   template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t, double*);
 MPM_INSTANTIATE(NodeArray::first)
