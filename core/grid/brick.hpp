@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <compare>
 #include <cstdint>
@@ -149,13 +150,62 @@ struct NodeBlockShape {
   constexpr bool operator==(const NodeBlockShape&) const = default;
 };
 
-/// The nodes of a smaller block among those of a larger one.
+/// Some nodes of a block, row by row along x; a row has at most eight.
+class NodeMask {
+ public:
+  /// Those with numbers lowest + i + side (j + side k); i, j, k < n.
+  void add(const NodeBlockShape& shape, int lowest, int n) {
+    const int side = shape.side(), row = lowest / side;
+    const auto bits = static_cast<std::uint8_t>(((1 << n) - 1) << lowest % side);
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j) rows_[static_cast<std::size_t>(row + j + side * k)] |= bits;
+  }
+  /// Whether it has nodes (i, j, k) for any i.
+  bool has_row(const NodeBlockShape& shape, int j, int k) const {
+    return rows_[static_cast<std::size_t>(j + shape.below + shape.side() * (k + shape.below))] != 0;
+  }
+  /// f(first, count) for consecutive nodes.
+  template <class F>
+  void for_each(const NodeBlockShape& shape, F f) const {
+    const int side = shape.side();
+    for (int row = 0; row < side * side; ++row) {
+      for (unsigned left = rows_[static_cast<std::size_t>(row)]; left != 0;) {
+        const int first = std::countr_zero(left), count = std::countr_one(left >> first);
+        f(row * side + first, count);
+        left &= ~0u << (first + count);
+      }
+    }
+  }
+
+  /// f(i, j, k) with the lowest node of every cell of which it has all nodes.
+  template <class F>
+  void for_each_cell(const NodeBlockShape& shape, F f) const {
+    const auto row = [&](int j, int k) -> unsigned {
+      return rows_[static_cast<std::size_t>(j + shape.below + shape.side() * (k + shape.below))];
+    };
+    for (int k = shape.lowest(); k < shape.highest(); ++k) {
+      for (int j = shape.lowest(); j < shape.highest(); ++j) {
+        unsigned left = row(j, k) & row(j + 1, k) & row(j, k + 1) & row(j + 1, k + 1);
+        for (left &= left >> 1; left != 0; left &= left - 1) f(shape.lowest() + std::countr_zero(left), j, k);
+      }
+    }
+  }
+
+ private:
+  static constexpr int widest = NodeBlockShape{most_layers, most_layers}.side();
+  static_assert(widest <= 8);
+  std::array<std::uint8_t, widest * widest> rows_{};
+};
+
+/// Nodes of a block: of a smaller block in it, or `some`.
 struct NodeSelection {
   NodeBlockShape of, part;
-  int nodes() const { return part.nodes(); }
+  const NodeMask* some = nullptr;
+  int nodes() const { return part.nodes(); }  ///< at most
   /// f(first, count) for consecutive nodes: rows along x, or all at once.
   template <class F>
   void for_each(F f) const {
+    if (some != nullptr) return some->for_each(of, f);
     if (part == of) return f(0, of.nodes());
     for (int k = part.lowest(); k <= part.highest(); ++k)
       for (int j = part.lowest(); j <= part.highest(); ++j) f(of.index(part.lowest(), j, k), part.side());

@@ -234,7 +234,7 @@ class CornerSums {
  public:
   static constexpr int doubles = record_doubles(what.array) * corner_nodes.nodes();
   explicit CornerSums(double* contributions) : records(sum_), contributions_(contributions) {}
-  void finish(const BrickFrame&) {
+  void finish(const BrickFrame&, const NodeMask* = nullptr) {
     for (int i = 0; i < doubles; ++i) contributions_[i] += sum_[i] + sum_[doubles + i];
   }
   double* records;

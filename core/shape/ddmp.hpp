@@ -179,7 +179,7 @@ struct Ddmp {
   class Sums {
    public:
     explicit Sums(double* contributions) : records(lattice_), contributions_(contributions) {}
-    void finish(const BrickFrame& frame) { to_nodes<Onto::contributions>(frame); }
+    void finish(const BrickFrame& frame, const NodeMask* = nullptr) { to_nodes<Onto::contributions>(frame); }
     void replace(const BrickFrame& frame) { to_nodes<Onto::nothing>(frame); }
     double* records;
 
@@ -199,8 +199,10 @@ struct Ddmp {
   /// Motion of the lattice's points; strain velocities of all nodes and their averaged gradients.
   class Field {
    public:
-    void take_motion(const double* nodes) { ddmp::nodes_to_lattice(nodes, motion_); }
-    void take_strain(const BrickFrame& frame, const double* nodes) {
+    void take_motion(const double* nodes, const NodeMask* = nullptr) {
+      ddmp::nodes_to_lattice(nodes, motion_);
+    }
+    void take_strain(const BrickFrame& frame, const double* nodes, const NodeMask* = nullptr) {
       ddmp::velocity_rows(nodes, velocity_);
       ddmp::averaged_gradients(frame, velocity_, gradient_);
     }

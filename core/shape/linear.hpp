@@ -327,13 +327,13 @@ struct Linear {
   struct Sums {
     double* records;
     explicit Sums(double* contributions) : records(contributions) {}
-    void finish(const BrickFrame&) {}
+    void finish(const BrickFrame&, const NodeMask* = nullptr) {}
   };
   /// ... and read them.
   struct Field {
     const double* nodes = nullptr;
-    void take_motion(const double* records) { nodes = records; }
-    void take_strain(const BrickFrame&, const double* records) { nodes = records; }
+    void take_motion(const double* records, const NodeMask* = nullptr) { nodes = records; }
+    void take_strain(const BrickFrame&, const double* records, const NodeMask* = nullptr) { nodes = records; }
     const double* velocity() const { return nodes + Motion::velocity_at; }
     const double* increment() const { return nodes + Motion::increment_at; }
   };
@@ -367,6 +367,8 @@ struct Linear {
     });
   }
 
+  /// In the brick's node block, of the particle of a lane.
+  static int lowest_of(const Place& place, int lane) { return place.node[lane]; }
   /// Of the particles at coordinate `x`.
   static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) { return g.cell_index(x, axis); }
   /// f(node, offset, S, gradient of S) for the nodes of the cell that holds the particle of a lane: for terms

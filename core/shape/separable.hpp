@@ -245,6 +245,7 @@ struct Separable : SizeColumns<Along::has_size> {
     }
   }
 
+  static int lowest_of(const Place& place, int lane) { return place.node[lane]; }
   static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
     return g.site_index(x, axis) - 1;
   }

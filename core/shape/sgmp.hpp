@@ -48,10 +48,15 @@ void centres_to_nodes(const Vec3<double>& inverse_cell, const double* centre, do
 /// Momentum and mass only: records of four doubles.
 template <Onto onto>
 void centres_to_nodes(const double* centre, double* node);
-/// Means of the nodes' records.
-void nodes_to_centres(const double* node, double* centre);
+/// The same for `some` nodes alone, which have no contributions yet.
+void centres_to_nodes(const NodeMask& some, const Vec3<double>& inverse_cell, const double* centre,
+                      double* node);
+void centres_to_nodes(const NodeMask& some, const double* centre, double* node);
+/// Means of the nodes' records; if not null, of cells with `some` nodes alone.
+void nodes_to_centres(const NodeMask* some, const double* node, double* centre);
 /// Gradients of the nodes' strain velocities.
-void gradients_at_centres(const Vec3<double>& inverse_cell, const double* node, double* gradient);
+void gradients_at_centres(const NodeMask* some, const Vec3<double>& inverse_cell, const double* node,
+                          double* gradient);
 
 }  // namespace sgmp
 
@@ -71,7 +76,13 @@ struct Sgmp {
   class Sums {
    public:
     explicit Sums(double* contributions) : records(centre_), contributions_(contributions) {}
-    void finish(const BrickFrame& frame) { to_nodes<Onto::contributions>(frame); }
+    void finish(const BrickFrame& frame, const NodeMask* some = nullptr) {
+      if (some == nullptr) return to_nodes<Onto::contributions>(frame);
+      if constexpr (maps_force(what))
+        sgmp::centres_to_nodes(*some, frame.inverse_cell, centre_, contributions_);
+      else
+        sgmp::centres_to_nodes(*some, centre_, contributions_);
+    }
     void replace(const BrickFrame& frame) { to_nodes<Onto::nothing>(frame); }
     double* records;
 
@@ -91,9 +102,11 @@ struct Sgmp {
   /// Motion and its gradient at the centres.
   class Field {
    public:
-    void take_motion(const double* nodes) { sgmp::nodes_to_centres(nodes, motion_); }
-    void take_strain(const BrickFrame& frame, const double* nodes) {
-      sgmp::gradients_at_centres(frame.inverse_cell, nodes, gradient_);
+    void take_motion(const double* nodes, const NodeMask* some = nullptr) {
+      sgmp::nodes_to_centres(some, nodes, motion_);
+    }
+    void take_strain(const BrickFrame& frame, const double* nodes, const NodeMask* some = nullptr) {
+      sgmp::gradients_at_centres(some, frame.inverse_cell, nodes, gradient_);
     }
     const double* velocity() const { return motion_ + Motion::velocity_at; }
     const double* increment() const { return motion_ + Motion::increment_at; }
@@ -133,6 +146,10 @@ struct Sgmp {
     }
   }
 
+  static int lowest_of(const Place& place, int lane) {
+    const int side = lattice_points.side(), centre = place.node[lane];
+    return node_block.index(centre % side - 1, centre / side % side - 1, centre / (side * side) - 1);
+  }
   static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
     return g.site_index(x, axis) - 1;
   }
@@ -149,12 +166,12 @@ struct Sgmp {
         slope[a][i] = slopes[i] * inverse_cell[a];
       }
     }
-    const int side = lattice_points.side(), centre = place.node[lane];
-    const int x = centre % side - 1, y = centre / side % side - 1, z = centre / (side * side) - 1;
+    const int lowest = lowest_of(place, lane), side_of_nodes = node_block.side();
     for (int k = 0; k < nodes_per_axis; ++k) {
       for (int j = 0; j < nodes_per_axis; ++j) {
         for (int i = 0; i < nodes_per_axis; ++i) {
-          f(node_block.index(x + i, y + j, z + k), NodeOffset{{i, j, k}}, w[0][i] * w[1][j] * w[2][k],
+          f(lowest + i + side_of_nodes * (j + side_of_nodes * k), NodeOffset{{i, j, k}},
+            w[0][i] * w[1][j] * w[2][k],
             Vec3<double>{slope[0][i] * w[1][j] * w[2][k], w[0][i] * slope[1][j] * w[2][k],
                          w[0][i] * w[1][j] * slope[2][k]});
         }

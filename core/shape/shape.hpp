@@ -8,7 +8,8 @@
 //   Sums<fields>        sums over a brick's particles; finish() adds them to its nodes' contributions;
 //                       optional: replace() puts them in their place
 //   Field               the nodal motion of a brick as its particles read it: take_motion() for the velocity
-//                       and its increment, take_strain() for the strain velocity
+//                       and its increment, take_strain() for the strain velocity; like finish() for the nodes
+//                       of a mask alone, if there is one
 //   Interpolation       sum_i S_i u_i of the velocity or its increment at a block's particles
 //   gradient            sum_i u_i (x) grad S_i of the strain velocity, into rows 0..8 (order of Mat3),
 //                       columns at .. at + 7
@@ -19,6 +20,7 @@
 //   settle              optional: domains that Sample has carried along become those of the next step
 //   first_of_domain, columns_of_domain   optional: those of them that locating a particle reads
 //   nodes_per_axis, lowest_node   the nodes of a particle along an axis
+//   lowest_of           optional: the lowest of a particle's nodes in its brick's node block
 //   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: for
 //                       infrequent terms
 //   for_each_weight     optional: the same without the gradient, where that costs much

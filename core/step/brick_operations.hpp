@@ -60,12 +60,17 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   using Sums = typename S::template Sums<what>;
   constexpr bool can_replace = requires(Sums sums) { sums.replace(frame); };
   // Loads add to the nodes themselves.
-  const bool replaces =
-      can_replace && !(maps_force(what) && std::ranges::any_of(brick.tiles, [&](const ParticleTile& tile) {
-                         return loads_.act(grid, s, tile.body);
-                       }));
-  if (!replaces) std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
-  SpreadPrefetch room(s + 1 < grid.owned() ? grid.contributions(what.array, s + 1) : nullptr,
+  const NodeMask* some = reached(s);
+  const bool replaces = can_replace && some == nullptr &&
+                        !(maps_force(what) && std::ranges::any_of(brick.tiles, [&](const ParticleTile& tile) {
+                            return loads_.act(grid, s, tile.body);
+                          }));
+  if (selects_)
+    sparse_.begin_map(what.array, grid.shape(), s, width, replaces, contributions);
+  else if (!replaces)
+    std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  const bool next_is_full = s + 1 < grid.owned() && !has_few_particles(s + 1);
+  SpreadPrefetch room(next_is_full ? grid.contributions(what.array, s + 1) : nullptr,
                       width * grid.shape().nodes(), block_count(brick));
   Sums sums(contributions);
   typename S::template Scatter<what> cell;
@@ -78,7 +83,7 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   if constexpr (can_replace) {
     if (replaces) sums.replace(frame);
   }
-  if (!replaces) sums.finish(frame);
+  if (!replaces) sums.finish(frame, some);
   if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, field, contributions);
 }
 
@@ -109,6 +114,29 @@ void PassesWith<S, T>::fold_at_walls(Slot s, int field, double* contributions) {
   }
 }
 
+/// Those of a brick with few particles, inside the grid's faces and without loads.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::find_reached(Slot s) {
+  if constexpr (selects) {
+    const BrickGrid& grid = *model_.grid;
+    const Brick& brick = grid.brick(s);
+    if (!has_few_particles(s)) return sparse_.set_all(s);
+    const auto loaded = [&](const ParticleTile& tile) { return loads_.act(grid, s, tile.body); };
+    if (!faces(s).none() || std::ranges::any_of(brick.tiles, loaded)) return sparse_.set_all(s);
+    NodeMask nodes;
+    const BrickFrame frame = this->frame(s);
+    for (const ParticleTile& tile : brick.tiles) {
+      BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
+      for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+        const Place place(frame, pool.layout(), pool.block(tile.blocks[b]));
+        for (int l = 0; l < tile.used_lanes(b); ++l)
+          nodes.add(grid.shape(), S::lowest_of(place, l), S::nodes_per_axis);
+      }
+    }
+    sparse_.set_some(s, nodes);
+  }
+}
+
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
 void PassesWith<S, T>::map_to_grid() {
@@ -116,6 +144,7 @@ void PassesWith<S, T>::map_to_grid() {
   if (finds_ranges) ranges_.resize(static_cast<std::size_t>(model_.grid->owned()));
   map_bricks<what>([&](Slot s, Scratch& at) {
     if (finds_ranges) ranges_[static_cast<std::size_t>(s)] = velocity_range(model_, s);
+    if (selects_) find_reached(s);
     for_each_own_field(s, [&](std::int32_t component) {
       map_brick<what>(s, component, at, [](int, const Place&, double*, int) {});
     });
@@ -128,10 +157,12 @@ void PassesWith<S, T>::map_to_grid() {
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at) {
   const BrickGrid& grid = *model_.grid;
-  sum<NodeArray::first>(moving_shared_, s, component, at, at.nodes.data());
+  const NodeMask* some = reached(s);
+  double* nodes = at.nodes.data();
+  sum<NodeArray::first>(moving_shared_, s, component, at, nodes, some);
   // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
-  if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at, at.nodes.data());
-  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(), at.nodes.data());
+  if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
+  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(some), nodes);
 }
 
 /// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the
@@ -139,7 +170,7 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::take_updated_nodes(Slot s, Scratch& at) {
   take_solved_motion(s, at);
-  at.field.take_motion(at.nodes.data());
+  at.field.take_motion(at.nodes.data(), reached(s));
   if constexpr (corrects) {
     if (!correcting_) return;
     add_order(s, orders_, at);

@@ -237,13 +237,15 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
 }  // namespace
 
 void second_velocities(double mass_cutoff, const double* momenta, const double* masses,
-                       const BoundaryFaces& faces, int nodes, double* record) {
-  for (int n = 0; n < nodes; ++n) {
-    const Motion at{record + node_doubles * n};
-    const double m = masses[node_doubles * n + Motion::mass_at];
-    store(at.strain_velocity(),
-          m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
-  }
+                       const BoundaryFaces& faces, const NodeSelection& nodes, double* record) {
+  nodes.for_each([&](int first, int count) {
+    for (int n = first; n < first + count; ++n) {
+      const Motion at{record + node_doubles * n};
+      const double m = masses[node_doubles * n + Motion::mass_at];
+      store(at.strain_velocity(),
+            m > mass_cutoff ? load<Half>(momenta + node_doubles * n) * Half(1 / m) : Half(0.0));
+    }
+  });
   constrain_second_velocity(faces, record);
 }
 

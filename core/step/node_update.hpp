@@ -90,7 +90,7 @@ void recall_motion(const NodeSelection& nodes, const double* motion, double* rec
 /// Sets the strain velocity to `momenta` (0..2 of each record) over `masses` (3 of each record): USF's
 /// velocity at the start of the step (both in `record`), or MUSL's re-mapped one (the masses in either).
 void second_velocities(double mass_cutoff, const double* momenta, const double* masses,
-                       const BoundaryFaces& faces, int nodes, double* record);
+                       const BoundaryFaces& faces, const NodeSelection& nodes, double* record);
 
 /// A node's sum of velocities in a correction (core/transfer/corrected.hpp), in a Motion: velocity v(l),
 /// increment dv(l), and its mass.

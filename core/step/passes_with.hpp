@@ -16,6 +16,7 @@
 #include "core/shape/cell_mass.hpp"
 #include "core/shape/face_traps.hpp"
 #include "core/simd/denormals.hpp"
+#include "core/step/conduction.hpp"
 #include "core/step/grid_to_particles.hpp"
 #include "core/step/load_forces.hpp"
 #include "core/step/mass_solution.hpp"
@@ -25,6 +26,7 @@
 #include "core/step/prefetch.hpp"
 #include "core/step/shared_nodes.hpp"
 #include "core/step/site_averages.hpp"
+#include "core/step/sparse_bricks.hpp"
 #include "core/step/speeds.hpp"
 #include "core/step/strain_limit.hpp"
 #include "core/threads.hpp"
@@ -42,6 +44,7 @@ class PassesWith final : public Passes {
   void begin_step(double length) override {
     set_step(length);
     if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, dt);
+    if (selects_) sparse_.begin_step(*model_.grid);
     follows_grid_ = follow_grid();
     begin_corrections();
     begin_mass();
@@ -85,6 +88,13 @@ class PassesWith final : public Passes {
   static constexpr bool traps = std::is_same_v<S, Linear>;
   /// Whether the transfer corrects velocities (core/transfer/corrected.hpp).
   static constexpr bool corrects = corrects_velocities<T>;
+  /// Whether the nodes that a particle reaches are known by its lowest one.
+  static constexpr bool selects = requires(const Place& place) { S::lowest_of(place, 0); };
+  /// Whether bricks with few particles are treated apart: where nothing else uses the contributions to nodes
+  /// or the motion of nodes that no particle of the brick reaches.
+  static bool selects_nodes(const Model& model) {
+    return selects && !corrects && !solves && !model.scene->contact.enable && !conducts_heat(model);
+  }
   /// What MUSL maps back to the grid. Where the motion of all nodes is not found (moving_block), the strain
   /// velocities of the others need the masses once more.
   static constexpr NodeFields mapped_back =
@@ -148,9 +158,13 @@ class PassesWith final : public Passes {
   void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
   void book_blows(Slot s, const FieldNodes& field, Scratch& at);
   void keep_motion_of_others(Slot s, const Scratch& at);
+  /// Of `some` nodes alone, if not null.
   template <NodeArray of>
-  void sum(const SharedNodes& shared, Slot s, std::int32_t component, Scratch& at, double* sums) const {
-    if (component == all_components)
+  void sum(const SharedNodes& shared, Slot s, std::int32_t component, Scratch& at, double* sums,
+           const NodeMask* some = nullptr) const {
+    if (some != nullptr)
+      sum_contributions<of>(*model_.grid, shared, s, *some, sums);
+    else if (component == all_components)
       sum_contributions(*model_.grid, shared, s, std::get<CarriedSums<of>>(at.carried), sums);
     else
       sum_contributions<of>(*model_.grid, shared, s, component, sums);
@@ -161,6 +175,20 @@ class PassesWith final : public Passes {
   // Operations on a brick.
   template <NodeFields what>
   void map_to_grid();
+  void find_reached(Slot s);
+  bool has_few_particles(Slot s) const {
+    if (!selects_) return false;
+    std::size_t particles = 0;
+    for (const ParticleTile& tile : model_.grid->brick(s).tiles) particles += tile.count;
+    return particles <= SparseBricks::most_particles(S::node_block, S::nodes_per_axis);
+  }
+  /// The nodes that the particles of a brick reach; null: all of them.
+  const NodeMask* reached(Slot s) const {
+    if constexpr (selects)
+      return selects_ && s < model_.grid->owned() ? sparse_.reached(s) : nullptr;
+    else
+      return nullptr;
+  }
   template <NodeFields what, class F>
   void map_brick(Slot s, std::int32_t component, Scratch& at, F before);
   template <NodeFields what, class Scatter, class F>
@@ -267,7 +295,8 @@ class PassesWith final : public Passes {
   template <NodeArray of>
   [[gnu::always_inline]] ContributionPrefetch<of> prefetch_nodes(Slot s) const {
     const BrickGrid& grid = *model_.grid;
-    return {grid, of == NodeArray::first ? moving_shared_ : shared<of>(), s + 1, block_count(grid.brick(s))};
+    const Slot next = reached(s + 1) == nullptr ? s + 1 : grid.owned();
+    return {grid, of == NodeArray::first ? moving_shared_ : shared<of>(), next, block_count(grid.brick(s))};
   }
   /// Only the first array holds forces.
   template <NodeArray of>
@@ -283,7 +312,8 @@ class PassesWith final : public Passes {
   /// Prefetches the next brick's stored nodal motion.
   SpreadPrefetch prefetch_motion(Slot s) {
     const BrickGrid& grid = *model_.grid;
-    return {s + 1 < grid.owned() ? motion(s + 1) : nullptr, motion_doubles(), block_count(grid.brick(s))};
+    const bool all = s + 1 < grid.owned() && reached(s + 1) == nullptr;
+    return {all ? motion(s + 1) : nullptr, motion_doubles(), block_count(grid.brick(s))};
   }
 
   Model& model_;
@@ -292,6 +322,8 @@ class PassesWith final : public Passes {
   SharedNodes shared_;
   SharedNodes momentum_shared_;
   SharedNodes moving_shared_;  ///< of the first array, where the nodes' motion is found
+  const bool selects_;         ///< selects_nodes()
+  SparseBricks sparse_;
   NodeForces forces_;
   Loads loads_;
   std::unique_ptr<Contact> contact_;  ///< null without contact
@@ -336,6 +368,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       shared_(model.grid->shape()),
       momentum_shared_(model.grid->shape(), momentum_block<S>),
       moving_shared_(model.grid->shape(), model.grid->shape(), moving_block(model)),
+      selects_(selects_nodes(model)),
       loads_(model),
       failed_(model),
       transfer_(model.scene->solution),

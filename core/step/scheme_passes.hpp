@@ -38,7 +38,7 @@ double PassesWith<S, T>::largest_strain_rate(double above) {
       sum.template operator()<NodeArray::first>();
     double* nodes = at.nodes.data();
     const double cutoff = grid.geometry().mass_cutoff;
-    second_velocities(cutoff, nodes, nodes, faces(s), shared_.nodes(), nodes);
+    second_velocities(cutoff, nodes, nodes, faces(s), shared_.summed(), nodes);
     at.strain_rate = std::max(at.strain_rate, mpm::core::largest_strain_rate(
                                                   grid.shape(), grid.geometry().inverse_cell, cutoff, nodes));
   });
@@ -55,7 +55,7 @@ void PassesWith<S, T>::update_velocities_and_map_back() {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
     for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
       take_updated_nodes(s, at);
-      keep_motion(moving_shared_.summed(), moving_nodes(s, at), motion(s, k));
+      keep_motion(moving_shared_.summed(reached(s)), moving_nodes(s, at), motion(s, k));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       SpreadPrefetch room = prefetch_motion(s);
       const BrickFrame frame = this->frame(s);
@@ -76,16 +76,19 @@ void PassesWith<S, T>::update_stress_and_move() {
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t k) {
-      recall_motion(moving_shared_.summed(), motion(s, k), at.nodes.data());
+      const NodeMask* some = reached(s);
+      recall_motion(moving_shared_.summed(some), motion(s, k), at.nodes.data());
       if constexpr (solves) return take_solved_strain(s, at);
       double *const sums = at.sums.data(), *const nodes = at.nodes.data();
-      sum<NodeArray::second>(momentum_shared_, s, component, at, sums);
-      second_velocities(0, sums, maps_mass(mapped_back) ? sums : nodes, faces(s), shared_.nodes(), nodes);
+      sum<NodeArray::second>(momentum_shared_, s, component, at, sums, some);
+      second_velocities(0, sums, maps_mass(mapped_back) ? sums : nodes, faces(s), shared_.summed(some),
+                        nodes);
     };
     for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
                    [&](std::int32_t component, std::size_t) {
-                     at.field.take_motion(at.nodes.data());
-                     at.field.take_strain(frame(s), at.nodes.data());
+                     const NodeMask* some = reached(s);
+                     at.field.take_motion(at.nodes.data(), some);
+                     at.field.take_strain(frame(s), at.nodes.data(), some);
                      auto nodes = prefetch_nodes<NodeArray::second>(s);
                      SpreadPrefetch room = prefetch_motion(s);
                      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
@@ -102,13 +105,14 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
   critical_.assign(static_cast<std::size_t>(grid.owned()), 0.0);
   map_bricks<mapped::force>([&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) {
-      sum<NodeArray::second>(momentum_shared_, s, component, at, at.nodes.data());
+      const NodeMask* some = reached(s);
       double* const nodes = at.nodes.data();
-      second_velocities(grid.geometry().mass_cutoff, nodes, nodes, faces(s), shared_.nodes(), nodes);
+      sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
+      second_velocities(grid.geometry().mass_cutoff, nodes, nodes, faces(s), shared_.summed(some), nodes);
       take_solved_strain(s, at);
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
-      at.field.take_strain(frame(s), at.nodes.data());
+      at.field.take_strain(frame(s), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::second>(s);
       stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
       map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});
@@ -143,7 +147,7 @@ void PassesWith<S, T>::update_all() {
       take_updated_nodes(s, at);
       velocities_of_brick(s, component, at);
       regularised_velocities(dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
-      at.field.take_strain(frame(s), at.nodes.data());
+      at.field.take_strain(frame(s), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
     });

@@ -75,16 +75,30 @@ class RowSums {
       for (int j = low; j <= high; ++j) {
         Part row[side];
         sum_row<known>(from, j, k, carried, row);
-        double* to = sums + node_doubles * shape.index(low, j, k);
-        for (int i = 0; i < side; ++i) store(to + node_doubles * i, row[i]);
+        put(row, j, k, sums);
         if (carried == nullptr) continue;
         for (int i = 0; i < common; ++i, carried += width) store(carried, row[i + brick_cells]);
+      }
+    }
+  }
+  /// The rows that have one of these nodes.
+  static void sum(const Neighbours& from, const NodeMask& nodes, double* sums) {
+    for (int k = low; k <= high; ++k) {
+      for (int j = low; j <= high; ++j) {
+        if (!nodes.has_row(shape, j, k)) continue;
+        Part row[side];
+        sum_row<false>(from, j, k, nullptr, row);
+        put(row, j, k, sums);
       }
     }
   }
 
  private:
   using Part = Lanes<width>;
+  static void put(const Part (&row)[wanted.side()], int j, int k, double* sums) {
+    double* to = sums + node_doubles * shape.index(low, j, k);
+    for (int i = 0; i < side; ++i) store(to + node_doubles * i, row[i]);
+  }
   static constexpr int low = wanted.lowest(), high = wanted.highest(), side = wanted.side();
   static constexpr int common = side - brick_cells;  ///< nodes of a row that the next brick along x has too
 
@@ -141,13 +155,19 @@ void with_blocks(const SharedNodes& shared, F f) {
 }
 
 /// `contributions_of(slot)`: those of a neighbour, null if it has none.
-template <NodeArray of, class F>
-void sum_over_neighbours(const BrickGrid& grid, const SharedNodes& shared, Slot slot, F contributions_of,
-                         CarriedSums<of>* carried, double* sums) {
+template <class F>
+Neighbours neighbours_of(const BrickGrid& grid, Slot slot, F contributions_of) {
   const Brick& brick = grid.brick(slot);
   Neighbours from;
   for (std::size_t n = 0; n < neighbourhood; ++n)
     from[n] = brick.neighbour[n] == no_slot ? nullptr : contributions_of(brick.neighbour[n]);
+  return from;
+}
+
+template <NodeArray of, class F>
+void sum_over_neighbours(const BrickGrid& grid, const SharedNodes& shared, Slot slot, F contributions_of,
+                         CarriedSums<of>* carried, double* sums) {
+  const Neighbours from = neighbours_of(grid, slot, contributions_of);
   const bool known = carried != nullptr && carried->begins(grid, slot);
   double* records = carried == nullptr ? nullptr : carried->records(slot);
   with_blocks(shared, [&]<NodeBlockShape shape, NodeBlockShape reached, NodeBlockShape wanted>() {
@@ -173,6 +193,14 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
       grid, shared, slot, [&](Slot s) { return grid.contributions(of, s); }, &carried, sums);
 }
 template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, const NodeMask& some,
+                       double* sums) {
+  const Neighbours from = neighbours_of(grid, slot, [&](Slot s) { return grid.contributions(of, s); });
+  with_blocks(shared, [&]<NodeBlockShape shape, NodeBlockShape reached, NodeBlockShape wanted>() {
+    RowSums<record_doubles(of), shape, reached, wanted>::sum(from, some, sums);
+  });
+}
+template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, std::int32_t component,
                        double* sums) {
   const auto of_component = [&](Slot s) -> const double* {
@@ -182,10 +210,11 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
   sum_over_neighbours<of>(grid, shared, slot, of_component, nullptr, sums);
 }
 
-#define MPM_INSTANTIATE(of)                                                                         \
-  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, double*);         \
-  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, CarriedSums<of>&, \
-                                      double*);                                                     \
+#define MPM_INSTANTIATE(of)                                                                                  \
+  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, double*);                  \
+  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, CarriedSums<of>&,          \
+                                      double*);                                                              \
+  template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, const NodeMask&, double*); \
   template void sum_contributions<of>(const BrickGrid&, const SharedNodes&, Slot, std::int32_t, double*);
 MPM_INSTANTIATE(NodeArray::first)
 MPM_INSTANTIATE(NodeArray::second)

@@ -32,8 +32,8 @@ class SharedNodes {
   const NodeBlockShape& reached() const { return reached_; }
   const NodeBlockShape& wanted() const { return wanted_; }
   int nodes() const { return shape_.nodes(); }
-  /// Those that are summed.
-  NodeSelection summed() const { return {shape_, wanted_}; }
+  /// Those that are summed; if not null, only those of `some`.
+  NodeSelection summed(const NodeMask* some = nullptr) const { return {shape_, wanted_, some}; }
   /// What to prefetch for a brick's sums, for records of `width` doubles: a record in each of their cache
   /// lines, brick by brick. `after_lower_x`: without those that the sums of its lower neighbour along x have
   /// read.
@@ -97,6 +97,10 @@ void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot sl
 /// The same with what the last brick has left in `carried`.
 template <NodeArray of>
 void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, CarriedSums<of>& carried,
+                       double* sums);
+/// The same of the rows along x that have some of these nodes.
+template <NodeArray of>
+void sum_contributions(const BrickGrid& grid, const SharedNodes& shared, Slot slot, const NodeMask& some,
                        double* sums);
 /// The same of one component's velocity field. Where the neighbourhood holds one component, both are equal.
 template <NodeArray of>

@@ -28,7 +28,8 @@ void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] 
     switch (system) {
       case MassSystem::velocity_at_start:
         sum<NodeArray::second>(momentum_shared_, s, all_components, at, at.nodes.data());
-        second_velocities(cutoff, at.nodes.data(), at.nodes.data(), faces(s), nodes, at.nodes.data());
+        second_velocities(cutoff, at.nodes.data(), at.nodes.data(), faces(s), shared_.summed(),
+                          at.nodes.data());
         from = stopped = Motion::strain_velocity_at;
         break;
       case MassSystem::velocity_at_end: sum_and_update_nodes(s, all_components, at); break;
@@ -39,7 +40,7 @@ void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] 
       case MassSystem::new_velocity:
         recall_motion(moving_shared_.summed(), motion(s), at.nodes.data());
         sum<NodeArray::second>(momentum_shared_, s, all_components, at, at.sums.data());
-        second_velocities(0, at.sums.data(), at.nodes.data(), faces(s), nodes, at.nodes.data());
+        second_velocities(0, at.sums.data(), at.nodes.data(), faces(s), shared_.summed(), at.nodes.data());
         from = stopped = Motion::strain_velocity_at;
         break;
     }

@@ -104,7 +104,7 @@ TEST_CASE("Every copy of a node has the same sum and the same motion, to the las
         sum_contributions<NodeArray::first>(grid, shared, s, records);
         update_nodes(forces, 0.01, 1e-3, faces, shared.summed(), records);
         sum_contributions<NodeArray::second>(grid, shared, s, sums.data());
-        second_velocities(0, sums.data(), records, faces, shared.nodes(), records);
+        second_velocities(0, sums.data(), records, faces, shared.summed(), records);
       });
       CHECK(nodes.size() >= 125);
     }
@@ -277,7 +277,7 @@ TEST_CASE("Every boundary holds what it should on every face, also where the las
           moved(s, r);
           sum_contributions<NodeArray::second>(grid, shared, s, sums.data());
           second_velocities(0, sums.data(), r, BoundaryFaces(g, grid.shape(), grid.brick(s).coord),
-                            shared.nodes(), r);
+                            shared.summed(), r);
         });
         const auto axis = static_cast<std::size_t>(face / 2);
         const double outward = face % 2 == 0 ? -1 : 1;
