@@ -170,6 +170,49 @@ class Contact(_mpm.Case):
                 self.assertLess(abs(across), 5e-3)
                 self.assertLess(abs(drift), 0.02 if kind == 0 else 0.002)
 
+    def test_automatic_weights(self):
+        """The stiffer body's normals decide: those of the base, with which the block slides as with a weight."""
+        stiff = _mpm.material("stiff", strength='type="IsoElastic" Young="4e4" Poisson="0.3" bq1="0" bq2="0"')
+        text = sliding(0.3, 1, SURFACES + ' auto_normal_vector_weight="1"', weight=0)
+        for old, new in (('name="base" material="soft"', 'name="base" material="stiff"'), ("<Friction>", stiff + "<Friction>"),
+                         ('mat1="soft" mat2="soft"', 'mat1="soft" mat2="stiff"')):
+            self.assertEqual(text.count(old), 1)
+            text = text.replace(old, new)
+        accelerations = [self.acceleration(self.go(t)[2], 0.3) for t in (text, text.replace(' auto_normal_vector_weight="1"', ""))]
+        print(f"automatic weights: a/exact - 1 {accelerations[0] - 1:+.1e}, without {accelerations[1] - 1:+.2f}")
+        self.assertAlmostEqual(accelerations[0], 1, delta=0.002)
+        self.assertLess(accelerations[1], 0.9)
+
+    def test_contact_limits_the_step(self):
+        """contact_time_step: bars that have been found to approach do so by a tenth of a cell, times the factor, in the next step."""
+        step = []
+        for limits in (0, 1):
+            text = bars(1, SURFACES + f' contact_time_step="{limits}"', "linear", 2.0).replace(f'Young="{YOUNG}"', 'Young="2"')
+            self.go(text)
+            table = _mpm.table(self.folder / "run/case_curv.dat")
+            pressed = np.flatnonzero(np.array(table["contact_x[1,2]"]))
+            step.append(np.diff(table["time"])[pressed[0]])  # after the first that found them
+        print(f"step after bars with a speed of approach of 1 have met: {step}")
+        self.assertGreater(step[0], 0.2)
+        self.assertLess(abs(step[1] / (0.1 * 0.5) - 1), 0.01)
+
+    def test_masses_that_differ_too_much(self):
+        """At nodes with masses that differ by more than 1e5 bodies do not touch: a light block passes through one that is heavier by 1e8,
+        and not through one that is heavier by 1e3."""
+        left = []
+        for density in (1e3, 1e8):
+            heavy = _mpm.material("heavy", density, strength=f'type="IsoElastic" Young="{YOUNG * density}" Poisson="0.3"')
+            text = bars(1, SURFACES, "linear", 1.5)
+            for old, new in (('name="right" material="soft"', 'name="right" material="heavy"'), ("<Friction>", heavy + "<Friction>"),
+                             ('vx="-0.5"', 'vx="0"'), ('mat1="soft" mat2="soft"', 'mat1="soft" mat2="heavy"')):
+                self.assertEqual(text.count(old), 1)
+                text = text.replace(old, new)
+            _, summary, status = self.go(text)
+            left.append(status["px[body:left]"][-1] / status["px[body:left]"][0])
+        print(f"momentum left {left}")
+        self.assertLess(left[0], 0.9)
+        self.assertAlmostEqual(left[1], 1, delta=1e-3)
+
     def test_normals_excluding_failed_particles(self):
         """Two shards that crush each other belong to the component of a block that slides: with its normals excluded the
         base's decide, which do not tilt at the block's edges."""
