@@ -10,13 +10,12 @@
 namespace mpm::core {
 
 Contact::Contact(const Model& model, const RigidBodies* rigid)
-    : model_(model), rigid_(rigid), method_(model.scene->contact.method) {
+    : model_(model), rigid_(rigid), method_(model.scene->contact.method), normal_(model.scene->contact.normal) {
   const Scene& scene = *model.scene;
   const ContactInput& input = scene.contact;
   if (input.measures_gaps()) largest_gap_ = input.min_distance * model.grid->geometry().smallest_cell();
   to_faces_ = input.distance == ContactInput::Distance::surfaces;
   limits_time_step_ = input.limits_time_step;
-  regression_ = input.regression;
   pairs_ = ContactPairs(component_count(scene));
 
   material_.assign(scene.components.size(), -1);
@@ -40,6 +39,9 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
     wave_.push_back(0);
   }
   has_failed_.resize(weight_.size());
+  for (std::size_t a = 0; a < weight_.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      regresses_ = regresses_ || by_regression(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
   const std::size_t materials = model.materials.size();
   friction_.assign(materials * materials, 0.0);
   for (std::size_t a = 0; a < materials; ++a)

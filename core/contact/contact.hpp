@@ -80,7 +80,7 @@ struct MeetingNodes {
 /// Of a thread, for normals by regression.
 struct RegressionScratch {
   PointsByCell by_cell;
-  LabelledPoints points;
+  LabelledPoints points, near;
 };
 
 /// A node at which a free rigid body touches others, for the motion of the body.
@@ -135,7 +135,7 @@ class Contact {
   /// regression those of the nodes of which it is the finder; take_normals() gets the others.
   void find_meetings(const BrickGrid& grid, const SharedNodes& shared, Slot s,
                      std::vector<FieldNodes>& fields, RegressionScratch& scratch);
-  bool shares_normals() const { return regression_; }
+  bool shares_normals() const { return regresses_; }
   /// Normals from the bricks that have found them; then, with all of those taken, complete_meetings().
   void take_normals(Slot s);
   void complete_meetings(Slot s) { complete(s, {}); }
@@ -164,6 +164,7 @@ class Contact {
   struct Node;
   void find_failed(const BrickGrid& grid, Reductions& ranks);
   ContactSurface surface(const FieldNodes& field, int node) const;
+  bool by_regression(std::int32_t a, std::int32_t b) const;
   double friction(std::int32_t a, std::int32_t b) const;
   /// Number of the rigid body that is a component; -1: none.
   int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
@@ -205,7 +206,8 @@ class Contact {
   ContactPairs pairs_;
   std::vector<std::size_t> seen_begin_{0};
   std::vector<std::int32_t> seen_;
-  bool regression_ = false;
+  ContactInput::Normal normal_;
+  bool regresses_ = false;              ///< some pairs of components
   ContactPoints points_;                ///< empty without regression
   std::vector<MeetingNodes> meetings_;  ///< by owned slot; those of slots that do not meet are not set
 };

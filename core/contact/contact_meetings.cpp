@@ -10,7 +10,7 @@ namespace mpm::core {
 double Contact::half_edge(double volume) const { return to_faces_ ? 0.5 * std::cbrt(volume) : 0.0; }
 
 void Contact::collect_points(NodeHalo& halo) {
-  if (regression_) points_.collect(model_, halo, [this](Slot s) { return meets(s); });
+  if (regresses_) points_.collect(model_, halo, [this](Slot s) { return meets(s); });
 }
 
 /// Sums the surfaces of the fields that a brick sees, their motion aside; they are taken as perpendicular to
@@ -35,12 +35,20 @@ ContactSurface Contact::surface(const FieldNodes& field, int node) const {
   return {{g[0], g[1], g[2]}, weight_[c], has_failed_[c]};
 }
 
+/// Whether the particles of two components give their normal. Rigid ones have gradients that are exact.
+bool Contact::by_regression(std::int32_t a, std::int32_t b) const {
+  if (normal_ != ContactInput::Normal::automatic) return normal_ == ContactInput::Normal::regression;
+  const auto first = static_cast<std::size_t>(a), second = static_cast<std::size_t>(b);
+  return weight_[first] == weight_[second] && std::isfinite(weight_[first]) &&
+         has_failed_[first] == has_failed_[second];
+}
+
 void Contact::find_meetings(const BrickGrid& grid, const SharedNodes& shared, Slot s,
                             std::vector<FieldNodes>& fields, RegressionScratch& scratch) {
   take_surfaces(grid, shared, s, fields);
   find_nodes(grid, shared, s, fields);
   find_normals(grid, s, fields, scratch);
-  if (!regression_) complete(s, fields);
+  if (!regresses_) complete(s, fields);
 }
 
 /// Drops the pairs without a normal, and finds the outward ones.
@@ -51,7 +59,7 @@ void Contact::complete(Slot s, std::span<const FieldNodes> fields) {
   const int count = static_cast<int>(seen(s).size());
   for (const MeetingNodes::Node& node : at.nodes) {
     for (int f = 0; f < count; ++f)
-      at.outward.push_back(regression_ ? outward(f, at.pairs_of(node))
+      at.outward.push_back(regresses_ ? outward(f, at.pairs_of(node))
                                        : outward(fields, f, node.number, at.pairs_of(node)));
   }
 }
@@ -114,7 +122,7 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
     const int side = shape.side(), stride[3] = {1, side, side * side};
     return node / stride[axis] % side + shape.lowest();
   };
-  if (regression_) {
+  if (regresses_) {
     PointsByCell::Range range;
     for (int a = 0; a < 3; ++a) {
       range.lowest[a] = shape.highest(), range.highest[a] = shape.lowest();
@@ -128,16 +136,16 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
     scratch.by_cell.take(grid, points_, s, range);
   }
   for (const MeetingNodes::Node& node : at.nodes) {
-    if (regression_ && node.finder != s) continue;
+    if (regresses_ && node.finder != s) continue;
     for (std::size_t p = node.first_pair; p < node.last_pair; ++p) {
       MeetingNodes::Pair& pair = at.pairs[p];
       const FieldNodes &first = fields[static_cast<std::size_t>(pair.first)],
                        &second = fields[static_cast<std::size_t>(pair.second)];
       std::optional<Vec3<double>> normal;
-      if (regression_) {
+      if (by_regression(first.component, second.component)) {
         scratch.by_cell.around(grid, s, {place(node.number, 0), place(node.number, 1), place(node.number, 2)},
                                first.component, second.component, scratch.points);
-        normal = separating_normal(scratch.points);
+        normal = separating_normal(scratch.points, scratch.near);
       }
       if (!normal) normal = contact_normal(surface(first, node.number), surface(second, node.number));
       pair.normal = normal.value_or(Vec3<double>{});
@@ -158,7 +166,7 @@ void Contact::take_normals(Slot s) {
   }
 }
 
-/// By regression: of the pair that the field is in, or the mean of its pairs; zero without.
+/// With regression: of the pair that the field is in, or the mean of its pairs; zero without.
 Vec3<double> Contact::outward(int field, std::span<const MeetingNodes::Pair> pairs) {
   Vec3<double> sum{};
   int count = 0;
@@ -171,7 +179,7 @@ Vec3<double> Contact::outward(int field, std::span<const MeetingNodes::Pair> pai
   return count > 1 && length > 0 ? (1 / length) * sum : sum;
 }
 
-/// By gradients: of two fields that of the pair, of more its own. Zero where it has no surface.
+/// By gradients alone: of two fields that of the pair, of more its own. Zero where it has no surface.
 Vec3<double> Contact::outward(std::span<const FieldNodes> fields, int field, int node,
                               std::span<const MeetingNodes::Pair> pairs) const {
   const auto of = [&](int f) { return surface(fields[static_cast<std::size_t>(f)], node); };
@@ -230,8 +238,8 @@ void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& share
   constexpr double highest_held = 0.7;  // in cells
   const double lowest_reach = -highest_held * grid.geometry().smallest_cell();
   const auto held = [&](int field, const double* of_node) {
-    return !regression_ || rigid(components[static_cast<std::size_t>(field)]) < 0 ||
-           of_node[field] >= lowest_reach;
+    return normal_ != ContactInput::Normal::regression ||
+           rigid(components[static_cast<std::size_t>(field)]) < 0 || of_node[field] >= lowest_reach;
   };
   at.filter([&](std::size_t n, const MeetingNodes::Pair& pair) {
     const double* of_node = reach.data() + n * components.size();

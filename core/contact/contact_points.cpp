@@ -113,11 +113,11 @@ void PointsByCell::take(const BrickGrid& grid, const ContactPoints& points, Slot
     begin_[cell + 1] += static_cast<std::uint32_t>(run.size() / width);
   });
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  sorted_.resize(width * begin_.back());
+  for (std::vector<double>& row : rows_) row.resize(begin_.back() + LabelledPoints::lanes);
   // Each cell's first place moves on to its last; shifted back below.
   for_each_run([&](std::size_t cell, std::span<const double> run) {
-    std::ranges::copy(run, sorted_.begin() + static_cast<std::ptrdiff_t>(width * begin_[cell]));
-    begin_[cell] += static_cast<std::uint32_t>(run.size() / width);
+    for (std::size_t p = 0; p < run.size(); p += width, ++begin_[cell])
+      for (std::size_t a = 0; a < width; ++a) rows_[a][begin_[cell]] = run[p + a];
   });
   std::move_backward(begin_.begin(), begin_.end() - 1, begin_.end());
   begin_.front() = 0;
@@ -138,13 +138,22 @@ void PointsByCell::around(const BrickGrid& grid, Slot s, const int (&node)[3], s
     scale[a] = on_face ? 0 : g.inverse_cell[a];
   }
   points.clear();
+  using Points = LabelledPoints::Row;
   const int lowest[3] = {node[0] - layers, node[1] - layers, node[2] - layers},
             highest[3] = {node[0] + layers - 1, node[1] + layers - 1, node[2] + layers - 1};
-  for_each(lowest, highest, [&](const Vec3<double>& x, std::int32_t component) {
-    if (component != first && component != second) return;
-    const Vec3<double> from_node = x - place;
-    points.add({scale[0] * from_node.x, scale[1] * from_node.y, scale[2] * from_node.z},
-               component == first ? -1.0 : 1.0);
+  const Points zero(0.0), one(1.0), of_first(static_cast<double>(first)), of_second(static_cast<double>(second)),
+      lane(Points::vector{0, 1, 2, 3, 4, 5, 6, 7});
+  for_each_row(lowest, highest, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; p += LabelledPoints::lanes) {
+      const auto at = [&](std::size_t a) { return load<Points>(rows_[a].data() + p); };
+      const Points component = at(3);
+      const auto exists = lane < Points(static_cast<double>(end - p));
+      const Points labels = select(exists & (component == of_first), -one,
+                                select(exists & (component == of_second), one, zero));
+      if (any(labels != zero))
+        points.add(scale[0] * (at(0) - place.x), scale[1] * (at(1) - place.y), scale[2] * (at(2) - place.z),
+                   labels);
+    }
   });
 }
 

@@ -80,27 +80,30 @@ class PointsByCell {
   /// nodes are: cell (i, j, k) is above node (i, j, k).
   template <class F>
   void for_each(const int (&lowest)[3], const int (&highest)[3], F f) const {
-    constexpr int width = ContactPoints::width;
-    for (int k = lowest[2] - lowest_[2]; k <= highest[2] - lowest_[2]; ++k) {
-      for (int j = lowest[1] - lowest_[1]; j <= highest[1] - lowest_[1]; ++j) {
-        const int row = cells_[0] * (j + cells_[1] * k) - lowest_[0];
-        const auto first = begin_[static_cast<std::size_t>(row + lowest[0])],
-                   last = begin_[static_cast<std::size_t>(row + highest[0] + 1)];
-        for (std::size_t p = first; p < last; ++p) {
-          const double* at = sorted_.data() + width * p;
-          f(Vec3<double>{at[0], at[1], at[2]}, static_cast<std::int32_t>(at[3]));
-        }
-      }
-    }
+    for_each_row(lowest, highest, [&](std::size_t first, std::size_t last) {
+      for (std::size_t p = first; p < last; ++p)
+        f(Vec3<double>{rows_[0][p], rows_[1][p], rows_[2][p]}, static_cast<std::int32_t>(rows_[3][p]));
+    });
   }
 
   static constexpr int layers = 2;  ///< of cells on each side of a node
 
  private:
+  /// f(first, last): the points of the cells along x.
+  template <class F>
+  void for_each_row(const int (&lowest)[3], const int (&highest)[3], F f) const {
+    for (int k = lowest[2] - lowest_[2]; k <= highest[2] - lowest_[2]; ++k) {
+      for (int j = lowest[1] - lowest_[1]; j <= highest[1] - lowest_[1]; ++j) {
+        const int row = cells_[0] * (j + cells_[1] * k) - lowest_[0];
+        f(std::size_t{begin_[static_cast<std::size_t>(row + lowest[0])]},
+          std::size_t{begin_[static_cast<std::size_t>(row + highest[0] + 1)]});
+      }
+    }
+  }
   int lowest_[3] = {};  ///< cell
   int cells_[3] = {};
-  std::vector<std::uint32_t> begin_;  ///< by cell, in sorted_
-  std::vector<double> sorted_;
+  std::vector<std::uint32_t> begin_;  ///< by cell, in rows_
+  std::vector<double> rows_[ContactPoints::width];  ///< x, y, z, component; at the end room for a load of lanes
 };
 
 }  // namespace mpm::core

@@ -23,9 +23,20 @@ Vec3<double> within_cone(const Vec3<double>& p, const ContactPair& pair) {
   return along * n + (length > most ? most / length : 1.0) * tangential;
 }
 
+/// One pair alone: at once.
+void resolve_contact(std::span<ContactField> fields, ContactPair& pair) {
+  ContactField &a = fields[static_cast<std::size_t>(pair.first)],
+               &b = fields[static_cast<std::size_t>(pair.second)];
+  const double mass = 1 / (1 / a.mass + 1 / b.mass);
+  pair.impulse = within_cone(mass * (a.velocity - b.velocity), pair);
+  a.velocity = a.velocity - (1 / a.mass) * pair.impulse;
+  b.velocity = b.velocity + (1 / b.mass) * pair.impulse;
+}
+
 }  // namespace
 
 void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pairs) {
+  if (pairs.size() == 1) return resolve_contact(fields, pairs[0]);
   const auto field = [&](int f) -> ContactField& { return fields[static_cast<std::size_t>(f)]; };
   std::vector<double> parts(fields.size(), 0.0);
   double fastest = 0;
@@ -54,7 +65,7 @@ void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pai
       fields[f].velocity = fields[f].velocity + change[f];
       largest = std::max(largest, std::sqrt(dot(change[f], change[f])));
     }
-    if (pairs.size() < 2 || !(largest > rest * fastest)) return;  // one pair is exact at once
+    if (!(largest > rest * fastest)) return;
   }
 }
 

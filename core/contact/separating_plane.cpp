@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/simd/lanes.hpp"
 #include "core/tensor/tensor.hpp"
 
 namespace mpm::core {
@@ -15,6 +14,7 @@ namespace {
 constexpr double penalty = 0.1;
 constexpr int most_steps = 40;
 constexpr double rest = 1e-10;    // of the plane, between two steps
+constexpr double within = 0.75;   // c (n.x + b) of the first plane below which particles are near it
 constexpr double nothing = 1e-8;  // of labels 1 apart, over a cell: bodies in the same place
 
 struct Plane {
@@ -30,25 +30,31 @@ struct Sums {
   Sym3<double> xx{};
 };
 
-double sum_of_lanes(const Lanes<8>& v) {
-  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+using Row = LabelledPoints::Row;
+
+double sum_of_lanes(const Row& v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
+
+/// max(0, 1 - c (n.x + b)) of a block's particles: above 0 for those on the wrong side.
+Row short_of_one(const LabelledPoints& points, std::size_t block, const Plane& plane) {
+  const Row c = points.row(block, 3), d = plane.n.x * points.row(block, 0) + plane.n.y * points.row(block, 1) +
+                                          plane.n.z * points.row(block, 2) + plane.b;
+  return select(c != Row(0.0), max(1.0 - c * d, 0.0), 0.0);
 }
 
 /// `all`: over all particles, whatever the plane.
 Sums sums_of(const LabelledPoints& points, const Plane& plane, bool all) {
-  using R = Lanes<8>;
-  const R nx(plane.n.x), ny(plane.n.y), nz(plane.n.z), b(plane.b), zero(0.0), one(1.0);
-  R count(0.0), label(0.0), square(0.0), first[3], labelled[3], second[6];
-  for (R* sums : {first, labelled, second, second + 3})
+  const Row zero(0.0), one(1.0);
+  Row count(0.0), label(0.0), square(0.0), first[3], labelled[3], second[6];
+  for (Row* sums : {first, labelled, second, second + 3})
     for (int a = 0; a < 3; ++a) sums[a] = zero;
-  for (std::size_t i = 0; i < points.blocks(); ++i) {
-    const R c = load<R>(points.row(i, 3));
-    const R x = load<R>(points.row(i, 0)), y = load<R>(points.row(i, 1)), z = load<R>(points.row(i, 2));
-    const R short_of = one - c * (nx * x + ny * y + nz * z + b);
-    const auto exists = c != zero;
-    const R on = select(all ? exists : exists & (short_of > zero), one, zero);
-    square += select(exists, max(short_of, zero) * max(short_of, zero), zero);
-    const R cx = on * x, cy = on * y, cz = on * z;
+  for (std::size_t block = 0; block < points.blocks(); ++block) {
+    const Row c = points.row(block, 3), short_of = short_of_one(points, block, plane);
+    const auto counts = all ? c != zero : short_of > zero;
+    if (!any(counts)) continue;
+    const Row on = select(counts, one, zero);
+    const Row x = points.row(block, 0), y = points.row(block, 1), z = points.row(block, 2);
+    square += short_of * short_of;
+    const Row cx = on * x, cy = on * y, cz = on * z;
     count += on;
     label += on * c;
     first[0] += cx, first[1] += cy, first[2] += cz;
@@ -87,17 +93,8 @@ Plane regression(const Sums& s, const Plane& without_particles) {
 
 double length(const Plane& p) { return std::sqrt(dot(p.n, p.n) + p.b * p.b); }
 
-}  // namespace
-
-void LabelledPoints::clear() {
-  blocks_.clear();
-  count_ = {};
-  used_ = lanes;
-}
-
-std::optional<Vec3<double>> separating_normal(const LabelledPoints& points) {
-  if (points.of_first() == 0 || points.of_second() == 0) return std::nullopt;
-  Plane plane = regression(sums_of(points, {}, true), {});
+/// Newton's method from a plane on.
+Plane best_plane(const LabelledPoints& points, Plane plane) {
   Sums sums = sums_of(points, plane, false);
   for (int step = 0; step < most_steps; ++step) {
     const Plane best = regression(sums, plane);
@@ -114,6 +111,33 @@ std::optional<Vec3<double>> separating_normal(const LabelledPoints& points) {
     if (!(there.objective < sums.objective)) break;  // as low as round-off allows
     plane = next, sums = there;
   }
+  return plane;
+}
+
+/// Blocks with a particle for which c (n.x + b) < `below`.
+bool is_near(const LabelledPoints& points, std::size_t block, const Plane& plane, double below) {
+  return any(short_of_one(points, block, plane) > Row(1 - below));
+}
+
+std::size_t count_near(const LabelledPoints& points, const Plane& plane, double below) {
+  std::size_t count = 0;
+  for (std::size_t block = 0; block < points.blocks(); ++block) count += is_near(points, block, plane, below);
+  return count;
+}
+
+}  // namespace
+
+std::optional<Vec3<double>> separating_normal(const LabelledPoints& points, LabelledPoints& near) {
+  const Sums labels = sums_of(points, {}, true);
+  if (labels.count == std::abs(labels.label)) return std::nullopt;  // of one body alone
+  Plane plane = regression(labels, {});
+  // About half of the particles are far from the first plane and stay on the right side of the others: they
+  // are left out, and looked at once more at the end. Sums without them have the same bits.
+  near.clear();
+  for (std::size_t block = 0; block < points.blocks(); ++block)
+    if (is_near(points, block, plane, within)) near.add(points, block);
+  plane = best_plane(near, plane);
+  if (count_near(points, plane, 1) != count_near(near, plane, 1)) plane = best_plane(points, plane);
   const double size = std::sqrt(dot(plane.n, plane.n));
   if (!(size > nothing) || !std::isfinite(size)) return std::nullopt;
   return (1 / size) * plane.n;

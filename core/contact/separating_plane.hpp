@@ -17,10 +17,10 @@
 // between them, and of particles in a plane in that plane.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
+#include "core/simd/lanes.hpp"
 #include "core/tensor/vec3.hpp"
 
 namespace mpm::core {
@@ -28,36 +28,29 @@ namespace mpm::core {
 /// Particles of two bodies near a node, in cells from it.
 class LabelledPoints {
  public:
-  void clear();
-  /// label: -1 for the first body, +1 for the second.
-  void add(const Vec3<double>& x, double label) {
-    if (used_ == lanes) {
-      blocks_.push_back({});
-      used_ = 0;
-    }
-    Block& block = blocks_.back();
-    for (int a = 0; a < 3; ++a) block.row[a][used_] = x[a];
-    block.row[3][used_++] = label;
-    ++count_[label < 0 ? 0 : 1];
+  static constexpr int lanes = 8;
+  using Row = Lanes<lanes>;
+
+  void clear() { blocks_.clear(); }
+  /// labels: -1 for the first body, +1 for the second, 0 in lanes without a particle.
+  void add(const Row& x, const Row& y, const Row& z, const Row& labels) {
+    Block& block = blocks_.emplace_back();
+    store(block.row[0], x), store(block.row[1], y), store(block.row[2], z), store(block.row[3], labels);
   }
-  std::size_t of_first() const { return count_[0]; }
-  std::size_t of_second() const { return count_[1]; }
-  /// Whole blocks of lanes: the last are filled up with labels 0. `row` 0..2: coordinates; 3: labels.
-  const double* row(std::size_t block, int row) const { return blocks_[block].row[row]; }
+  void add(const LabelledPoints& other, std::size_t block) { blocks_.push_back(other.blocks_[block]); }
   std::size_t blocks() const { return blocks_.size(); }
+  /// `row` 0..2: coordinates; 3: labels.
+  Row row(std::size_t block, int row) const { return load<Row>(blocks_[block].row[row]); }
 
  private:
-  static constexpr int lanes = 8;
   struct Block {
     alignas(64) double row[4][lanes];
   };
   std::vector<Block> blocks_;
-  std::array<std::size_t, 2> count_{};
-  int used_ = lanes;  ///< lanes of the last block
 };
 
 /// Unit vector from the first body to the second. None without particles of both, or where nothing tells
-/// them apart.
-std::optional<Vec3<double>> separating_normal(const LabelledPoints& points);
+/// them apart. `near`: scratch memory.
+std::optional<Vec3<double>> separating_normal(const LabelledPoints& points, LabelledPoints& near);
 
 }  // namespace mpm::core

@@ -151,9 +151,11 @@ struct ContactInput {
   double min_distance = 0;  ///< in cells
   bool limits_time_step = false;
   Method method = Method::pan;
-  /// Whether normals follow from a regression on the particles of both bodies (separating_plane.hpp), not
-  /// from gradients of mass with weights.
-  bool regression = false;
+  /// Normals by the gradient of mass of the component with the larger weight, the mean of both with equal
+  /// ones; by a regression on the particles of both (separating_plane.hpp); or, automatic, by regression
+  /// where the weights are equal.
+  enum class Normal { automatic, mass_gradient, regression };
+  Normal normal = Normal::automatic;
   bool record_force = false;
 
   /// Whether the gap between two bodies decides about their contact.

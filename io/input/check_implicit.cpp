@@ -57,7 +57,7 @@ void check_implicit_contact(const Node& root, const core::Scene& scene, const Bu
            "is not available with semi-implicit steps: use type dynamic or quasistatic, or set it to 0");
   if (input.distance != core::ContactInput::Distance::shared_node)
     refuse("distance_type", "must be 0 with implicit steps, which find contact at nodes that both reach");
-  if (input.regression)
+  if (input.normal == core::ContactInput::Normal::regression)
     refuse("contact_normal",
            "regression is not available with implicit steps, whose normals are those of rigid bodies and "
            "gradients of "

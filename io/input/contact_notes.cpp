@@ -145,7 +145,7 @@ std::string names_of(const core::Scene& scene, const std::vector<std::size_t>& c
 
 void note_tied_weights(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   const std::optional<Node> contact = root.child("Contact");
-  if (!contact || scene.contact.regression) return;
+  if (!contact || scene.contact.normal != core::ContactInput::Normal::mass_gradient) return;
   const std::vector<std::size_t> tied = tied_components(scene);
   if (tied.size() < 2) return;
   notes.push_back(
@@ -157,7 +157,7 @@ void note_tied_weights(const Node& root, const core::Scene& scene, std::vector<c
        fmt::format(
            "components {} have the same normal_vector_weight{}: their normals are the means of both bodies' "
            "gradients of mass, which tilt at the edges of a body on a wider one and hold it there{}. Set "
-           "contact_normal to regression, or give the wider body the larger weight",
+           "contact_normal to automatic or regression, or give the wider body the larger weight",
            names_of(scene, tied), scene.contact.automatic_weights ? ", by their stiffness" : "",
            tied.size() > 2 ? ", and where three of them meet the normals of the pairs do not go together"
                            : "")});

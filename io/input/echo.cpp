@@ -125,7 +125,8 @@ void echo_contact(XmlWriter& w, const core::ContactInput& contact) {
   w.flag("contact_time_step", contact.limits_time_step);
   w.integer("contact_type", static_cast<int>(contact.method));
   w.flag("record_contact_force", contact.record_force);
-  w.text("contact_normal", contact.regression ? "regression" : "mass_gradient");
+  constexpr const char* normals[] = {"automatic", "mass_gradient", "regression"};
+  w.text("contact_normal", normals[static_cast<std::size_t>(contact.normal)]);
 }
 
 void echo_decomposition(XmlWriter& w, const core::DecompositionInput& decomposition) {

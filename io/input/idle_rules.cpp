@@ -20,7 +20,9 @@ bool gaps_at_nodes(const Place& at) {
 bool gaps_without_limit(const Place& at) {
   return at.scene.contact.enable && !gaps_at_nodes(at) && !at.scene.contact.measures_gaps();
 }
-bool regression(const Place& at) { return at.scene.contact.enable && at.scene.contact.regression; }
+bool regression(const Place& at) {
+  return at.scene.contact.enable && at.scene.contact.normal == core::ContactInput::Normal::regression;
+}
 
 const MaterialInput& material_of(const Scene& scene, const core::BodyInput& body) {
   return scene.materials[body.material];

@@ -184,7 +184,7 @@ class BadInput(Case):
                              for name, lower in (("a", (1, 1, 1)), ("b", (3.2, 1, 1)), ("c", (1, 3.2, 1))))
         ram = _mpm.block("ram", (1, 1, 3), (2, 2, 2), of="iron").replace('<InitialVelocity vx="0" vy="0" vz="0"/>', "")
         text = _mpm.scene([ram], ROOMY, SHORT, [_mpm.material(), _mpm.material("iron", 8.0, 'type="Rigid"')],
-                          more=components + '<Contact enable="1" contact_type="1" distance_type="2"/>')
+                          more=components + '<Contact enable="1" contact_type="1" distance_type="2" contact_normal="mass_gradient"/>')
         self.write(text)
         checked = _mpm.run([self.folder / "case.xmp"], program="mpm_check")
         notes = [line for line in checked.out.splitlines() if line.startswith("note ")]

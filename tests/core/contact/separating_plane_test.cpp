@@ -24,13 +24,23 @@ double degrees_between(const Vector& a, const Vector& b) {
 
 LabelledPoints points_of(const Cloud& first, const Cloud& second, double sign = 1) {
   LabelledPoints points;
-  for (const Vector& x : first) points.add(x, -sign);
-  for (const Vector& x : second) points.add(x, sign);
+  for (const auto& [cloud, label] : {std::pair(&first, -sign), std::pair(&second, sign)}) {
+    for (std::size_t p = 0; p < cloud->size(); p += LabelledPoints::lanes) {
+      LabelledPoints::Row x[3] = {0.0, 0.0, 0.0}, labels(0.0);
+      for (std::size_t l = 0; l < LabelledPoints::lanes && p + l < cloud->size(); ++l) {
+        for (int a = 0; a < 3; ++a) x[a].set(static_cast<int>(l), (*cloud)[p + l][a]);
+        labels.set(static_cast<int>(l), label);
+      }
+      points.add(x[0], x[1], x[2], labels);
+    }
+  }
   return points;
 }
-Vector normal(const Cloud& first, const Cloud& second) {
-  return separating_normal(points_of(first, second)).value();
+std::optional<Vector> separating(const LabelledPoints& points) {
+  LabelledPoints scratch;
+  return separating_normal(points, scratch);
 }
+Vector normal(const Cloud& first, const Cloud& second) { return separating(points_of(first, second)).value(); }
 
 /// Points of a lattice with spacing 1/2 in the 64 cells around the node, for which `in`.
 template <class F>
@@ -201,8 +211,8 @@ TEST_CASE("Normal by regression: exactly opposite for the bodies in the other or
       first.push_back({bell(random), bell(random), bell(random) - 1});
       second.push_back({bell(random), bell(random), bell(random) + 1});
     }
-    const auto one = separating_normal(points_of(first, second)),
-               other = separating_normal(points_of(first, second, -1));
+    const auto one = separating(points_of(first, second)),
+               other = separating(points_of(first, second, -1));
     CHECK(one.value() == -1.0 * other.value());
     // In another order of the particles all but round-off stays.
     CHECK(length(normal(second, first) + one.value()) < 1e-9);
@@ -220,8 +230,8 @@ TEST_CASE("Normal by regression: clouds that do not fix a plane") {
   }
   CHECK(length(normal(left, right) - Vector{1, 0, 0}) < 1e-12);
   CHECK(length(normal(low, high) - unit({1, 2, 3})) < 1e-12);
-  CHECK_FALSE(separating_normal(points_of({a, b}, {})).has_value());
-  CHECK_FALSE(separating_normal(points_of({}, {a, b})).has_value());
-  CHECK_FALSE(separating_normal({}).has_value());
-  CHECK_FALSE(separating_normal(points_of({a, b}, {b, a})).has_value());  // in the same place
+  CHECK_FALSE(separating(points_of({a, b}, {})).has_value());
+  CHECK_FALSE(separating(points_of({}, {a, b})).has_value());
+  CHECK_FALSE(separating({}).has_value());
+  CHECK_FALSE(separating(points_of({a, b}, {b, a})).has_value());  // in the same place
 }
