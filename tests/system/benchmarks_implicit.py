@@ -249,6 +249,21 @@ class Refusals(unittest.TestCase):
         self.assertIn("column: shape 'Linear' does not exist; there is: linear,",
                       self.refused("list", "--study", "column", "--shape", "Linear"))
 
+    def test_an_interrupted_study_keeps_its_rows(self):
+        runs = [r for r in STUDIES["laws"].runs()][:3]
+
+        def measured(one, *_):
+            if one is runs[2]:
+                raise KeyboardInterrupt
+            return {**one.labels, **dict.fromkeys(run_one.COMMON, ""), "status": run_one.DONE, "note": ""}
+
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(implicit, "chosen", return_value={"laws": runs}), \
+                unittest.mock.patch.object(run_one, "run", measured):
+            with self.assertRaises(KeyboardInterrupt):
+                implicit.main(("run", "--out", folder))
+            _, rows = results.read(pathlib.Path(folder) / "laws.csv")
+        self.assertEqual([(r["law"], r["tangent"]) for r in rows], [tuple(r.labels.values()) for r in runs[:2]])
+
     def test_keys_are_unique(self):
         for entry in STUDIES.values():
             keys = [r.key for r in entry.runs()]

@@ -453,6 +453,9 @@ class Refused(_mpm.Case):
         scene = column()
         self.refused(scene.replace('Integration="impl"', 'Integration="impl" transfer="APIC"').replace(
             "<Grid shape=\"linear\">", '<Grid shape="QuadraticBSpline">'), "transfer", "FLIP")
+        for scheme in ("USF", "USL"):
+            self.refused(scene.replace('algorithm="MUSL"', f'algorithm="{scheme}"'), "case.xmp:", f'algorithm="{scheme}"',
+                         "implicit steps", "remove it")
         self.refused(scene.replace("<Implicit", '<LimitVelocity max="1"/><Implicit'), "LimitVelocity")
         self.refused(scene.replace("<Implicit", '<Volume erode="0.1"/><Implicit'), "erode")
         self.refused(scene.replace('boundary="0"', 'boundary="3"', 1), "non-reflecting")
@@ -483,6 +486,22 @@ class Refused(_mpm.Case):
                 self.assertEqual(outcome.code, code, outcome)
                 if code != _mpm.DONE:
                     self.assertIn(options[0], outcome.err)
+
+    def test_a_trust_region_finds_the_same_equilibrium(self):
+        """PETSc's trust region in place of full steps, with a law without and one with plastic flow."""
+        metal = _mpm.material("soft", 1.0, 'type="IsoHarden" Young="1000" Poisson="0.3" Yield0="20" TangMod="100"')
+        for name, material in (("elastic", SOFT), ("plastic", metal)):
+            with self.subTest(name):
+                text = column("QuadraticBSpline", 0.8, 4, material, 'rtol="1e-9"',
+                              '<PostProcessing time_interval="1" h5part="1" var="pres"/>')
+                places = []
+                for method in ("newtonls", "newtontr"):
+                    outcome = _mpm.run([self.write(text), "--output-dir", self.folder / method, "--", "-snes_type", method])
+                    self.assertEqual(outcome.code, _mpm.DONE, outcome)
+                    self.assertRegex(outcome.out, f"PETSc [^:]*: {method}, " if method != "newtonls" else "PETSc [^:]*: preonly")
+                    places.append(np.array([_cases.States(self.folder / method).column(axis) for axis in "xyz"]))
+                # Places are in single precision: two units in the last place at 8.
+                self.assertLess(np.abs(places[1] - places[0]).max(), 2e-6)
 
     def test_without_equilibrium_the_state_is_kept(self):
         """Dead weight far beyond what the column bears: no equilibrium, and a restart of the last one."""
