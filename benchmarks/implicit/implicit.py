@@ -7,7 +7,8 @@
   implicit.py tables                  the tables from the CSV files alone
 
 For each study OUT/STUDY.csv, and all tables in OUT/implicit.md. Measured rows replace those of the same labels and leave
-the others. --docs: the tables of docs/implicit.md are renewed too."""
+the others; a row is written as soon as its run ends, so that an interrupted study keeps what it has measured. --docs: the
+tables of docs/implicit.md are renewed too."""
 
 import argparse
 import concurrent.futures
@@ -76,12 +77,14 @@ def write(study, path, rows, head):
     places = {identity(r.labels, study.labels): i for i, r in enumerate(study.runs())}
     rows = [kept[key] for key in sorted(kept, key=lambda key: places.get(key, 0)) if key in places]
     path.parent.mkdir(parents=True, exist_ok=True)
-    with open(path, "w", newline="") as file:
+    part = path.with_suffix(".part")
+    with open(part, "w", newline="") as file:
         file.writelines(f"# {line}\n" for line in head)
         out = csv.DictWriter(file, study.columns, lineterminator="\n", restval="", extrasaction="ignore")
         out.writeheader()
         for row in rows:
             out.writerow({k: f"{v:.5g}" if isinstance(v, float) else v for k, v in row.items()})
+    part.replace(path)
 
 
 def run(options):
@@ -94,9 +97,17 @@ def run(options):
                   f"{row['seconds'] or 0:.3g} s", file=sys.stderr, flush=True)
             return row
 
+        rows = []
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            rows = list(pool.map(measured, runs))
-        write(STUDIES[name], options.out / f"{name}.csv", rows, [machine()])
+            waiting = [pool.submit(measured, one) for one in runs]
+            try:
+                for ended in concurrent.futures.as_completed(waiting):
+                    rows.append(ended.result())
+                    write(STUDIES[name], options.out / f"{name}.csv", rows, [machine()])
+            except BaseException:
+                for one in waiting:
+                    one.cancel()
+                raise
     render(options)
 
 

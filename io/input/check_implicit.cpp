@@ -15,6 +15,10 @@ void check_settings(const Node& solution, const core::SolutionInput& input, cons
   const auto refuse = [&](std::string_view child, std::string_view attribute, std::string why) {
     if (const auto node = solution.child(child)) node->report(context.diagnostics, attribute, std::move(why));
   };
+  if (input.scheme != core::Scheme::musl)
+    solution.report(context.diagnostics, "algorithm",
+                    "is not available with implicit steps, whose stress is that at the end of the step: "
+                    "remove it, or use explicit steps (remove Integration)");
   if (input.transfer != core::Transfer::flip || input.flip_fraction != 1)
     solution.report(context.diagnostics, "transfer",
                     "implicit steps take FLIP alone: their displacements follow from "

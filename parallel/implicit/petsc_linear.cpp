@@ -96,8 +96,12 @@ std::string description_of(SNES snes) {
   PCType preconditioner = nullptr;
   check_petsc(KSPGetType(ksp, &solver));
   check_petsc(PCGetType(pc, &preconditioner));
-  return fmt::format("PETSc {}.{}.{}: {} with {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
-                     PETSC_VERSION_SUBMINOR, solver, preconditioner);
+  SNESType method = nullptr;
+  check_petsc(SNESGetType(snes, &method));
+  const std::string name = method;
+  const bool usual = name == SNESNEWTONLS || name == SNESKSPONLY;
+  return fmt::format("PETSc {}.{}.{}: {}{} with {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
+                     PETSC_VERSION_SUBMINOR, usual ? "" : name + ", ", solver, preconditioner);
 }
 
 }  // namespace mpm::parallel

@@ -12,13 +12,18 @@ YOUNG, POISSON = 1000.0, 0.3
 SOFT = _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="{POISSON}"')
 RAM = _mpm.material("ram", 1.0, 'type="Rigid"')
 SHAPES = ("linear", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "SGMP", "DDMP")
-# What the laws of a tangent need, for a bar of Young's modulus 1000.
+# What the laws with a tangent need, and the strain of the whole load under which each shows the order of Newton's method.
+METAL = 'Young="200e3" Poisson="0.3"'
+JOHNSON_COOK = METAL + ' Yield0="90" B="292" n="0.31" C="0.025" epso="1"'
 LAWS = {
-    "IsoElastic": "", "CauchyElastic": "", "NeoHookean": "", "Corotated": "",
-    "ElaPlastic": 'Yield0="20"',
-    "IsoHarden": 'Yield0="20" TangMod="100"',
-    "Voce": 'Yield0="20" Q="5" b="20" H="100"',
-    "SimJohnsonCook": 'Yield0="20" B="30" n="0.4" C="0.02" epso="1"',
+    "IsoElastic": (METAL, 0.2), "CauchyElastic": (METAL, 0.2),
+    "NeoHookean": ('Young="1000" Poisson="0.3"', 0.2), "Corotated": ('Young="1000" Poisson="0.3"', 0.2),
+    "MooneyRivlin": ('Mr_A2="200" Mr_B2="50" Poisson="0.45"', 0.2),
+    "ElaPlastic": (METAL + ' Yield0="200"', 0.01), "IsoHarden": (METAL + ' Yield0="200" TangMod="3000"', 0.01),
+    "Voce": (METAL + ' Yield0="200" Q="120" b="100" H="1000"', 0.01),
+    "SimJohnsonCook": (JOHNSON_COOK, 0.01),
+    "JohnsonCook": (JOHNSON_COOK + ' m="1.09" melt="1356" roomt="293" SpecHeat="383e6"', 0.01),
+    "DruckerPrager": ('Young="70" Poisson="0.3" qfai="0.4" kfai="0.2" qpsi="0.1" ten_f="0.1"', 0.01),
 }
 
 
@@ -84,17 +89,27 @@ class Implicit(_mpm.Case):
                 self.assertLess(abs(energy["relative_drift"]), 1e-6 if shape == "linear" else 0.02)
 
     def test_newton_converges_quadratically_with_every_law(self):
-        for law, parameters in LAWS.items():
+        """A cube that a platen presses, and shears half as much, from a fixed face, in two steps: of the last three residuals
+        above round-off, the exponent by which they fall (2: quadratic), the larger of the steps. Measured 1.88 to 2.6."""
+        for law, (parameters, strain) in LAWS.items():
             with self.subTest(law=law):
-                material = _mpm.material("soft", 1.0, f'type="{law}" Young="1000" Poisson="0.3" {parameters}')
-                self.run_in(law, [self.write(column("QuadraticBSpline", 0.8, 4, material, 'rtol="1e-11"'))])
-                for norms in residuals(self.folder / law):
-                    self.assertLessEqual(len(norms), 8)
-                    small = [n for n in norms if n < 1e-2]
-                    # The last decrease before rounding: the exponent of one residual over that before.
-                    orders = [math.log(b) / math.log(a) for a, b in zip(small, small[1:]) if b > 1e-13]
-                    if orders:
-                        self.assertGreater(max(orders), 1.6, norms)
+                ram = _mpm.block("ram", (1, 1, 4), (6, 6, 2), of="ram",
+                                 more=f'<PrescribedVelocity vx="{2 * strain}" vy="0" vz="{-4 * strain}"/>')
+                text = _mpm.scene([_mpm.block("cube", (2, 2, 0), (4, 4, 4)), ram],
+                                  _mpm.grid((0, 0, 0), (8, 8, 8), "000010").replace("<Grid>", '<Grid shape="QuadraticBSpline">'),
+                                  implicit(1.0, step=0.5, more='rtol="1e-12"'),
+                                  [_mpm.material("soft", 8.93e-9, f'type="{law}" {parameters}'), RAM])
+                self.run_in(law, [self.write(text)])
+                steps = residuals(self.folder / law)
+                self.assertEqual(len(steps), 2, steps)
+                orders = []
+                for norms in steps:
+                    self.assertLessEqual(len(norms), 10, norms)
+                    # The first holds the linear answer to the whole way of the ram.
+                    a, b, c = [n for n in norms[1:] if n > 1e-14][-3:]
+                    orders.append(math.log(c / b) / math.log(b / a))
+                print(f"{law}: orders {orders[0]:.2f} {orders[1]:.2f}, {len(steps[0]) - 1} and {len(steps[1]) - 1} iterations")
+                self.assertGreater(max(orders), 1.8, steps)
 
     def test_ranks_threads_and_restart_agree_to_the_tolerance(self):
         whole = column("QuadraticBSpline", 1.0, 8, more='rtol="1e-9"',
@@ -177,6 +192,51 @@ class Implicit(_mpm.Case):
                 else:
                     self.assertLess(abs(left - 1), 0.15 if steps == 40 else 0.08)
 
+    def test_dynamic_relaxation_slows_a_flight(self):
+        """A free body, dv/dt = -c v: what a step leaves of the velocity is (2 - c dt)/(2 + c dt) by the trapezoidal rule,
+        1/(1 + c dt) by backward Euler; generalised alpha follows exp(-c t) with second order. Its energy is the work of the
+        damping, which is not lost from the balance."""
+        damping, end = 1.5, 1.0
+
+        def left(rule, steps, kind="dynamic", shape="QuadraticBSpline"):
+            body = _mpm.block("body", (2, 2, 2), (3, 3, 3), (1.0, 0.5, 0.25))
+            text = _mpm.scene([body], _mpm.grid((0, 0, 0), (12, 10, 8)).replace("<Grid>", f'<Grid shape="{shape}">'),
+                              implicit(end, kind, end / steps, rule + ' rtol="1e-10"', f'<DynamicRelax damping="{damping}"/>'), [SOFT])
+            self.run_in("flight", [self.write(text)])
+            found = _mpm.summary(self.folder / "flight")
+            self.assertLess(abs(found["energy"]["relative_drift"]), 0.02, (rule, steps))
+            self.assertLess(abs(found["energy"]["internal"]), 1e-12)
+            velocity = np.array(found["bodies"][0]["velocity"])
+            np.testing.assert_allclose(velocity[1:] / velocity[0], (0.5, 0.25), atol=1e-9)
+            return velocity[0]
+
+        for steps in (10, 20):
+            dt = damping * end / steps
+            with self.subTest(steps=steps):
+                for shape in ("linear", "QuadraticBSpline"):
+                    self.assertAlmostEqual(left("", steps, shape=shape), ((2 - dt) / (2 + dt))**steps, delta=1e-9)
+                # Nodes with hardly any mass are led to free motion with 1e-10 of the material's stiffness.
+                self.assertAlmostEqual(left('rule="backward_euler"', steps), (1 + dt)**-steps, delta=1e-8)
+        for radius in (0.8, 0.5):
+            with self.subTest(radius=radius):
+                errors = [abs(left(alpha(radius), n) - math.exp(-damping * end)) for n in (10, 20)]
+                self.assertGreater(math.log2(errors[0] / errors[1]), 1.75, errors)
+
+    def test_dynamic_relaxation_comes_to_rest(self):
+        """A block falls on its support in steps of twenty explicit ones, damped critically in its first mode: the rest is
+        that of equilibrium, and without damping there is none. FLIP keeps velocities that no node sees."""
+        critical = '<DynamicRelax damping="25"/>'
+        rest, _ = self.fall("static", "quasistatic", step=5.0)
+        for kind in ("dynamic", "semi"):
+            with self.subTest(kind):
+                fallen, _ = self.fall("damped", kind, step=0.2, end=8.0, extra=critical)
+                energy = _mpm.summary(self.folder / "damped")["energy"]
+                self.assertLess(np.abs(fallen - rest).max(), 2e-3)
+                self.assertLess(energy["kinetic"], 1e-6 * energy["external_work"])
+        self.fall("free", "dynamic", step=0.2, end=8.0)
+        energy = _mpm.summary(self.folder / "free")["energy"]
+        self.assertGreater(energy["kinetic"] + energy["internal"], 1.05 * _mpm.summary(self.folder / "static")["energy"]["internal"])
+
     def wave(self, folder, rule, steps, end, ratio=1.0, shape="QuadraticBSpline", kind="dynamic"):
         """A bar of 16 cells between symmetry planes whose first mode, a standing wave, begins with its largest velocity;
         `steps` in a length of `ratio` periods, up to `end` periods. Velocities, and the part of the energy that is left."""
@@ -243,11 +303,12 @@ class Implicit(_mpm.Case):
         self.assertGreater(orders[-1], 0.75)
         self.assertRegex((self.folder / "semi" / "case.out").read_text(), "PETSc .*: cg with pbjacobi; .* linear system")
 
-    def fall(self, folder, kind, shape="linear", step=0.5, end=40.0, more="", ranks=1, threads=1, material=SOFT, gravity=12):
+    def fall(self, folder, kind, shape="linear", step=0.5, end=40.0, more="", ranks=1, threads=1, material=SOFT, gravity=12,
+             extra=""):
         """A block of four cells' edge between smooth walls comes to rest under its weight, which would shorten it by 2.4 %."""
         block = _mpm.block("block", (0, 0, 0), (4, 4, 4))
         text = _mpm.scene([block], _mpm.grid((0, 0, 0), (5, 5, 6), "202022").replace("<Grid>", f'<Grid shape="{shape}">'),
-                          implicit(end, kind, step, more, f'<Gravity ax="0" ay="0" az="{-gravity}"/>'), [material],
+                          implicit(end, kind, step, more, f'<Gravity ax="0" ay="0" az="{-gravity}"/>{extra}'), [material],
                           f'<PostProcessing time_interval="{end}" h5part="1" var="pres"/><Restart time_interval="{end / 2}"/>')
         outcome = self.run_in(folder, [self.write(text)], ranks=ranks, threads=threads)
         return self.state_of(folder)[0], outcome
@@ -453,6 +514,9 @@ class Refused(_mpm.Case):
         scene = column()
         self.refused(scene.replace('Integration="impl"', 'Integration="impl" transfer="APIC"').replace(
             "<Grid shape=\"linear\">", '<Grid shape="QuadraticBSpline">'), "transfer", "FLIP")
+        for scheme in ("USF", "USL"):
+            self.refused(scene.replace('algorithm="MUSL"', f'algorithm="{scheme}"'), "case.xmp:", f'algorithm="{scheme}"',
+                         "implicit steps", "remove it")
         self.refused(scene.replace("<Implicit", '<LimitVelocity max="1"/><Implicit'), "LimitVelocity")
         self.refused(scene.replace("<Implicit", '<Volume erode="0.1"/><Implicit'), "erode")
         self.refused(scene.replace('boundary="0"', 'boundary="3"', 1), "non-reflecting")
@@ -483,6 +547,22 @@ class Refused(_mpm.Case):
                 self.assertEqual(outcome.code, code, outcome)
                 if code != _mpm.DONE:
                     self.assertIn(options[0], outcome.err)
+
+    def test_a_trust_region_finds_the_same_equilibrium(self):
+        """PETSc's trust region in place of full steps, with a law without and one with plastic flow."""
+        metal = _mpm.material("soft", 1.0, 'type="IsoHarden" Young="1000" Poisson="0.3" Yield0="20" TangMod="100"')
+        for name, material in (("elastic", SOFT), ("plastic", metal)):
+            with self.subTest(name):
+                text = column("QuadraticBSpline", 0.8, 4, material, 'rtol="1e-9"',
+                              '<PostProcessing time_interval="1" h5part="1" var="pres"/>')
+                places = []
+                for method in ("newtonls", "newtontr"):
+                    outcome = _mpm.run([self.write(text), "--output-dir", self.folder / method, "--", "-snes_type", method])
+                    self.assertEqual(outcome.code, _mpm.DONE, outcome)
+                    self.assertRegex(outcome.out, f"PETSc [^:]*: {method}, " if method != "newtonls" else "PETSc [^:]*: preonly")
+                    places.append(np.array([_cases.States(self.folder / method).column(axis) for axis in "xyz"]))
+                # Places are in single precision: two units in the last place at 8.
+                self.assertLess(np.abs(places[1] - places[0]).max(), 2e-6)
 
     def test_without_equilibrium_the_state_is_kept(self):
         """Dead weight far beyond what the column bears: no equilibrium, and a restart of the last one."""

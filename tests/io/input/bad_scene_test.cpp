@@ -310,6 +310,15 @@ TEST_CASE("what implicit steps cannot do") {
   check_faults({
       {"<Solution>", with("", ""), {"ok"}},
       {"<Solution>", with("", "<Implicit type='quasistatic' rtol='1e-8' gravity_ramp='1'/>"), {"ok"}},
+      {"<Solution>", with(" algorithm='MUSL'", ""), {"ok"}},
+      {"<Solution>",
+       with(" algorithm='USF'", ""),
+       {"line 25: <Solution algorithm=\"USF\">: is not available with implicit steps, whose stress is that "
+        "at the end of the step: remove it, or use explicit steps (remove Integration)"}},
+      {"<Solution>",
+       with(" algorithm='USL'", ""),
+       {"line 25: <Solution algorithm=\"USL\">: is not available with implicit steps, whose stress is that "
+        "at the end of the step: remove it, or use explicit steps (remove Integration)"}},
       {"<Solution>",
        with(" transfer='XPIC'", ""),
        {"line 25: <Solution transfer=\"XPIC\">: implicit steps take FLIP alone: their displacements follow "
