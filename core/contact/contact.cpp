@@ -10,7 +10,10 @@
 namespace mpm::core {
 
 Contact::Contact(const Model& model, const RigidBodies* rigid)
-    : model_(model), rigid_(rigid), method_(model.scene->contact.method), normal_(model.scene->contact.normal) {
+    : model_(model),
+      rigid_(rigid),
+      method_(model.scene->contact.method),
+      normal_(model.scene->contact.normal) {
   const Scene& scene = *model.scene;
   const ContactInput& input = scene.contact;
   if (input.measures_gaps()) largest_gap_ = input.min_distance * model.grid->geometry().smallest_cell();

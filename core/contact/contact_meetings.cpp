@@ -60,7 +60,7 @@ void Contact::complete(Slot s, std::span<const FieldNodes> fields) {
   for (const MeetingNodes::Node& node : at.nodes) {
     for (int f = 0; f < count; ++f)
       at.outward.push_back(regresses_ ? outward(f, at.pairs_of(node))
-                                       : outward(fields, f, node.number, at.pairs_of(node)));
+                                      : outward(fields, f, node.number, at.pairs_of(node)));
   }
 }
 

@@ -141,15 +141,15 @@ void PointsByCell::around(const BrickGrid& grid, Slot s, const int (&node)[3], s
   using Points = LabelledPoints::Row;
   const int lowest[3] = {node[0] - layers, node[1] - layers, node[2] - layers},
             highest[3] = {node[0] + layers - 1, node[1] + layers - 1, node[2] + layers - 1};
-  const Points zero(0.0), one(1.0), of_first(static_cast<double>(first)), of_second(static_cast<double>(second)),
-      lane(Points::vector{0, 1, 2, 3, 4, 5, 6, 7});
+  const Points zero(0.0), one(1.0), of_first(static_cast<double>(first)),
+      of_second(static_cast<double>(second)), lane(Points::vector{0, 1, 2, 3, 4, 5, 6, 7});
   for_each_row(lowest, highest, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; p += LabelledPoints::lanes) {
       const auto at = [&](std::size_t a) { return load<Points>(rows_[a].data() + p); };
       const Points component = at(3);
       const auto exists = lane < Points(static_cast<double>(end - p));
       const Points labels = select(exists & (component == of_first), -one,
-                                select(exists & (component == of_second), one, zero));
+                                   select(exists & (component == of_second), one, zero));
       if (any(labels != zero))
         points.add(scale[0] * (at(0) - place.x), scale[1] * (at(1) - place.y), scale[2] * (at(2) - place.z),
                    labels);

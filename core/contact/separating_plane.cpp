@@ -32,11 +32,14 @@ struct Sums {
 
 using Row = LabelledPoints::Row;
 
-double sum_of_lanes(const Row& v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
+double sum_of_lanes(const Row& v) {
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
 
 /// max(0, 1 - c (n.x + b)) of a block's particles: above 0 for those on the wrong side.
 Row short_of_one(const LabelledPoints& points, std::size_t block, const Plane& plane) {
-  const Row c = points.row(block, 3), d = plane.n.x * points.row(block, 0) + plane.n.y * points.row(block, 1) +
+  const Row c = points.row(block, 3), d = plane.n.x * points.row(block, 0) +
+                                          plane.n.y * points.row(block, 1) +
                                           plane.n.z * points.row(block, 2) + plane.b;
   return select(c != Row(0.0), max(1.0 - c * d, 0.0), 0.0);
 }

@@ -152,12 +152,13 @@ class Contact(_mpm.Case):
                 self.assertLess(abs(drift), 0.02 if kind == 0 else 0.002)
 
     def test_sliding_with_equal_weights(self):
-        """By regression the normals of the block's edges do not tilt: the same accelerations, within 1 %. The means of both
-        bodies' gradients hold the block by its edges."""
+        """By regression, the default then, the normals of the block's edges do not tilt: the same accelerations, within 1 %. The means of
+        both bodies' gradients hold the block by its edges."""
         for normal, friction, kind, distance, shape in [
                 *itertools.product(("regression",), (0, 0.3), (0, 1, 2), (SURFACES,), ("linear",)),
                 *itertools.product(("regression",), (0, 0.3), (1,), (SHARED_NODE,), ("linear",)),
                 *itertools.product(("regression",), (0, 0.3), (1,), (SURFACES,), SHAPES[1:]),
+                *itertools.product(("automatic",), (0.3,), (0, 1), (SURFACES,), ("linear",)),
                 *itertools.product(("mass_gradient",), (0, 0.3), (1,), (SURFACES,), ("linear", "QuadraticBSpline"))]:
             with self.subTest(normal=normal, friction=friction, kind=kind, distance=distance, shape=shape):
                 acceleration, slid, heat, across, drift = self.slide(friction, kind, distance, shape, weight=0, normal=normal)
