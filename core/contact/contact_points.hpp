@@ -103,8 +103,8 @@ class PointsByCell {
   int lowest_[3] = {};  ///< cell
   int cells_[3] = {};
   std::vector<std::uint32_t> begin_;  ///< by cell, in rows_
-  std::vector<double>
-      rows_[ContactPoints::width];  ///< x, y, z, component; at the end room for a load of lanes
+  /// x, y, z, component; at the end room for a load of lanes.
+  std::vector<double> rows_[ContactPoints::width];
 };
 
 }  // namespace mpm::core
