@@ -23,14 +23,16 @@ Vec3<double> within_cone(const Vec3<double>& p, const ContactPair& pair) {
   return along * n + (length > most ? most / length : 1.0) * tangential;
 }
 
-/// One pair alone: at once.
+/// One pair alone, at once: as a sweep of resolve_contacts() finds it, to the last bit.
 void resolve_contact(std::span<ContactField> fields, ContactPair& pair) {
   ContactField &a = fields[static_cast<std::size_t>(pair.first)],
                &b = fields[static_cast<std::size_t>(pair.second)];
   const double mass = 1 / (1 / a.mass + 1 / b.mass);
-  pair.impulse = within_cone(mass * (a.velocity - b.velocity), pair);
-  a.velocity = a.velocity - (1 / a.mass) * pair.impulse;
-  b.velocity = b.velocity + (1 / b.mass) * pair.impulse;
+  const Vec3<double> none{};
+  pair.impulse = within_cone(none + mass * (a.velocity - b.velocity), pair);
+  const Vec3<double> of_a = none - (1 / a.mass) * pair.impulse, of_b = none + (1 / b.mass) * pair.impulse;
+  a.velocity = a.velocity + of_a;
+  b.velocity = b.velocity + of_b;
 }
 
 }  // namespace
