@@ -31,7 +31,7 @@ core::ContactInput build_contact(const Node& root) {
   contact.limits_time_step = node->boolean("contact_time_step");
   contact.method = static_cast<core::ContactInput::Method>(node->small_integer("contact_type"));
   contact.record_force = node->boolean("record_contact_force");
-  const std::string_view normal = node->word("contact_normal");
+  const std::string normal = node->word("contact_normal");
   if (normal == "mass_gradient") contact.normal = core::ContactInput::Normal::mass_gradient;
   if (normal == "regression") contact.normal = core::ContactInput::Normal::regression;
   return contact;
