@@ -39,6 +39,7 @@ struct Clock {
   std::int64_t step = 0;  ///< steps completed
   double time = 0;        ///< of the particles' current state
   double dt = 0;          ///< of the last step
+  double lag = 0;         ///< of the velocities behind the stresses (particle_motion.hpp)
   /// Largest stable step for the current state, factor not included; 0 before the first estimate.
   double critical_dt = 0;
   double first_critical_dt = 0;  ///< for TimeStep const="1"
@@ -50,6 +51,9 @@ struct Ledger {
   ExactSum removed_mass;   ///< of particles that left the grid or were eroded
   ExactSum removed_kinetic;
   ExactSum removed_internal;
+  /// Of the current state, not since time zero: the work by which the internal energy is ahead of the kinetic
+  /// one (work_of_stress() in core/step/particle_motion.hpp).
+  ExactSum internal_lead;
   ContactRecord contact;
   std::int64_t left_grid = 0;  ///< particles; on this rank
   std::int64_t eroded = 0;

@@ -2,8 +2,7 @@
 """The largest stable time step of every shape, transfer and scheme, by bisection.
 
 A step counts as stable if the run completes and its energy does not grow: the mean drift over the last quarter of the
-rows of the status file is at most 5 %. (A single row says less: kinetic and internal energy belong to times half a step
-apart, so that their sum oscillates with the waves.) The scenes:
+rows of the status file is at most 5 %. The scenes:
 
   block   an elastic block that vibrates at strains of some per cent while it drifts obliquely across the cells
   fluid   a block of fluid with artificial viscosity that starts under pressure, drifting as well
@@ -13,11 +12,15 @@ apart, so that their sum oscillates with the waves.) The scenes:
 Steps are in units of h/(c + |v|), with c the wave speed at rest and |v| the largest speed at the start, and constant
 over the run (TimeStep specified), so that the result does not depend on the program's own limit. Only the shock, where
 sound speed and viscosity change greatly, runs with TimeStep factor: its numbers are fractions of the program's limit,
-up to 1."""
+up to 1.
+
+Beside them the limit of a linear analysis (theory.py) and the program's own, k of h/(c/k + |v|).
+
+  limits.py                        every method and scene, an hour and a half on a core; --shape, --scheme, --transfer, --scene
+                                   choose some
+  limits.py --docs                 every method: the tables of docs/stability.md"""
 
 import argparse
-import csv
-import json
 import os
 import pathlib
 import subprocess
@@ -26,8 +29,11 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
+PAGE = ROOT / "docs/stability.md"
 
 from accuracy import methods  # noqa: E402: found by the line above
+from common import results  # noqa: E402
+import theory  # noqa: E402
 
 BIN = pathlib.Path(os.environ.get("MPM_BIN", ROOT / "build/release/bin"))
 GROWTH = 0.05
@@ -108,23 +114,42 @@ def shock(method, factor):
 SCENES = {"block": block(), "fluid": fluid(), "bar": bar(), "shock": shock}
 
 
+class Refused(Exception):
+    """The program does not have this method."""
+
+
+def run(text, folder):
+    """The columns of the status file; None for a run that fails."""
+    path = pathlib.Path(folder, "limit.xmp")
+    path.write_text(text)
+    done = subprocess.run([BIN / "mpm_run", "--output-dir", folder, path], capture_output=True, text=True)
+    if done.returncode == 2:
+        raise Refused(done.stderr)
+    if done.returncode != 0:
+        return None
+    lines = [line.split() for line in pathlib.Path(folder, "limit.sta").read_text().splitlines() if line.strip()]
+    head = [[word for word in line if word != "#"] for line in lines if "relative_drift" in line][0]
+    return {name: [float(line[at]) for line in lines if line[0].isdigit()] for at, name in enumerate(head)}
+
+
 def growth(name, method, factor):
     """Of the energy, relative to the initial one; infinity for a run that fails."""
     with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder, "limit.xmp")
-        path.write_text(SCENES[name](method, factor))
-        done = subprocess.run([BIN / "mpm_run", "--output-dir", folder, path], capture_output=True, text=True)
-        if done.returncode == 2:
-            raise SystemExit(done.stderr)
-        if done.returncode != 0:
-            return float("inf")
-        with open(pathlib.Path(folder, "limit.sta")) as file:
-            lines = [line.split() for line in file if line.strip()]
-        at = [line for line in lines if "relative_drift" in line][0]
-        at = [word for word in at if word != "#"].index("relative_drift")
-        drifts = [float(line[at]) for line in lines if line[0][0].isdigit()]
-        last = drifts[-len(drifts) // 4:]
-        return sum(last) / len(last)
+        rows = run(SCENES[name](method, factor), folder)
+    if rows is None:
+        return float("inf")
+    drifts = rows["relative_drift"]
+    last = drifts[-len(drifts) // 4:]
+    return sum(last) / len(last)
+
+
+def of_program(method):
+    """The program's k: its critical step of a body at rest, in h/c."""
+    material = ('<Material name="m"><ReferenceDensity value="1"/>'
+                '<StrengthModel type="IsoElastic" Young="1" Poisson="0"/></Material>')
+    make = drifting(material, 2.82, (0, 0, 0), 1, 1, 8.0)
+    with tempfile.TemporaryDirectory() as folder:
+        return run(make(method, 1).replace('specified="8.0"', 'factor="1"'), folder)["dt"][1]
 
 
 def limit(name, method, low=0.2, high=3.2, within=0.05):
@@ -144,8 +169,34 @@ def limit(name, method, low=0.2, high=3.2, within=0.05):
     return low
 
 
+def measure(method, scenes):
+    """A row of the table."""
+    shape, transfer, scheme, mass = method
+    in_theory = theory.limit(shape, scheme, transfer) if mass == "lumped" else None
+    row = {"shape": shape, "transfer": transfer, "scheme": scheme, "mass": mass, "theory": in_theory,
+           **{name: limit(name, method) for name in scenes}}
+    return {**row, "program": of_program(method)}
+
+
+COLUMNS = {"shape": (lambda r: f"`{r['shape']}`", ""), "transfer": (lambda r: r["transfer"], ""),
+           "scheme": (lambda r: r["scheme"], ""),
+           **{name: (lambda r, name=name: r.get(name), ".2f") for name in ("theory", *SCENES)},
+           "limit": (lambda r: r["program"], ".2f")}
+
+
+def tables(rows):
+    flip = [r for r in rows if r["transfer"] == "FLIP" and r["mass"] == "lumped"]
+    other = [r for r in rows if r not in flip]
+    for row in other:
+        if row["mass"] == "consistent":
+            row["transfer"] = "FLIP, consistent mass"
+    some = {name: column for name, column in COLUMNS.items() if name not in ("bar", "shock")}
+    return {"limits": results.markdown(flip, {n: c for n, c in COLUMNS.items() if n != "transfer"}),
+            "limits of transfers": results.markdown(other, some)}
+
+
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--shape", nargs="+", choices=methods.shapes(), default=methods.shapes())
     parser.add_argument("--scheme", nargs="+", choices=methods.schemes(), default=methods.schemes())
     parser.add_argument("--transfer", nargs="+", choices=methods.choices("Solution", "transfer"), default=["FLIP"])
@@ -153,19 +204,30 @@ def main():
     parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--csv", type=pathlib.Path)
     parser.add_argument("--factor", type=float, help="report the energy growth at this factor instead")
+    parser.add_argument("--docs", action="store_true", help="every method, and the tables of docs/stability.md")
     options = parser.parse_args()
+    chosen = [(s, t, a, options.mass) for s in options.shape for t in options.transfer for a in options.scheme]
+    if options.docs:
+        chosen = [(s, t, a, m) for t in methods.choices("Solution", "transfer") for s in methods.shapes()
+                  for a in methods.schemes() for m in ("lumped", "consistent") if m == "lumped" or t == "FLIP"]
     rows = []
-    for shape in options.shape:
-        for transfer in options.transfer:
-            for scheme in options.scheme:
-                method = shape, transfer, scheme, options.mass
-                found = {n: growth(n, method, options.factor) if options.factor else limit(n, method)
-                         for n in options.scene}
-                rows.append([*method, *(f"{v:.4g}" for v in found.values())])
-                print(*rows[-1], flush=True)
-    if options.csv:
-        with options.csv.open("w", newline="") as file:
-            csv.writer(file).writerows([["shape", "transfer", "scheme", "mass", *options.scene], *rows])
+    for method in chosen:
+        plain = method[1] == "FLIP" and method[3] == "lumped"
+        scenes = [name for name in options.scene if plain or not options.docs or name in ("block", "fluid")]
+        try:
+            if options.factor:
+                print(*method, *(f"{growth(name, method, options.factor):.4g}" for name in scenes), flush=True)
+                continue
+            rows.append(measure(method, scenes))
+        except Refused as refusal:
+            if options.docs:
+                continue
+            raise SystemExit(refusal)
+        print(*(f"{v:.4g}" if isinstance(v, float) else v for v in rows[-1].values()), flush=True)
+        if options.csv:
+            results.write(options.csv, [{"bar": "", "shock": "", **row} for row in rows])
+    if options.docs:
+        results.refresh(PAGE, tables(rows))
 
 
 if __name__ == "__main__":

@@ -5,9 +5,8 @@
   verdicts.py --scene NAME ...     these scenes; --shape, --scheme, --averaging choose methods alike
   verdicts.py --docs               everything, and the table of docs/stability.md
 
-stable: the run completes, its energy balance is within 1 % in the mean of the last quarter of the rows of the status file (the
-sum of a single row oscillates: its parts belong to times half a step apart), and no particle is faster at the end than the scene's
-bound. drift: it completes, but the balance is not, or a particle is too fast. stopped: exit code 3 with a message that says what failed, at
+stable: the run completes, its energy balance is within 1 % in the mean of the last quarter of the rows of the status file,
+and no particle is faster at the end than the scene's bound. drift: it completes, but the balance is not, or a particle is too fast. stopped: exit code 3 with a message that says what failed, at
 which step. wrong: any other end, or a number that is not finite in a file. The program's defaults, with FLIP and a factor of 0.9
 where the scene says nothing else."""
 

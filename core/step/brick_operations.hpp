@@ -346,6 +346,7 @@ template <ShapePolicy S, TransferPolicy T>
   batch.vanishing = batch.negative = 0;
   body.model->update(batch, model_.options);
   at.statistics.events += batch.events;
+  at.work_of_stress += work_of_stress(batch);
   if ((batch.vanishing | batch.negative) != 0)
     name_unphysical(model_.scene->solution.warn, body, batch, at.statistics);
   store_sound_speed(batch);
@@ -439,6 +440,9 @@ template <bool moves, class F>
   };
   for_each_batch(s, component, frame, at, average, kinematics, stress);
   at.add_work_of_brick();
+  // USF's velocities are yet to follow these stresses.
+  at.statistics.internal_lead.add((moves ? 1 : -1) * model_.clock.lag / dt * at.work_of_stress);
+  at.work_of_stress = 0;
   if (velocities != Velocities::of_last_step) return;
   double& critical = critical_[static_cast<std::size_t>(s)];
   critical = std::max(critical, wave_weight_ * fastest);

@@ -117,6 +117,18 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
       rigid_(make_rigid_bodies(model, communication)),
       passes_(make_passes(model, communication.halo, rigid_.get())) {}
 
+void ExplicitIntegrator::begin_step(double dt) {
+  set_lag(dt);
+  passes_->begin_step(dt);
+}
+
+/// Half a step; half of the step before where EndTime shortens the last one, as it shortens the impulses too.
+void ExplicitIntegrator::set_lag(double dt) {
+  Clock& clock = model_.clock;
+  const bool last = clock.time + dt >= model_.scene->solution.end_time;
+  if (!last || clock.lag == 0) clock.lag = 0.5 * dt;
+}
+
 /// Conduction has taken the step as it was chosen: it moves heat between particles alone.
 void ExplicitIntegrator::limit_strain() {
   double& dt = model_.clock.dt;
@@ -124,6 +136,7 @@ void ExplicitIntegrator::limit_strain() {
       limited_step(dt, ranks_.largest(passes_->largest_strain_rate(strain_rate_limit(dt))));
   if (limited == dt) return;
   dt = limited;
+  set_lag(dt);
   passes_->shorten_step(dt);
 }
 

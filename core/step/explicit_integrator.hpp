@@ -15,7 +15,7 @@ class ExplicitIntegrator final : public Integrator {
 
   std::vector<Phase> phases() override;
   double next_step(const Clock& clock) const override;
-  void begin_step(double dt) override { passes_->begin_step(dt); }
+  void begin_step(double dt) override;
   double stable_step(const StepStatistics& statistics) const override;
   StepStatistics take_statistics() override {
     StepStatistics statistics = passes_->take_statistics();
@@ -25,6 +25,7 @@ class ExplicitIntegrator final : public Integrator {
   std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
 
  private:
+  void set_lag(double dt);
   void limit_strain();
 
   Model& model_;

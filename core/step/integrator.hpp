@@ -36,8 +36,9 @@ struct StepStatistics {
   DomainCounts domains;      ///< of particles
   MaterialEvents events;
   OffendingParticles vanishing,
-      negative;   ///< particles of negative volume and energy, where the scene checks for them
-  ExactSum work;  ///< external work
+      negative;            ///< particles of negative volume and energy, where the scene checks for them
+  ExactSum work;           ///< external work
+  ExactSum internal_lead;  ///< Ledger::internal_lead after this step
   ContactRecord contact;
   OffendingParticle undefined;  ///< for which an expression of the input has no finite value
 };

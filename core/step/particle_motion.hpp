@@ -16,6 +16,7 @@ struct alignas(128) ThreadScratch {
   Batch batch;
   StepStatistics statistics;
   double work = 0;                          ///< external work of the current brick
+  double work_of_stress = 0;                ///< the work of its stresses
   alignas(64) double old[3 * block_lanes];  ///< a block's velocities or positions before an update
   AlignedDoubles nodes, sums;  ///< of the current brick: records of node_doubles, one cache line each
   void add_work_of_brick() {
@@ -53,6 +54,18 @@ void add_work_of_motion(const NodeForces& forces, const ColumnLayout& layout, co
 /// gains 20 % of energy at a factor of 0.6. For the batch's particles at .. at + 7; gradients with which the
 /// step would stretch the old positions more than tenfold are left alone.
 void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_strain);
+
+/// Work of a batch's updated stresses, artificial viscosity included, over the step's strain, as the internal
+/// energy counts it.
+///
+/// The explicit schemes keep velocities of half a step ago beside the stresses of now: without any loss the
+/// sum of kinetic and internal energy oscillates by the work of half a step, which is not small in a shock.
+/// With P^n the power of the stresses of step n,
+///   (K^{n+1/2} - K^{n-1/2})/dt = -(P^n(v^{n-1/2}) + P^n(v^{n+1/2}))/2
+///   (U^{n+1} - U^n)/dt         =  (P^n(v^{n+1/2}) + P^{n+1}(v^{n+1/2}))/2
+/// so that K^{n+1/2} + U^{n+1} - dt P^{n+1}(v^{n+1/2})/2 is conserved: the state after a step of MUSL or USL.
+/// A step of USF ends with v^{n+1/2} and U^n, and dt P^n(v^{n-1/2})/2 is added, to first order.
+double work_of_stress(const Batch& batch);
 
 /// Records the particles of vanishing volume or negative energy, where the scene checks for them.
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch, StepStatistics& statistics);

@@ -165,6 +165,7 @@ StepStatistics PassesWith<S, T>::take_statistics() {
     total.vanishing.merge(w.statistics.vanishing);
     total.negative.merge(w.statistics.negative);
     total.work += w.statistics.work;
+    total.internal_lead += w.statistics.internal_lead;
     if (contact_) {
       total.contact += w.contact.record;
       total.fastest = std::max(total.fastest, contact_->speed_of_step(w.contact));

@@ -82,6 +82,7 @@ void Stepper::reduce_status() {
   Ledger& ledger = model_.ledger;
   const StepStatistics found = integrator_->take_statistics();
   ledger.external_work += found.work;
+  ledger.internal_lead = found.internal_lead;
   if (model_.scene->contact.enable) ledger.contact += found.contact;
   ledger.velocity_limited += found.limited;
   ledger.wide_domains += found.domains.wide;

@@ -223,7 +223,8 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
 
   const Ledger& ledger = model.ledger;
   std::array booked{ledger.external_work,    ledger.removed_mass,       ledger.removed_kinetic,
-                    ledger.removed_internal, ledger.contact.dissipated, ledger.contact.friction_heat};
+                    ledger.removed_internal, ledger.contact.dissipated, ledger.contact.friction_heat,
+                    ledger.internal_lead};
   std::array<std::int64_t, 3> count{ledger.eroded, ledger.left_grid, ledger.velocity_limited};
   ranks.sum(std::span<ExactSum>(booked));
   ranks.sum(std::span<std::int64_t>(count));
@@ -233,6 +234,7 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
   totals.removed_internal = booked[3].value();
   totals.dissipated_by_contact = booked[4].value();
   totals.friction_heat = booked[5].value();
+  totals.internal_lead = booked[6].value();
   totals.eroded = count[0];
   totals.left_grid = count[1];
   totals.velocity_limited = count[2];
@@ -276,8 +278,9 @@ Energies compute_energies(const Model& model, Reductions& ranks) {
 Totals compute_energy_totals(const Model& model, Reductions& ranks) {
   const EnergySums local = energy_sums(model);
   const Ledger& ledger = model.ledger;
-  std::array<ExactSum, 6> sum{local.kinetic,          local.internal,          ledger.external_work,
-                              ledger.removed_kinetic, ledger.removed_internal, ledger.contact.dissipated};
+  std::array sum{local.kinetic,          local.internal,          ledger.external_work,
+                 ledger.removed_kinetic, ledger.removed_internal, ledger.contact.dissipated,
+                 ledger.internal_lead};
   ranks.sum(std::span<ExactSum>(sum));
   Totals totals;
   totals.kinetic = sum[0].value();
@@ -286,14 +289,15 @@ Totals compute_energy_totals(const Model& model, Reductions& ranks) {
   totals.removed_kinetic = sum[3].value();
   totals.removed_internal = sum[4].value();
   totals.dissipated_by_contact = sum[5].value();
+  totals.internal_lead = sum[6].value();
   return totals;
 }
 
 EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
   EnergyBalance balance;
   balance.total = totals.kinetic + totals.internal;
-  const double accounted =
-      balance.total + totals.removed_kinetic + totals.removed_internal + totals.dissipated_by_contact;
+  const double accounted = balance.total - totals.internal_lead + totals.removed_kinetic +
+                           totals.removed_internal + totals.dissipated_by_contact;
   const double scale =
       std::max({std::abs(initial_energy), std::abs(totals.external_work), std::abs(accounted)});
   if (scale > 0) balance.relative_drift = (accounted - totals.external_work - initial_energy) / scale;

@@ -46,6 +46,7 @@ struct Totals : Quantities {
   double removed_mass = 0;
   double removed_kinetic = 0;
   double removed_internal = 0;
+  double internal_lead = 0;  ///< of the current state
   std::int64_t eroded = 0;
   std::int64_t left_grid = 0;
   std::int64_t velocity_limited = 0;
@@ -67,8 +68,8 @@ Totals compute_energy_totals(const Model& model, Reductions& ranks);
 
 struct EnergyBalance {
   double total = 0;  ///< kinetic + internal of the particles present
-  /// Present and removed energy and what contact has dissipated, less external work and initial energy;
-  /// relative to the largest of these.
+  /// Present and removed energy, that of the particles at one instant (Ledger::internal_lead), and what
+  /// contact has dissipated, less external work and initial energy; relative to the largest of these.
   double relative_drift = 0;
 };
 EnergyBalance energy_balance(const Totals& totals, double initial_energy);

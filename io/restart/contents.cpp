@@ -23,7 +23,8 @@ struct SumName {
 constexpr SumName sum_names[] = {{"external_work", &Ledger::external_work},
                                  {"removed_mass", &Ledger::removed_mass},
                                  {"removed_kinetic", &Ledger::removed_kinetic},
-                                 {"removed_internal", &Ledger::removed_internal}};
+                                 {"removed_internal", &Ledger::removed_internal},
+                                 {"internal_lead", &Ledger::internal_lead}};
 /// Only of scenes with contact; then its impulses follow.
 constexpr const char* contact_sums = "contact";
 
@@ -177,6 +178,7 @@ Ledger read_ledger(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "books");
   Ledger ledger;
   for (const auto& [name, sum] : sum_names) {
+    if (!hdf5::has_link(group, name)) continue;  // in a file of an earlier version
     const std::vector<std::int64_t> limbs = hdf5::read_all_int64(group, name);
     const auto raw = (ledger.*sum).raw();
     if (limbs.size() != raw.size()) throw FileError("an exact sum has the wrong number of limbs");
@@ -277,6 +279,7 @@ void write_run(hid_t file, const RestartContents& c) {
   hdf5::write_attribute(file, "step", c.clock.step);
   hdf5::write_attribute(file, "time", c.clock.time);
   hdf5::write_attribute(file, "dt", c.clock.dt);
+  hdf5::write_attribute(file, "lag", c.clock.lag);
   hdf5::write_attribute(file, "critical_dt", c.clock.critical_dt);
   hdf5::write_attribute(file, "first_critical_dt", c.clock.first_critical_dt);
   hdf5::write_attribute(file, "initial_energy", c.initial_energy);
@@ -287,6 +290,8 @@ void read_run(hid_t file, RestartContents& c) {
   c.clock.step = hdf5::read_int64(file, "step");
   c.clock.time = hdf5::read_double(file, "time");
   c.clock.dt = hdf5::read_double(file, "dt");
+  // Not in files of earlier versions.
+  c.clock.lag = hdf5::has_attribute(file, "lag") ? hdf5::read_double(file, "lag") : 0.5 * c.clock.dt;
   c.clock.critical_dt = hdf5::read_double(file, "critical_dt");
   c.clock.first_critical_dt = hdf5::read_double(file, "first_critical_dt");
   c.initial_energy = hdf5::read_double(file, "initial_energy");

@@ -120,7 +120,7 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options,
     if (!fails_) return;
     for (const Failure& failure : laws_.failures)
       failure.model->judge(batch, failure.erodes, scatters_, verdict, instance);
-    apply_failure<T>(batch, rules.failed, verdict);
+    apply_failure<T>(batch, rules.failed, laws_.reference_density, verdict);
   }
 }
 

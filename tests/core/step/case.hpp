@@ -132,6 +132,7 @@ class OracleLaw final : public core::ConstitutiveModel {
       if (i >= batch.particles) continue;
       double* lane = batch.block[i / core::block_lanes] + i % core::block_lanes;
       ReferenceParticle p = read(*batch.layout, lane);
+      batch.old_volume[i] = p.V;
       f(i, p);
       write(*batch.layout, p, lane);
       const double q = p.D < 0 ? material_.bq2 * p.c - material_.bq1 * batch.cell_size * p.D : 0.0;

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <omp.h>
 
+#include <numbers>
+
 #include "core/step/finite.hpp"
 #include "core/step/totals.hpp"
 #include "tests/core/step/case.hpp"
@@ -123,6 +125,33 @@ TEST_CASE("Without walls and gravity momentum stays what it was, to round-off") 
     CHECK(after.particles == 720);
     CHECK(after.mass == before.mass);
     for (int a = 0; a < 3; ++a) CHECK(std::abs(after.momentum[a] - before.momentum[a]) < 1e-14 * size);
+  }
+}
+
+TEST_CASE("Kinetic and internal energy of one instant add up to what they were") {
+  for (const ReferenceScheme scheme : schemes) {
+    INFO("scheme " << static_cast<int>(scheme));
+    ReferenceCase c = open_space(ReferenceShape::quadratic_bspline, scheme);
+    for (int n = 0; n < 12 * 8 * 8; ++n) {
+      ReferenceParticle p;
+      const int i = n % 12, j = n / 12 % 8, k = n / 96;
+      p.x = {9.25 + 0.5 * i, 4.25 + 0.5 * j, 4.25 + 0.5 * k};
+      p.v = {0.1 * std::cos(std::numbers::pi * (i + 0.5) / 12), 0, 0};
+      p.V = 0.125;
+      p.m = c.material.density * p.V;
+      c.particles.push_back(p);
+    }
+    SmallRun run(c);
+    double apart = 0, together = 0;
+    const double start = compute_totals(run.model, run.solo).kinetic;
+    for (int step = 0; step < 40; ++step) {
+      run.step();
+      const Totals now = compute_totals(run.model, run.solo);
+      apart = std::max(apart, std::abs(now.kinetic + now.internal - start));
+      together = std::max(together, std::abs(energy_balance(now, start).relative_drift * start));
+    }
+    CHECK(apart > 0.02 * start);
+    CHECK(together < 0.1 * apart);
   }
 }
 

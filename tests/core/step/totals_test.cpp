@@ -192,5 +192,7 @@ TEST_CASE("The energy balance counts what came in and what went out") {
   CHECK(kept.total == 90);
   CHECK(kept.relative_drift == 0);
   CHECK(energy_balance(t, 79).relative_drift == Approx(0.01).epsilon(1e-14));
+  t.internal_lead = 8;
+  CHECK(energy_balance(t, 72).relative_drift == 0);
   CHECK(energy_balance(Totals{}, 0).relative_drift == 0);
 }
