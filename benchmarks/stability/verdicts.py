@@ -3,7 +3,8 @@
 
   verdicts.py                      every scene with every method; a few minutes on one core
   verdicts.py --scene NAME ...     these scenes; --shape, --scheme, --averaging choose methods alike
-  verdicts.py --docs               everything, and the table of docs/stability.md
+  verdicts.py --fracture           the stretch at which each shape tears a bar
+  verdicts.py --docs               everything, and the tables of docs/stability.md
 
 stable: the run completes, its energy balance is within 1 % in the mean of the last quarter of the rows of the status file,
 and no particle is faster at the end than the scene's bound. drift: it completes, but the balance is not, or a particle is too fast. stopped: exit code 3 with a message that says what failed, at
@@ -196,6 +197,37 @@ def judge(name, shape, scheme, averaging, folder):
     return row
 
 
+LONGEST, RATE = 20, 1.0  # of the bar below, over its length; its rate of stretching at the start
+
+
+def fracture(shape, folder):
+    """How far a bar with two particles along a cell can be stretched before it tears by itself (numerical fracture). Its stresses
+    are negligible and its velocities linear along it, so that the specific volume is the stretch; it tears where the particles of
+    its middle half lack a tenth of that, since neighbours no longer share nodes."""
+    import h5py
+    length = 10
+    bar = _mpm.block("bar", (2.2, 1.2, 1.1), (length, 2, 2), (f"{RATE}*(x-2.2)", 0, 0), of="soft")
+    text = _mpm.scene([bar], box((length * LONGEST + 6, 5, 5)), solution((LONGEST - 1) / RATE), [elastic("soft", 1.0, 1e-9, 0.0)])
+    text = text.replace("<Grid>", f'<Grid shape="{shape}">')
+    text = text.replace("<Output>", '<Output><PostProcessing time_interval="0.05" h5part="1" var="density"/>')
+    (folder / "case.xmp").write_text(text)
+    done = _mpm.run([folder / "case.xmp", "--output-dir", folder])
+    if done.code != 0:
+        raise SystemExit(f"fracture, {shape}: {done.err}")
+    with h5py.File(folder / "case.h5part") as file:
+        for picture in _mpm.pictures(file):
+            stretch = 1 + RATE * float(picture.attrs["TimeValue"])
+            order = np.argsort(picture["x"][:])
+            middle = picture["density"][:][order[len(order) // 4:-len(order) // 4]]
+            if np.mean(1 / middle) < 0.9 * stretch:
+                return stretch
+    return float("inf")
+
+
+FRACTURE_COLUMNS = {"shape": (lambda r: f"`{r['shape']}`", ""),
+                    "torn at": (lambda r: f"{r['stretch']:.2f}" if np.isfinite(r["stretch"]) else f"not up to {LONGEST}", "")}
+
+
 COLUMNS = {"scene": (lambda r: SCENES[r["scene"]].about, ""), "shape": (lambda r: f"`{r['shape']}`", ""),
            "scheme": (lambda r: r["scheme"], ""), "averaging": (lambda r: r["averaging"], ""),
            "verdict": (lambda r: r["verdict"], ""), "energy drift, %": (lambda r: r["drift"] and 100 * r["drift"], "+.2g"),
@@ -209,8 +241,17 @@ def main():
     parser.add_argument("--shape", nargs="+", choices=methods.shapes(), default=SHAPES)
     parser.add_argument("--scheme", nargs="+", choices=methods.schemes(), default=("MUSL",))
     parser.add_argument("--averaging", nargs="+", choices=AVERAGING, default=("none",))
-    parser.add_argument("--docs", action="store_true", help="refresh the table of docs/stability.md")
+    parser.add_argument("--fracture", action="store_true", help="only the stretch at which each of the shapes tears a bar")
+    parser.add_argument("--docs", action="store_true", help="refresh the tables of docs/stability.md; fracture with every shape")
     options = parser.parse_args()
+    torn_at = []
+    if options.fracture or options.docs:
+        for shape in methods.shapes() if options.docs else options.shape:
+            with tempfile.TemporaryDirectory() as folder:
+                torn_at.append({"shape": shape, "stretch": fracture(shape, pathlib.Path(folder))})
+            print(f"{shape}, torn at {torn_at[-1]['stretch']:.3g}", flush=True)
+    if options.fracture and not options.docs:
+        return
     rows = []
     for name in options.scene:
         for shape in options.shape:
@@ -220,7 +261,7 @@ def main():
                         rows.append(judge(name, shape, scheme, averaging, pathlib.Path(folder)))
                     print(", ".join(f"{v:.3g}" if isinstance(v, float) else str(v) for v in rows[-1].values()), flush=True)
     if options.docs:
-        results.refresh(PAGE, {"verdicts": results.markdown(rows, COLUMNS)})
+        results.refresh(PAGE, {"verdicts": results.markdown(rows, COLUMNS), "fracture": results.markdown(torn_at, FRACTURE_COLUMNS)})
 
 
 if __name__ == "__main__":
