@@ -152,18 +152,20 @@ const RigidState& RigidBodies::state(int number) const {
   return *model_.bodies[static_cast<std::size_t>(bodies_[static_cast<std::size_t>(number)].body)].rigid_state;
 }
 
-void RigidBodies::begin_step(const Loads& loads, const Vec3<double>& gravity, double dt) {
+void RigidBodies::begin_step(const Loads& loads, const Vec3<double>& gravity, const StepLength& length) {
   for (Rigid& rigid : bodies_) {
     const RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
     rigid.energy_before = kinetic_energy(state);
     rigid.velocity_before = state.velocity;
     rigid.spin_before = state.spin;
   }
-  move_without_contact(loads, gravity, dt);
+  move_without_contact(loads, gravity, length);
 }
 
-void RigidBodies::move_without_contact(const Loads& loads, const Vec3<double>& gravity, double dt) {
-  dt_ = dt;
+void RigidBodies::move_without_contact(const Loads& loads, const Vec3<double>& gravity,
+                                       const StepLength& length) {
+  length_ = length;
+  const double dt = length.velocity_dt;
   for (std::size_t r = 0; r < bodies_.size(); ++r) {
     Rigid& rigid = bodies_[r];
     RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
@@ -207,8 +209,8 @@ void RigidBodies::find_motion(const std::function<void(std::span<RigidResponse>)
 void RigidBodies::move(int number, const ColumnLayout& layout, double* block) const {
   const RigidState& s = state(number);
   const RigidVelocity& end = bodies_[static_cast<std::size_t>(number)].end;
-  const Mat3<double> turn = rotation(dt_ * end.spin);
-  const Vec3<double> centre = s.centre + dt_ * end.velocity;
+  const Mat3<double> turn = rotation(length_.dt * end.spin);
+  const Vec3<double> centre = s.centre + length_.dt * end.velocity;
   double* x = block + layout.offset(Column::position_x);
   for (int i = 0; i < block_lanes; ++i) {
     const Vec3<double> at =
@@ -259,7 +261,7 @@ void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, 
     const Vec3<double> impulse{s[0].value(), s[1].value(), s[2].value()},
         moment{s[3].value(), s[4].value(), s[5].value()};
     const double without_contact = kinetic_energy(state), given = s[6].value();
-    core::end_step(state, dt_, rigid.end.velocity, rigid.end.spin, impulse, moment, rigid.driven);
+    core::end_step(state, length_, rigid.end.velocity, rigid.end.spin, impulse, moment, rigid.driven);
     state.contacts = static_cast<double>(contacts[r]);
     if (ranks_.rank() != 0) continue;
     work.add(without_contact - rigid.energy_before);

@@ -59,10 +59,10 @@ class RigidBodies {
   }
 
   /// The motion that the bodies would have without contact.
-  void begin_step(const Loads& loads, const Vec3<double>& gravity, double dt);
+  void begin_step(const Loads& loads, const Vec3<double>& gravity, const StepLength& length);
   /// The same for a shorter step than begun.
-  void shorten_step(const Loads& loads, const Vec3<double>& gravity, double dt) {
-    move_without_contact(loads, gravity, dt);
+  void shorten_step(const Loads& loads, const Vec3<double>& gravity, const StepLength& length) {
+    move_without_contact(loads, gravity, length);
   }
   /// The motion of the free bodies at the end of the step; respond(responses) adds what the nodes of this
   /// rank answer to velocity_at_end(), per body. Collective.
@@ -84,13 +84,13 @@ class RigidBodies {
     RigidVelocity end{};  ///< with which it moves in this step
   };
   void find_states(Reductions& ranks);
-  void move_without_contact(const Loads& loads, const Vec3<double>& gravity, double dt);
+  void move_without_contact(const Loads& loads, const Vec3<double>& gravity, const StepLength& length);
   /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
   Vec3<double> symmetry_planes_at(int number);
 
   Model& model_;
   Reductions& ranks_;
-  double dt_ = 0;
+  StepLength length_;
   std::vector<Rigid> bodies_;
   std::vector<double> node_mass_;
   std::vector<int> by_component_, by_body_;

@@ -13,6 +13,7 @@
 
 #include <cmath>
 
+#include "core/step/step_length.hpp"
 #include "core/tensor/tensor.hpp"
 
 namespace mpm::core {
@@ -87,15 +88,16 @@ inline Vec3<double> spin_with(const RigidState& s, const Vec3<double>& l) {
   return spin_of(s.inertia, l);
 }
 
-/// The end of a step of length dt, in which the body has moved with `velocity` and `spin`, with contact's
+/// The end of a step, in which the body has moved with `velocity` and `spin`, with contact's
 /// impulse and its moment about the centre at its beginning; `driven`: contact does not change the motion.
-inline void end_step(RigidState& s, double dt, const Vec3<double>& velocity, const Vec3<double>& spin,
-                     const Vec3<double>& impulse, const Vec3<double>& moment, bool driven) {
+inline void end_step(RigidState& s, const StepLength& length, const Vec3<double>& velocity,
+                     const Vec3<double>& spin, const Vec3<double>& impulse, const Vec3<double>& moment,
+                     bool driven) {
   const Vec3<double> angular_momentum = s.inertia * s.spin + moment;
-  s.inertia = rotate(rotation(dt * spin), s.inertia);
-  s.centre = s.centre + dt * velocity;
-  s.force = (1 / dt) * impulse;
-  s.moment = (1 / dt) * moment;
+  s.inertia = rotate(rotation(length.dt * spin), s.inertia);
+  s.centre = s.centre + length.dt * velocity;
+  s.force = (1 / length.velocity_dt) * impulse;
+  s.moment = (1 / length.velocity_dt) * moment;
   if (driven) return;
   s.velocity = s.velocity + (1 / s.mass) * impulse;
   s.spin = spin_with(s, angular_momentum);

@@ -60,7 +60,7 @@ void ImplicitContact::begin_step(const Loads& loads, double dt) {
   if (rigid_ != nullptr && step_ == model_.clock.step)
     rigid_->shorten_step(loads, gravity, dt);
   else if (rigid_ != nullptr)
-    rigid_->begin_step(loads, gravity, dt);
+    rigid_->begin_step(loads, gravity, {dt, dt});
   step_ = model_.clock.step;
   dt_ = dt;
 }

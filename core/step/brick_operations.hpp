@@ -162,7 +162,8 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
   sum<NodeArray::first>(moving_shared_, s, component, at, nodes, some);
   // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
   if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
-  update_nodes(forces_, dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(some), nodes);
+  update_nodes(forces_, velocity_dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(some),
+               nodes);
 }
 
 /// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the
@@ -220,19 +221,20 @@ template <ShapePolicy S, TransferPolicy T>
                                                                  Scratch& at) {
   if (rigid(body) >= 0) return;
   if (loads_.act(*model_.grid, s, body))
-    at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data());
+    at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data(), velocity_dt);
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
   const BodyMotion& motion = loads_.motion(body);
   if (motion.kind == BodyMotion::Kind::rigid) {
     std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
     take_velocities(frame, place, layout, block, at);
-    integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), dt, block, used, at);
+    integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), velocity_dt, block, used,
+                               at);
     return;
   }
   const bool falls = forces_.gravity != Vec3<double>{};
   if (falls) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   take_velocities(frame, place, layout, block, at);
-  if (falls) correct_work_of_gravity(forces_.gravity, dt, layout, block, used, at);
+  if (falls) correct_work_of_gravity(forces_.gravity, {dt, velocity_dt}, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion.velocity, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())
@@ -257,7 +259,7 @@ void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* bl
   else
     motion.move(layout, dt, block);
   if constexpr (settles) motion.carry(layout, dt, block);
-  if (does_work) add_work_of_motion(forces_, layout, block, used, at);
+  if (does_work) add_work_of_motion(forces_, velocity_dt / dt, layout, block, used, at);
 }
 
 /// The particles' domains: by the velocity gradient of the batch's block `b`, or as they have been carried.
@@ -441,7 +443,7 @@ template <bool moves, class F>
   for_each_batch(s, component, frame, at, average, kinematics, stress);
   at.add_work_of_brick();
   // USF's velocities are yet to follow these stresses.
-  at.statistics.internal_lead.add((moves ? 1 : -1) * model_.clock.lag / dt * at.work_of_stress);
+  at.statistics.internal_lead.add((moves ? 0.5 : -0.5) * at.work_of_stress);
   at.work_of_stress = 0;
   if (velocities != Velocities::of_last_step) return;
   double& critical = critical_[static_cast<std::size_t>(s)];

@@ -118,15 +118,8 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
       passes_(make_passes(model, communication.halo, rigid_.get())) {}
 
 void ExplicitIntegrator::begin_step(double dt) {
-  set_lag(dt);
-  passes_->begin_step(dt);
-}
-
-/// Half a step; half of the step before where EndTime shortens the last one, as it shortens the impulses too.
-void ExplicitIntegrator::set_lag(double dt) {
-  Clock& clock = model_.clock;
-  const bool last = clock.time + dt >= model_.scene->solution.end_time;
-  if (!last || clock.lag == 0) clock.lag = 0.5 * dt;
+  dt_before_ = model_.clock.step > 0 ? model_.clock.dt : dt;
+  passes_->begin_step(length_of(dt));
 }
 
 /// Conduction has taken the step as it was chosen: it moves heat between particles alone.
@@ -136,8 +129,7 @@ void ExplicitIntegrator::limit_strain() {
       limited_step(dt, ranks_.largest(passes_->largest_strain_rate(strain_rate_limit(dt))));
   if (limited == dt) return;
   dt = limited;
-  set_lag(dt);
-  passes_->shorten_step(dt);
+  passes_->shorten_step(length_of(dt));
 }
 
 double ExplicitIntegrator::next_step(const Clock& clock) const {

@@ -25,7 +25,8 @@ class ExplicitIntegrator final : public Integrator {
   std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
 
  private:
-  void set_lag(double dt);
+  /// Of a step of length dt. The velocities of the input are those of half a step before time zero.
+  StepLength length_of(double dt) const { return {dt, 0.5 * (dt_before_ + dt)}; }
   void limit_strain();
 
   Model& model_;
@@ -34,6 +35,7 @@ class ExplicitIntegrator final : public Integrator {
   std::unique_ptr<Conduction> heat_;
   std::unique_ptr<RigidBodies> rigid_;  ///< null without any in contact
   std::unique_ptr<Passes> passes_;
+  double dt_before_ = 0;  ///< of the step before
 };
 
 }  // namespace mpm::core

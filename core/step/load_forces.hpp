@@ -111,12 +111,12 @@ template <ShapePolicy S>
       });
 }
 
-/// Work of these forces over the step. It uses the nodes' velocity at midstep, since the nodes gain the
-/// kinetic energy f (v + v')/2 dt.
+/// Work of these forces over the step, whose velocities advance by `dt`. It uses the nodes' velocity at
+/// midstep, since the nodes gain the kinetic energy f (v + v')/2 dt.
 template <ShapePolicy S>
 [[gnu::noinline]] double work_of_loads(const Loads& loads, const Model& model, Slot slot, int body,
                                        const typename S::Place& place, const double* block, int used,
-                                       const double* nodes) {
+                                       const double* nodes, double dt) {
   double power = 0;
   detail::for_each_load_force<S>(loads, model, slot, body, place, block, used,
                                  [&](int node, const Vec3<double>& force) {
@@ -124,7 +124,7 @@ template <ShapePolicy S>
                                    for (int a = 0; a < 3; ++a)
                                      power += force[a] * (at.velocity()[a] - 0.5 * at.increment()[a]);
                                  });
-  return power * loads.step();
+  return power * dt;
 }
 
 }  // namespace mpm::core

@@ -123,7 +123,6 @@ void Loads::add_functions(const Model& model, const std::vector<const BodyInput*
 }
 
 void Loads::begin_step(double time, double dt, double part) {
-  dt_ = dt;
   middle_ = time + part * dt;
   for (const Held& h : held_) {
     double v[3];

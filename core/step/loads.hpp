@@ -103,7 +103,6 @@ class Loads {
     double shear_speed = 0;
   };
   const OfBody& of(int body) const { return bodies_[static_cast<std::size_t>(body)]; }
-  double step() const { return dt_; }
 
   /// The part of a body's force per mass that varies with the place, for a particle whose column c is
   /// lane[layout.offset(c)].
@@ -134,7 +133,6 @@ class Loads {
   std::vector<Held> held_;  ///< bodies whose prescribed velocity has expressions
   std::vector<BodyMotion> motions_;
   bool nonreflecting_ = false;
-  double dt_ = 0;
   double middle_ = 0;      ///< time of the loads: the middle of the step, or as begin_step() was told
   double difference_ = 0;  ///< step of the central differences
 };

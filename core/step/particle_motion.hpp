@@ -36,15 +36,17 @@ void integrate_rigid_velocities(const ColumnLayout& layout, const Vec3<double>& 
                                 double* block, int used, ThreadScratch& at);
 /// x += dt v with the particles' own velocities.
 void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block);
-/// A particle moves with its new velocity, but a force on it works with the mean of the old and the new one:
-/// takes from the work of gravity over the displacement m g . (v - v_old) dt/2, v_old in at.old. Over the run
-/// this adds up to no more than one step's fall, but at the start of a fall that is much.
-void correct_work_of_gravity(const Vec3<double>& gravity, double dt, const ColumnLayout& layout,
-                             const double* block, int used, ThreadScratch& at);
+/// A particle moves with its new velocity, but a force on it works with the mean of the old and the new one,
+/// over the time between these: replaces the work of gravity over the displacement, m g . v dt, by m g .
+/// (v_old + v) velocity_dt/2, v_old in at.old. Over the run this adds up to no more than one step's fall, but
+/// at the start of a fall that is much.
+void correct_work_of_gravity(const Vec3<double>& gravity, const StepLength& length,
+                             const ColumnLayout& layout, const double* block, int used, ThreadScratch& at);
 
-/// Work of gravity and damping over a block's displacement from the positions in at.old.
-void add_work_of_motion(const NodeForces& forces, const ColumnLayout& layout, const double* block, int used,
-                        ThreadScratch& at);
+/// Work of gravity and damping over a block's displacement from the positions in at.old; damping acts for
+/// `share` of the displacement's time.
+void add_work_of_motion(const NodeForces& forces, double share, const ColumnLayout& layout,
+                        const double* block, int used, ThreadScratch& at);
 
 /// USF takes the velocity gradient L at the particles' new positions, x = x_old + dt v(x_old), for the
 /// deformation of the motion that led there. Relative to the old positions, as the other schemes have it, it
@@ -60,7 +62,7 @@ void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_
 ///
 /// The explicit schemes keep velocities of half a step ago beside the stresses of now: without any loss the
 /// sum of kinetic and internal energy oscillates by the work of half a step, which is not small in a shock.
-/// With P^n the power of the stresses of step n,
+/// With P^n the power of the stresses of step n and steps of one length,
 ///   (K^{n+1/2} - K^{n-1/2})/dt = -(P^n(v^{n-1/2}) + P^n(v^{n+1/2}))/2
 ///   (U^{n+1} - U^n)/dt         =  (P^n(v^{n+1/2}) + P^{n+1}(v^{n+1/2}))/2
 /// so that K^{n+1/2} + U^{n+1} - dt P^{n+1}(v^{n+1/2})/2 is conserved: the state after a step of MUSL or USL.

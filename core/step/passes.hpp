@@ -20,12 +20,12 @@ class Passes {
 
   virtual const Loads& loads() const = 0;
   /// Called at the beginning of every step: sets its length and loads.
-  virtual void begin_step(double dt) = 0;
+  virtual void begin_step(const StepLength& length) = 0;
   /// Largest strain rate of this rank's cells with the velocities at the start of the step, once they are on
   /// the grid, or a smaller number where it is not above `above` (strain_limit.hpp); and a step that is to be
   /// shorter than begun, before it has been used.
   virtual double largest_strain_rate(double above) = 0;
-  virtual void shorten_step(double dt) = 0;
+  virtual void shorten_step(const StepLength& length) = 0;
 
   /// Contact: the velocity fields of the components, then the surfaces of those that meet, to the grid. Only
   /// where there is contact.

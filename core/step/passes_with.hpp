@@ -41,18 +41,18 @@ class PassesWith final : public Passes {
   PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid);
 
   const Loads& loads() const override { return loads_; }
-  void begin_step(double length) override {
+  void begin_step(const StepLength& length) override {
     set_step(length);
-    if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, dt);
+    if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, length);
     if (selects_) sparse_.begin_step(*model_.grid);
     follows_grid_ = follow_grid();
     begin_corrections();
     begin_mass();
   }
   double largest_strain_rate(double above) override;
-  void shorten_step(double length) override {
+  void shorten_step(const StepLength& length) override {
     set_step(length);
-    if (rigid_ != nullptr) rigid_->shorten_step(loads_, forces_.gravity, dt);
+    if (rigid_ != nullptr) rigid_->shorten_step(loads_, forces_.gravity, length);
   }
 
   void find_fields(Reductions& ranks) override { contact_->find_fields(*model_.grid, halo_, ranks); }
@@ -123,8 +123,9 @@ class PassesWith final : public Passes {
     [[no_unique_address]] std::conditional_t<corrects || solves, typename S::Field, Nothing> corrected;
   };
 
-  void set_step(double length) {
-    dt = length;
+  void set_step(const StepLength& length) {
+    dt = length.dt;
+    velocity_dt = length.velocity_dt;
     transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
     loads_.begin_step(model_.clock.time, dt);
   }
@@ -334,8 +335,8 @@ class PassesWith final : public Passes {
   bool correcting_ = false;    ///< in this step
   bool follows_grid_ = false;  ///< follow_grid() in this step
   TransferStep transfer_step_;
-  double dt = 0;           ///< of the current step
-  double velocity_limit_;  ///< infinite without LimitVelocity
+  double dt = 0, velocity_dt = 0;  ///< of the current step: StepLength
+  double velocity_limit_;          ///< infinite without LimitVelocity
   double erosion_volume_;
   double wave_weight_;                                     ///< of wave speeds in the critical step
   std::vector<Scratch> scratch_;                           ///< by thread

@@ -75,7 +75,7 @@ void ReferenceStepper::step() {
 
 template <class Support>
 void ReferenceStepper::step_with() {
-  const double dt = this->dt();
+  const double dt = this->dt(), velocity_dt = 0.5 * ((steps_ > 0 ? last_dt_ : dt) + dt);
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
   const bool usf = case_.scheme == ReferenceScheme::usf;
   if (case_.shape == ReferenceShape::ddmp) find_cells_in_use();
@@ -89,10 +89,10 @@ void ReferenceStepper::step_with() {
     }
     update_stresses<Support>(dt);
   }
-  integrate_momentum(dt);
+  integrate_momentum(velocity_dt);
   if (corrects()) add_orders<Support>();
-  if (case_.consistent) solve_motion<Support>(dt);
-  grid_to_particles<Support>(dt);
+  if (case_.consistent) solve_motion<Support>(velocity_dt);
+  grid_to_particles<Support>(dt, velocity_dt);
   if (!usf) {
     final_velocities();
     if (moves_last()) {
@@ -106,6 +106,7 @@ void ReferenceStepper::step_with() {
   if (case_.shape == ReferenceShape::cpdi2)
     for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].corner = next_corner_[n];
   time_ += dt;
+  last_dt_ = dt;
   ++steps_;
 }
 
@@ -258,7 +259,7 @@ void ReferenceStepper::move_particles(double dt) {
 
 /// 2-42, 2-43, and the sum of 2-45.
 template <class Support>
-void ReferenceStepper::grid_to_particles(double dt) {
+void ReferenceStepper::grid_to_particles(double dt, double velocity_dt) {
   if (!moves_last()) move_particles<Support>(dt);
   for (auto& particle : case_.particles) {
     const Support at = support<Support>(particle);
@@ -267,7 +268,7 @@ void ReferenceStepper::grid_to_particles(double dt) {
       const Node& node = grid_[at.node[n]];
       if (!node.active) continue;
       for (std::size_t a = 0; a < 3; ++a)
-        particle.v[a] += at.value(n, a) * (corrects() ? node.u[a] : dt * node.a[a]);
+        particle.v[a] += at.value(n, a) * (corrects() ? node.u[a] : velocity_dt * node.a[a]);
     }
     if (case_.scheme == ReferenceScheme::usf) {
       Matrix L{};

@@ -167,7 +167,7 @@ class ReferenceStepper {
     return corrects() && case_.transfer == ReferenceTransfer::fmpm ? node.u : node.v;
   }
   template <class Support>
-  void grid_to_particles(double dt);
+  void grid_to_particles(double dt, double velocity_dt);
   template <class Support>
   void move_particles(double dt);
   bool moves_last() const { return case_.consistent && case_.scheme == ReferenceScheme::musl; }
@@ -190,7 +190,7 @@ class ReferenceStepper {
   std::vector<Node> grid_;
   std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
   std::vector<DomainCorners> next_corner_;  ///< for cpdi2
-  double time_ = 0;
+  double time_ = 0, last_dt_ = 0;
   int steps_ = 0;  ///< completed
 };
 
