@@ -63,14 +63,19 @@ def functions(shape, x, nodes):
     return linear
 
 
-class Packing:
-    """The matrices of one packing, for one shape."""
+def packing(seed):
+    """Places of a bar's particles."""
+    random = np.random.default_rng(seed)
+    count = CELLS * PER_CELL
+    return (np.arange(count) + 0.5 + random.uniform(-0.5, 0.5, count)) / PER_CELL + random.uniform(0, 1)
 
-    def __init__(self, shape, seed):
-        random = np.random.default_rng(seed)
-        count = CELLS * PER_CELL
-        self.nodes = np.arange(-3.0, CELLS + 5)
-        self.x = (np.arange(count) + 0.5 + random.uniform(-0.5, 0.5, count)) / PER_CELL + random.uniform(0, 1)
+
+class Bar:
+    """The matrices of one shape for particles at x, each of the volume 1/2."""
+
+    def __init__(self, shape, x):
+        self.x = np.asarray(x)
+        self.nodes = np.arange(np.floor(self.x.min()) - 3, np.floor(self.x.max()) + 5)
         self.volume = 1 / PER_CELL
         values, gradients = functions(shape, self.x, self.nodes)
         mass = values.sum(axis=1) * self.volume
@@ -138,15 +143,15 @@ class Packing:
 def limit(shape, scheme, transfer="FLIP", packings=PACKINGS, within=0.01, high=4.0, low=0.02):
     """Least over the packings of the largest stable step; 0 if there is none above `low`."""
     for seed in range(packings):
-        packing = Packing(shape, seed)
-        if packing.stable(scheme, transfer, high):
+        bar = Bar(shape, packing(seed))
+        if bar.stable(scheme, transfer, high):
             continue
-        if not packing.stable(scheme, transfer, low):
+        if not bar.stable(scheme, transfer, low):
             return 0.0
         below = low
         while high > (1 + within) * below:
             middle = (below * high) ** 0.5
-            if packing.stable(scheme, transfer, middle):
+            if bar.stable(scheme, transfer, middle):
                 below = middle
             else:
                 high = middle

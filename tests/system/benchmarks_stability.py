@@ -13,6 +13,7 @@ sys.path[:0] = [str(FOLDER), str(_mpm.SOURCE / "benchmarks")]
 
 import limits  # noqa: E402: found by the line above
 import long_runs  # noqa: E402
+import theory  # noqa: E402
 import verdicts  # noqa: E402
 from accuracy import methods  # noqa: E402
 
@@ -23,6 +24,32 @@ class Stability(unittest.TestCase):
         method = "linear", "FLIP", "USL", "lumped"
         self.assertLess(limits.growth("fluid", method, 0.5), limits.GROWTH)
         self.assertGreater(limits.growth("fluid", method, 1.0), limits.GROWTH)
+
+    def test_theory(self):
+        # A lone particle at xi between two nodes, neither lighter than the floor of USL's masses: its stress changes by the factor
+        # 1 - dt^2/(xi (1 - xi)) in a step of USL (thesis 2-49), and not with MUSL.
+        for xi in (0.4, 0.5):
+            bar = theory.Bar("linear", [2 + xi])
+            edge = (2 * xi * (1 - xi)) ** 0.5
+            self.assertTrue(bar.stable("USL", "FLIP", 0.99 * edge))
+            self.assertFalse(bar.stable("USL", "FLIP", 1.01 * edge))
+            self.assertTrue(bar.stable("MUSL", "FLIP", 3 * edge))
+        # MUSL and USF are the same two half steps, begun with either.
+        for shape in ("linear", "SGMP", "QuadraticBSpline"):
+            self.assertAlmostEqual(theory.limit(shape, "MUSL", packings=20), theory.limit(shape, "USF", packings=20), delta=0.03)
+        # Wider functions bear longer steps.
+        self.assertLess(theory.limit("linear", "MUSL"), theory.limit("QuadraticBSpline", "MUSL"))
+
+    def test_limit_of_the_program(self):
+        self.assertAlmostEqual(limits.of_program(("SGMP", "FLIP", "MUSL", "lumped")), 1.25, delta=1e-9)
+        with self.assertRaises(limits.Refused):
+            limits.growth("block", ("linear", "APIC", "MUSL", "lumped"), 0.5)
+
+    def test_fracture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            stretch = verdicts.fracture("linear", pathlib.Path(folder))
+        self.assertGreater(stretch, 2)  # where a cell may be empty at first
+        self.assertLess(stretch, 5)  # no particle shares a cell with another beyond 4
 
     def test_long_runs(self):
         row = long_runs.measure("viscous", methods.Method("linear", "FLIP", "MUSL"), steps=5000)
