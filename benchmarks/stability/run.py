@@ -15,8 +15,12 @@ PARTS = ("limits", "verdicts", "long_runs")
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", nargs="*", choices=[*PARTS, []], default=PARTS)
-    for part in parser.parse_args().part:
+    parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
+    options = parser.parse_args()
+    unknown = [part for part in options.parts if part not in PARTS]
+    if unknown:
+        parser.error(f"no part {unknown[0]}; choose from {', '.join(PARTS)}")
+    for part in options.parts or PARTS:
         print(f"{part}.py --docs", flush=True)
         subprocess.run([sys.executable, pathlib.Path(__file__).with_name(f"{part}.py"), "--docs"], check=True)
 

@@ -66,7 +66,7 @@ class Stability(unittest.TestCase):
 
     def test_what_does_not_exist(self):
         for script, words in (("limits.py", ("--shape", "cubic")), ("verdicts.py", ("--scene", "none")),
-                              ("long_runs.py", ("--scheme", "RK4"))):
+                              ("long_runs.py", ("--scheme", "RK4")), ("run.py", ("everything",))):
             done = subprocess.run([sys.executable, FOLDER / script, *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, done)
             self.assertIn("choose from", done.stderr)
