@@ -234,7 +234,7 @@ template <ShapePolicy S, TransferPolicy T>
   const bool falls = forces_.gravity != Vec3<double>{};
   if (falls) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   take_velocities(frame, place, layout, block, at);
-  if (falls) correct_work_of_gravity(forces_.gravity, {dt, velocity_dt}, layout, block, used, at);
+  if (falls) correct_work_of_gravity(forces_.gravity, {dt, velocity_dt, lag_}, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion.velocity, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())
@@ -443,7 +443,7 @@ template <bool moves, class F>
   for_each_batch(s, component, frame, at, average, kinematics, stress);
   at.add_work_of_brick();
   // USF's velocities are yet to follow these stresses.
-  at.statistics.internal_lead.add((moves ? 0.5 : -0.5) * at.work_of_stress);
+  at.statistics.internal_lead.add((moves ? lag_ : -lag_) / dt * at.work_of_stress);
   at.work_of_stress = 0;
   if (velocities != Velocities::of_last_step) return;
   double& critical = critical_[static_cast<std::size_t>(s)];

@@ -118,8 +118,16 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
       passes_(make_passes(model, communication.halo, rigid_.get())) {}
 
 void ExplicitIntegrator::begin_step(double dt) {
-  dt_before_ = model_.clock.step > 0 ? model_.clock.dt : dt;
-  passes_->begin_step(length_of(dt));
+  lag_before_ = model_.clock.lag;
+  passes_->begin_step(set_length(dt));
+}
+
+StepLength ExplicitIntegrator::set_length(double dt) {
+  Clock& clock = model_.clock;
+  const bool last = clock.time + dt >= model_.scene->solution.end_time;
+  const StepLength length = step_length(dt, clock.step > 0 ? lag_before_ : 0.5 * dt, last);
+  clock.lag = length.lag;
+  return length;
 }
 
 /// Conduction has taken the step as it was chosen: it moves heat between particles alone.
@@ -129,7 +137,7 @@ void ExplicitIntegrator::limit_strain() {
       limited_step(dt, ranks_.largest(passes_->largest_strain_rate(strain_rate_limit(dt))));
   if (limited == dt) return;
   dt = limited;
-  passes_->shorten_step(length_of(dt));
+  passes_->shorten_step(set_length(dt));
 }
 
 double ExplicitIntegrator::next_step(const Clock& clock) const {

@@ -25,8 +25,7 @@ class ExplicitIntegrator final : public Integrator {
   std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
 
  private:
-  /// Of a step of length dt. The velocities of the input are those of half a step before time zero.
-  StepLength length_of(double dt) const { return {dt, 0.5 * (dt_before_ + dt)}; }
+  StepLength set_length(double dt);
   void limit_strain();
 
   Model& model_;
@@ -35,7 +34,7 @@ class ExplicitIntegrator final : public Integrator {
   std::unique_ptr<Conduction> heat_;
   std::unique_ptr<RigidBodies> rigid_;  ///< null without any in contact
   std::unique_ptr<Passes> passes_;
-  double dt_before_ = 0;  ///< of the step before
+  double lag_before_ = 0;  ///< Clock::lag at the start of the step
 };
 
 }  // namespace mpm::core

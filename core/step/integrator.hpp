@@ -53,7 +53,7 @@ class Integrator {
 
   /// Length of the next step; the stepper shortens the last one to end at EndTime. The same on every rank.
   virtual double next_step(const Clock& clock) const = 0;
-  /// Called before the phases of every step; Clock::dt is still that of the step before.
+  /// Called before the phases of every step.
   virtual void begin_step(double dt) = 0;
 
   /// Largest stable step of this rank's particles after the step just completed.

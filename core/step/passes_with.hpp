@@ -126,6 +126,7 @@ class PassesWith final : public Passes {
   void set_step(const StepLength& length) {
     dt = length.dt;
     velocity_dt = length.velocity_dt;
+    lag_ = length.lag;
     transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
     loads_.begin_step(model_.clock.time, dt);
   }
@@ -335,8 +336,8 @@ class PassesWith final : public Passes {
   bool correcting_ = false;    ///< in this step
   bool follows_grid_ = false;  ///< follow_grid() in this step
   TransferStep transfer_step_;
-  double dt = 0, velocity_dt = 0;  ///< of the current step: StepLength
-  double velocity_limit_;          ///< infinite without LimitVelocity
+  double dt = 0, velocity_dt = 0, lag_ = 0;  ///< of the current step: StepLength
+  double velocity_limit_;                    ///< infinite without LimitVelocity
   double erosion_volume_;
   double wave_weight_;                                     ///< of wave speeds in the critical step
   std::vector<Scratch> scratch_;                           ///< by thread

@@ -73,8 +73,8 @@ void Stepper::choose_time_step() {
         "step {}, time {:.9g}: a time step of {:.3g} does not advance the time any more; the fastest: {}",
         clock.step + 1, clock.time, dt, fastest_in_words(model_, communication_)));
   }
-  integrator_->begin_step(dt);
   clock.dt = dt;
+  integrator_->begin_step(dt);
 }
 
 void Stepper::reduce_status() {

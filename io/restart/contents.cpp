@@ -279,6 +279,7 @@ void write_run(hid_t file, const RestartContents& c) {
   hdf5::write_attribute(file, "step", c.clock.step);
   hdf5::write_attribute(file, "time", c.clock.time);
   hdf5::write_attribute(file, "dt", c.clock.dt);
+  hdf5::write_attribute(file, "lag", c.clock.lag);
   hdf5::write_attribute(file, "critical_dt", c.clock.critical_dt);
   hdf5::write_attribute(file, "first_critical_dt", c.clock.first_critical_dt);
   hdf5::write_attribute(file, "initial_energy", c.initial_energy);
@@ -289,6 +290,8 @@ void read_run(hid_t file, RestartContents& c) {
   c.clock.step = hdf5::read_int64(file, "step");
   c.clock.time = hdf5::read_double(file, "time");
   c.clock.dt = hdf5::read_double(file, "dt");
+  // Not in files of earlier versions.
+  c.clock.lag = hdf5::has_attribute(file, "lag") ? hdf5::read_double(file, "lag") : 0.5 * c.clock.dt;
   c.clock.critical_dt = hdf5::read_double(file, "critical_dt");
   c.clock.first_critical_dt = hdf5::read_double(file, "first_critical_dt");
   c.initial_energy = hdf5::read_double(file, "initial_energy");
