@@ -40,6 +40,7 @@ struct Clock {
   double time = 0;        ///< of the particles' current state
   double dt = 0;          ///< of the last step
   double lag = 0;         ///< of the velocities behind `time` (core/step/step_length.hpp)
+  double first_lag = 0;   ///< the same after the first step
   /// Largest stable step for the current state, factor not included; 0 before the first estimate.
   double critical_dt = 0;
   double first_critical_dt = 0;  ///< for TimeStep const="1"

@@ -58,9 +58,9 @@ ImplicitContact::ImplicitContact(Model& model, RigidBodies* rigid, NodeUnknowns&
 void ImplicitContact::begin_step(const Loads& loads, double dt) {
   const Vec3<double> gravity = model_.scene->solution.gravity;
   if (rigid_ != nullptr && step_ == model_.clock.step)
-    rigid_->shorten_step(loads, gravity, {dt, dt, 0});
+    rigid_->shorten_step(loads, gravity, {.dt = dt, .velocity_dt = dt});
   else if (rigid_ != nullptr)
-    rigid_->begin_step(loads, gravity, {dt, dt, 0});
+    rigid_->begin_step(loads, gravity, {.dt = dt, .velocity_dt = dt});
   step_ = model_.clock.step;
   dt_ = dt;
 }

@@ -234,7 +234,7 @@ template <ShapePolicy S, TransferPolicy T>
   const bool falls = forces_.gravity != Vec3<double>{};
   if (falls) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   take_velocities(frame, place, layout, block, at);
-  if (falls) correct_work_of_gravity(forces_.gravity, {dt, velocity_dt, lag_}, layout, block, used, at);
+  if (falls) correct_work_of_gravity(forces_.gravity, dt, velocity_dt, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion.velocity, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())

@@ -124,8 +124,9 @@ void ExplicitIntegrator::begin_step(double dt) {
 
 StepLength ExplicitIntegrator::set_length(double dt) {
   Clock& clock = model_.clock;
+  if (clock.step == 0) clock.first_lag = lag_before_ = 0.5 * dt;
   const bool last = clock.time + dt >= model_.scene->solution.end_time;
-  const StepLength length = step_length(dt, clock.step > 0 ? lag_before_ : 0.5 * dt, last);
+  const StepLength length = step_length(dt, lag_before_, clock.first_lag, last);
   clock.lag = length.lag;
   return length;
 }

@@ -66,7 +66,7 @@ class Loads {
   /// Largest part of the critical step with non-reflecting faces.
   static constexpr double nonreflecting_factor = 0.5;
 
-  /// Called before a step from `time` to `time + dt`: loads are evaluated at its middle or another part of
+  /// Called before a step from `time` to `time + dt`: loads are evaluated after `part` of
   /// it, prescribed velocities (ConstrainRigidPosition, expressions) at its end.
   void begin_step(double time, double dt, double part = 0.5);
 

@@ -52,14 +52,14 @@ void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block) 
   for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
 }
 
-void correct_work_of_gravity(const Vec3<double>& gravity, const StepLength& length,
+void correct_work_of_gravity(const Vec3<double>& gravity, double dt, double velocity_dt,
                              const ColumnLayout& layout, const double* block, int used, ThreadScratch& at) {
   const double* m = block + layout.offset(Column::mass);
   const double* v = block + layout.offset(Column::velocity_x);
   for (int i = 0; i < used; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double now = v[block_lanes * a + i], old = at.old[block_lanes * a + i];
-      at.work += m[i] * gravity[a] * (0.5 * length.velocity_dt * (old + now) - length.dt * now);
+      at.work += m[i] * gravity[a] * (0.5 * velocity_dt * (old + now) - dt * now);
     }
   }
 }

@@ -40,7 +40,7 @@ void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block);
 /// over the time between these: replaces the work of gravity over the displacement, m g . v dt, by m g .
 /// (v_old + v) velocity_dt/2, v_old in at.old. Over the run this adds up to no more than one step's fall, but
 /// at the start of a fall that is much.
-void correct_work_of_gravity(const Vec3<double>& gravity, const StepLength& length,
+void correct_work_of_gravity(const Vec3<double>& gravity, double dt, double velocity_dt,
                              const ColumnLayout& layout, const double* block, int used, ThreadScratch& at);
 
 /// Work of gravity and damping over a block's displacement from the positions in at.old; damping acts for

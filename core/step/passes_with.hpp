@@ -128,7 +128,7 @@ class PassesWith final : public Passes {
     velocity_dt = length.velocity_dt;
     lag_ = length.lag;
     transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
-    loads_.begin_step(model_.clock.time, dt);
+    loads_.begin_step(model_.clock.time, dt, length.load_part);
   }
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.

@@ -280,6 +280,7 @@ void write_run(hid_t file, const RestartContents& c) {
   hdf5::write_attribute(file, "time", c.clock.time);
   hdf5::write_attribute(file, "dt", c.clock.dt);
   hdf5::write_attribute(file, "lag", c.clock.lag);
+  hdf5::write_attribute(file, "first_lag", c.clock.first_lag);
   hdf5::write_attribute(file, "critical_dt", c.clock.critical_dt);
   hdf5::write_attribute(file, "first_critical_dt", c.clock.first_critical_dt);
   hdf5::write_attribute(file, "initial_energy", c.initial_energy);
@@ -291,7 +292,9 @@ void read_run(hid_t file, RestartContents& c) {
   c.clock.time = hdf5::read_double(file, "time");
   c.clock.dt = hdf5::read_double(file, "dt");
   // Not in files of earlier versions.
-  c.clock.lag = hdf5::has_attribute(file, "lag") ? hdf5::read_double(file, "lag") : 0.5 * c.clock.dt;
+  const bool lags = hdf5::has_attribute(file, "lag");
+  c.clock.lag = lags ? hdf5::read_double(file, "lag") : 0.5 * c.clock.dt;
+  c.clock.first_lag = lags ? hdf5::read_double(file, "first_lag") : c.clock.lag;
   c.clock.critical_dt = hdf5::read_double(file, "critical_dt");
   c.clock.first_critical_dt = hdf5::read_double(file, "first_critical_dt");
   c.initial_energy = hdf5::read_double(file, "initial_energy");

@@ -341,19 +341,15 @@ class Prescribed(Case):
                 self.run_in("out", [self.folder / "case.xmp"], ranks=ranks)
                 found = strict_summary(self.folder / "out")
                 ram, freight = found["bodies"]
-                # The velocities are ahead of the time by half of what the steps have shrunk, without the last one.
-                steps = [dt for dt in _mpm.table(self.folder / "out/case.sta")["dt"] if dt > 0]
-                self.assertEqual(len(steps), found["steps"])
-                until = 1 + (steps[0] - steps[-2]) / 2
                 for axis, (start, speed) in enumerate([(2, 3), (4, 0.5), (4, -0.25)]):
-                    self.assertAlmostEqual(ram["velocity"][axis], speed + gravity[axis] * until, delta=1e-9)
+                    self.assertAlmostEqual(ram["velocity"][axis], speed + gravity[axis], delta=1e-9)
                     # Steps of v += g dt, x += v dt are ahead by g t dt/2, dt at most 0.05/3.
                     way = speed + gravity[axis] / 2
                     self.assertAlmostEqual(ram["centre"][axis], start + way, delta=0.01 * abs(gravity[axis]) + 1e-9)
                     self.assertAlmostEqual(ram["upper"][axis] - ram["lower"][axis], (1.5, 3.5, 3.5)[axis], delta=1e-9)
                 self.assertEqual(ram["internal"], 0)
                 for axis in range(3):  # neither pushed nor slowed
-                    self.assertAlmostEqual(freight["velocity"][axis], gravity[axis] * until, delta=1e-9)
+                    self.assertAlmostEqual(freight["velocity"][axis], gravity[axis], delta=1e-9)
                 self.assertLess(abs(found["energy"]["relative_drift"]), 0.02)
                 self.assertLess(found["steps"], 90)  # a speed of 3.6 crosses a cell in 0.28: 72 steps at this factor
 
