@@ -75,6 +75,23 @@ void Contact::find_fields(BrickGrid& grid, NodeHalo& halo, Reductions& ranks) {
   meetings_.resize(static_cast<std::size_t>(grid.owned()));
 }
 
+/// What the particles of the neighbouring bricks, and of the brick itself, can reach.
+AxisBox Contact::zone(Slot s, std::int32_t component) const {
+  const BrickGrid& grid = *model_.grid;
+  const int low = grid.shape().lowest(), high = grid.shape().highest();
+  AxisBox zone;
+  for (int n = 0; n < neighbourhood; ++n) {
+    const Slot neighbour = grid.brick(s).neighbour[static_cast<std::size_t>(n)];
+    if (neighbour == no_slot) continue;
+    const auto others = [&](std::int32_t there) { return there != component; };
+    if (std::ranges::none_of(grid.components(neighbour), others)) continue;
+    const BrickCoord brick = grid.brick(s).coord + neighbour_offset(n);
+    zone.add({grid.geometry().node_place(brick, low, low, low),
+              grid.geometry().node_place(brick, high, high, high)});
+  }
+  return zone;
+}
+
 /// Components with failed particles anywhere (manual 3.9, normal_vector_excluding_failure_particle).
 void Contact::find_failed(const BrickGrid& grid, Reductions& ranks) {
   std::vector<std::int64_t> failed(has_failed_.size());

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "core/communication/node_halo.hpp"
+#include "core/contact/axis_box.hpp"
 #include "core/contact/contact_points.hpp"
 #include "core/contact/contact_record.hpp"
 #include "core/contact/node_contact.hpp"
@@ -117,6 +118,9 @@ class Contact {
   /// Number of the first of the fields seen by an owned brick, counted over all of them.
   std::size_t first_seen(Slot s) const { return seen_begin_[static_cast<std::size_t>(s)]; }
   std::size_t all_seen() const { return seen_begin_.back(); }
+
+  /// The nodes at which particles that an owned brick has of a component may meet others.
+  AxisBox zone(Slot s, std::int32_t component) const;
 
   /// Share of a cell by which two fields may approach in a step, where contact limits it (contact_time_step);
   /// the speed that the critical step must then allow for.

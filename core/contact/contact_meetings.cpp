@@ -10,7 +10,12 @@ namespace mpm::core {
 double Contact::half_edge(double volume) const { return to_faces_ ? 0.5 * std::cbrt(volume) : 0.0; }
 
 void Contact::collect_points(NodeHalo& halo) {
-  if (regresses_) points_.collect(model_, halo, [this](Slot s) { return meets(s); });
+  if (!regresses_) return;
+  points_.collect(
+      model_, halo, [this](Slot s) { return meets(s); },
+      [this](Slot s, std::int32_t component) {
+        return zone(s, component).wider(PointsByCell::layers, model_.grid->geometry().cell);
+      });
 }
 
 /// Sums the surfaces of the fields that a brick sees, their motion aside; they are taken as perpendicular to

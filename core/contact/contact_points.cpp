@@ -1,6 +1,7 @@
 #include "core/contact/contact_points.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -19,42 +20,36 @@ std::vector<std::vector<std::int32_t>> components_by_slot(const BrickGrid& grid,
   return of_slot;
 }
 
-void ContactPoints::list(const Model& model, Slot s) {
+void ContactPoints::list(const Model& model, Slot s, const ParticleTile& tile, const AxisBox& box) {
   std::vector<double>& points = points_[static_cast<std::size_t>(s)];
-  for (const ParticleTile& tile : model.grid->brick(s).tiles) {
-    const BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
-    for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-      const double* x = pool.block(tile.blocks[b]) + pool.layout().offset(Column::position_x);
-      const int used = tile.used_lanes(b);
-      points.resize(points.size() + static_cast<std::size_t>(width * used));
-      double* to = points.data() + points.size() - width * used;
-      for (int l = 0; l < used; ++l, to += width) {
-        for (int a = 0; a < 3; ++a) to[a] = x[a * block_lanes + l];
-        to[3] = static_cast<double>(tile.component);
-      }
+  const BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
+  for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+    const double* block = pool.block(tile.blocks[b]);
+    const double* x = block + pool.layout().offset(Column::position_x);
+    unsigned left = box.lanes(pool.layout(), block, tile.used_lanes(b));
+    const std::size_t before = points.size();
+    points.resize(before + static_cast<std::size_t>(width * std::popcount(left)));
+    for (double* to = points.data() + before; left != 0; left &= left - 1, to += width) {
+      const double* at = x + std::countr_zero(left);
+      for (int a = 0; a < 3; ++a) to[a] = at[a * block_lanes];
+      to[3] = static_cast<double>(tile.component);
     }
   }
 }
 
-/// The points of all slots by cell. Where a ghost is, its neighbours tell.
+/// The points of all slots by cell.
 void ContactPoints::sort(const BrickGrid& grid) {
-  std::vector<BrickCoord> coord(points_.size());
-  for (Slot s = 0; s < grid.owned(); ++s) {
-    const Brick& brick = grid.brick(s);
-    for (int n = 0; n < neighbourhood; ++n) {
-      const Slot neighbour = brick.neighbour[static_cast<std::size_t>(n)];
-      if (neighbour == no_slot) continue;
-      coord[static_cast<std::size_t>(neighbour)] = brick.coord + neighbour_offset(n);
-    }
-  }
-  for_each_by_threads(std::size_t{0}, points_.size(), 4, [&](std::size_t s) {
-    if (!points_[s].empty()) sort(grid.geometry(), coord[s], points_[s], begin_[s]);
+  for_each_by_threads(0, static_cast<int>(points_.size()), 4, [&](int s) {
+    const auto at = static_cast<std::size_t>(s);
+    if (points_[at].empty()) return;
+    sort(grid.geometry(), s < grid.owned() ? grid.brick(s).coord : grid.ghost(s - grid.owned()), points_[at],
+         by_cell_[at]);
   });
 }
 
 /// Stable: points of a cell stay in their order.
-void ContactPoints::sort(const GridGeometry& g, const BrickCoord& brick, std::vector<double>& points,
-                         std::vector<std::uint32_t>& begin) const {
+void ContactPoints::sort(const GridGeometry& g, const BrickCoord& brick, std::span<const double> points,
+                         ByCell& to) {
   const double first[3] = {double{brick_cells} * brick.x, double{brick_cells} * brick.y,
                            double{brick_cells} * brick.z};
   const auto cell_of = [&](const double* x) {
@@ -63,32 +58,32 @@ void ContactPoints::sort(const GridGeometry& g, const BrickCoord& brick, std::ve
       const double at = std::floor(GridGeometry::scaled(x[a], g.origin[a], g.inverse_cell[a])) - first[a];
       cell[a] = static_cast<int>(std::clamp(at, double{lowest_cell}, double{brick_cells - 1}));
     }
-    return static_cast<std::size_t>(number(cell[0], cell[1], cell[2]));
+    return static_cast<std::uint32_t>(number(cell[0], cell[1], cell[2]));
   };
   const std::size_t count = points.size() / width;
-  std::vector<std::size_t> cells(count);
-  begin.assign(cells_per_axis * cells_per_axis * cells_per_axis + 1, 0);
+  std::vector<std::uint32_t> cell(count);
+  to.begin.fill(0);
   for (std::size_t p = 0; p < count; ++p) {
-    cells[p] = cell_of(points.data() + width * p);
-    ++begin[cells[p] + 1];
+    cell[p] = cell_of(points.data() + width * p);
+    ++to.begin[cell[p] + 1];
   }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  std::vector<double> sorted(points.size());
-  for (std::size_t p = 0; p < count; ++p)
-    std::copy_n(points.data() + width * p, width, sorted.data() + width * next[cells[p]]++);
-  points.swap(sorted);
+  std::partial_sum(to.begin.begin(), to.begin.end(), to.begin.begin());
+  std::array<std::uint32_t, cells + 1> next = to.begin;
+  for (std::vector<double>& row : to.rows) row.resize(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::uint32_t at = next[cell[p]]++;
+    for (std::size_t a = 0; a < width; ++a) to.rows[a][at] = points[width * p + a];
+  }
 }
 
 void PointsByCell::take(const BrickGrid& grid, const ContactPoints& points, Slot s, const Range& nodes) {
-  constexpr int width = ContactPoints::width;
   const Brick& brick = grid.brick(s);
   for (int a = 0; a < 3; ++a) {
     lowest_[a] = nodes.lowest[a] - layers;
     cells_[a] = nodes.highest[a] + layers - lowest_[a];
   }
-  // f(cell here, its points of one brick), brick by brick.
-  const auto for_each_run = [&](auto f) {
+  // f(cell here, brick, its first cell, end of its cells) for rows along x, brick by brick.
+  const auto for_each_brick_row = [&](auto f) {
     for (int n = 0; n < neighbourhood; ++n) {
       const Slot neighbour = brick.neighbour[static_cast<std::size_t>(n)];
       if (neighbour == no_slot || !points.any(neighbour)) continue;
@@ -100,24 +95,31 @@ void PointsByCell::take(const BrickGrid& grid, const ContactPoints& points, Slot
         low[a] = std::max(ContactPoints::lowest_cell, -shift[a]);
         high[a] = std::min(brick_cells, cells_[a] - shift[a]);
       }
+      if (low[0] >= high[0]) continue;
       for (int k = low[2]; k < high[2]; ++k)
         for (int j = low[1]; j < high[1]; ++j)
-          for (int i = low[0]; i < high[0]; ++i)
-            f(static_cast<std::size_t>(i + shift[0] +
-                                       cells_[0] * (j + shift[1] + cells_[1] * (k + shift[2]))),
-              points.of(neighbour, i, j, k));
+          f(static_cast<std::size_t>(low[0] + shift[0] +
+                                     cells_[0] * (j + shift[1] + cells_[1] * (k + shift[2]))),
+            neighbour, ContactPoints::number(low[0], j, k), ContactPoints::number(high[0], j, k));
     }
   };
   begin_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
-  for_each_run([&](std::size_t cell, std::span<const double> run) {
-    begin_[cell + 1] += static_cast<std::uint32_t>(run.size() / width);
+  for_each_brick_row([&](std::size_t cell, Slot there, int first, int last) {
+    for (int c = first; c < last; ++c, ++cell) begin_[cell + 1] += points.count(there, c);
   });
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   for (std::vector<double>& row : rows_) row.resize(begin_.back() + LabelledPoints::lanes);
-  // Each cell's first place moves on to its last; shifted back below.
-  for_each_run([&](std::size_t cell, std::span<const double> run) {
-    for (std::size_t p = 0; p < run.size(); p += width, ++begin_[cell])
-      for (std::size_t a = 0; a < width; ++a) rows_[a][begin_[cell]] = run[p + a];
+  // Each cell's first place moves on to its last; shifted back below. Cells are copied together as far as
+  // their points follow each other here too.
+  for_each_brick_row([&](std::size_t cell, Slot there, int first, int last) {
+    for (int c = first; c < last;) {
+      const int from = c;
+      const std::uint32_t to = begin_[cell];
+      std::uint32_t end = to;
+      for (; c < last && begin_[cell] == end; ++c, ++cell) end = begin_[cell] += points.count(there, c);
+      for (int a = 0; a < ContactPoints::width; ++a)
+        std::copy_n(points.row(there, a, from), end - to, rows_[a].data() + to);
+    }
   });
   std::move_backward(begin_.begin(), begin_.end() - 1, begin_.end());
   begin_.front() = 0;

@@ -8,11 +8,13 @@
 // node.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/communication/node_halo.hpp"
+#include "core/contact/axis_box.hpp"
 #include "core/contact/separating_plane.hpp"
 #include "core/model.hpp"
 #include "core/threads.hpp"
@@ -28,40 +30,51 @@ class ContactPoints {
   /// x, y, z and the component of each particle, by slot.
   static constexpr int width = 4;
 
-  /// Lists the particles of the owned slots for which `wanted`, and gets those of the ghosts. Collective,
-  /// with the neighbouring ranks.
-  template <class F>
-  void collect(const Model& model, NodeHalo& halo, F wanted) {
+  /// Lists the particles of the owned slots for which `wanted`, those in `box_of(slot, component)`, and gets
+  /// those of the ghosts. Collective, with the neighbouring ranks.
+  template <class F, class G>
+  void collect(const Model& model, NodeHalo& halo, F wanted, G box_of) {
     const BrickGrid& grid = *model.grid;
     points_.resize(static_cast<std::size_t>(grid.owned() + grid.ghosts()));
-    begin_.resize(points_.size());
+    by_cell_.resize(points_.size());
     for_each_by_threads(0, grid.owned(), 4, [&](int s) {
       points_[static_cast<std::size_t>(s)].clear();
-      if (wanted(static_cast<Slot>(s))) list(model, static_cast<Slot>(s));
+      if (!wanted(static_cast<Slot>(s))) return;
+      for (const ParticleTile& tile : grid.brick(s).tiles)
+        list(model, static_cast<Slot>(s), tile, box_of(static_cast<Slot>(s), tile.component));
     });
     halo.exchange_points(grid, points_);
     sort(grid);
   }
   bool any(Slot s) const { return !points_[static_cast<std::size_t>(s)].empty(); }
-  /// Those in a cell of a brick: x, y, z and component of each. A brick's particles are in its own cells or,
-  /// taken by node, up to half a cell below.
+  /// A brick's particles are in its own cells or, taken by node, up to half a cell below.
   static constexpr int lowest_cell = -1, cells_per_axis = brick_cells + 1;
-  std::span<const double> of(Slot s, int i, int j, int k) const {
-    const auto at = static_cast<std::size_t>(s);
-    const std::uint32_t* begin = begin_[at].data() + number(i, j, k);
-    return std::span(points_[at]).subspan(width * begin[0], width * (begin[1] - begin[0]));
-  }
-
- private:
+  /// Of a brick's cell; those along x follow each other.
   static int number(int i, int j, int k) {
     return i - lowest_cell + cells_per_axis * (j - lowest_cell + cells_per_axis * (k - lowest_cell));
   }
-  void list(const Model& model, Slot s);
+  std::uint32_t count(Slot s, int cell) const {
+    const std::uint32_t* begin = by_cell_[static_cast<std::size_t>(s)].begin.data() + cell;
+    return begin[1] - begin[0];
+  }
+  /// x, y, z or the component of the points from a cell on.
+  const double* row(Slot s, int row, int cell) const {
+    const ByCell& at = by_cell_[static_cast<std::size_t>(s)];
+    return at.rows[row].data() + at.begin[static_cast<std::size_t>(cell)];
+  }
+
+ private:
+  static constexpr int cells = cells_per_axis * cells_per_axis * cells_per_axis;
+  struct ByCell {
+    std::array<std::uint32_t, cells + 1> begin;  ///< numbers of the cells' first points
+    std::vector<double> rows[width];
+  };
+  void list(const Model& model, Slot s, const ParticleTile& tile, const AxisBox& box);
   void sort(const BrickGrid& grid);
-  void sort(const GridGeometry& g, const BrickCoord& brick, std::vector<double>& points,
-            std::vector<std::uint32_t>& begin) const;
-  std::vector<std::vector<double>> points_;        ///< by slot, then cell
-  std::vector<std::vector<std::uint32_t>> begin_;  ///< by slot: numbers of the cells' first points
+  static void sort(const GridGeometry& g, const BrickCoord& brick, std::span<const double> points,
+                   ByCell& to);
+  std::vector<std::vector<double>> points_;  ///< by slot, in the order of its particles
+  std::vector<ByCell> by_cell_;              ///< by slot
 };
 
 /// Those around some of a brick's nodes.

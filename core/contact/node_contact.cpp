@@ -23,14 +23,23 @@ Vec3<double> within_cone(const Vec3<double>& p, const ContactPair& pair) {
   return along * n + (length > most ? most / length : 1.0) * tangential;
 }
 
-/// One pair alone, at once: as a sweep of resolve_contacts() finds it, to the last bit.
+/// Adds to the impulse of a pair what stops the approach of its fields, of which it has so many parts;
+/// returns what is new.
+Vec3<double> stop(ContactPair& pair, const ContactField& a, const ContactField& b, double parts_a,
+                  double parts_b) {
+  const double mass = 1 / (parts_a / a.mass + parts_b / b.mass);
+  const Vec3<double> approach = a.velocity - b.velocity, before = pair.impulse;
+  pair.impulse = within_cone(before + mass * approach, pair);
+  return pair.impulse - before;
+}
+
+/// One pair alone, at once, without the lists of the first sweep, and to its last bit.
 void resolve_contact(std::span<ContactField> fields, ContactPair& pair) {
   ContactField &a = fields[static_cast<std::size_t>(pair.first)],
                &b = fields[static_cast<std::size_t>(pair.second)];
-  const double mass = 1 / (1 / a.mass + 1 / b.mass);
-  const Vec3<double> none{};
-  pair.impulse = within_cone(none + mass * (a.velocity - b.velocity), pair);
-  const Vec3<double> of_a = none - (1 / a.mass) * pair.impulse, of_b = none + (1 / b.mass) * pair.impulse;
+  pair.impulse = {};
+  const Vec3<double> none{}, impulse = stop(pair, a, b, 1, 1);
+  const Vec3<double> of_a = none - (1 / a.mass) * impulse, of_b = none + (1 / b.mass) * impulse;
   a.velocity = a.velocity + of_a;
   b.velocity = b.velocity + of_b;
 }
@@ -54,11 +63,7 @@ void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pai
     std::fill(change.begin(), change.end(), Vec3<double>{});
     for (ContactPair& pair : pairs) {
       const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-      const double mass = 1 / (parts[a] / fields[a].mass + parts[b] / fields[b].mass);
-      const Vec3<double> approach = fields[a].velocity - fields[b].velocity;
-      const Vec3<double> before = pair.impulse;
-      pair.impulse = within_cone(before + mass * approach, pair);
-      const Vec3<double> more = pair.impulse - before;
+      const Vec3<double> more = stop(pair, fields[a], fields[b], parts[a], parts[b]);
       change[a] = change[a] - (1 / fields[a].mass) * more;
       change[b] = change[b] + (1 / fields[b].mass) * more;
     }

@@ -89,7 +89,10 @@ std::vector<std::string> overlaps_in_words(const Model& model, Communication& co
     return false;
   };
   ContactPoints points;
-  points.collect(model, communication.halo, meets);
+  const Vec3<double> far{INFINITY, INFINITY, INFINITY};
+  points.collect(model, communication.halo, meets, [&](Slot, std::int32_t) {
+    return AxisBox{-1.0 * far, far};
+  });
   std::vector<Overlap> found(number_of(0, components));
   PointsByCell others;
   for (Slot s = 0; s < grid.owned(); ++s) {

@@ -15,6 +15,7 @@ constexpr double penalty = 0.1;
 constexpr int most_steps = 40;
 constexpr double rest = 1e-10;    // of the plane, between two steps
 constexpr double within = 0.75;   // c (n.x + b) of the first plane below which particles are near it
+constexpr double steeper = 3;     // the best plane than the first one, where bodies fill the cells
 constexpr double nothing = 1e-8;  // of labels 1 apart, over a cell: bodies in the same place
 
 struct Plane {
@@ -24,6 +25,7 @@ struct Plane {
 
 /// F, and the sums over the particles with c (n.x + b) < 1.
 struct Sums {
+  std::size_t blocks = 0;  ///< with any of them
   double objective = 0;
   double count = 0, label = 0;
   Vec3<double> x{}, label_x{};
@@ -47,6 +49,7 @@ Row short_of_one(const LabelledPoints& points, std::size_t block, const Plane& p
 /// `all`: over all particles, whatever the plane.
 Sums sums_of(const LabelledPoints& points, const Plane& plane, bool all) {
   const Row zero(0.0), one(1.0);
+  Sums s;
   Row count(0.0), label(0.0), square(0.0), first[3], labelled[3], second[6];
   for (Row* sums : {first, labelled, second, second + 3})
     for (int a = 0; a < 3; ++a) sums[a] = zero;
@@ -54,6 +57,7 @@ Sums sums_of(const LabelledPoints& points, const Plane& plane, bool all) {
     const Row c = points.row(block, 3), short_of = short_of_one(points, block, plane);
     const auto counts = all ? c != zero : short_of > zero;
     if (!any(counts)) continue;
+    ++s.blocks;
     const Row on = select(counts, one, zero);
     const Row x = points.row(block, 0), y = points.row(block, 1), z = points.row(block, 2);
     square += short_of * short_of;
@@ -65,7 +69,6 @@ Sums sums_of(const LabelledPoints& points, const Plane& plane, bool all) {
     second[0] += cx * x, second[1] += cy * y, second[2] += cz * z;
     second[3] += cx * y, second[4] += cy * z, second[5] += cx * z;
   }
-  Sums s;
   s.objective = 0.5 * (penalty * dot(plane.n, plane.n) + sum_of_lanes(square));
   s.count = sum_of_lanes(count);
   s.label = sum_of_lanes(label);
@@ -96,36 +99,32 @@ Plane regression(const Sums& s, const Plane& without_particles) {
 
 double length(const Plane& p) { return std::sqrt(dot(p.n, p.n) + p.b * p.b); }
 
-/// Newton's method from a plane on.
-Plane best_plane(const LabelledPoints& points, Plane plane) {
+/// Newton's method from a plane on, which it moves; the blocks with particles on the wrong side.
+std::size_t find_best(const LabelledPoints& points, Plane& plane) {
   Sums sums = sums_of(points, plane, false);
   for (int step = 0; step < most_steps; ++step) {
     const Plane best = regression(sums, plane);
     const Plane change{best.n - plane.n, best.b - plane.b};
     if (!(length(change) > rest * length(plane))) break;
-    Plane next;
+    // Whole steps take the regression itself: the bits of the last one depend on its particles alone, and not
+    // on the planes before.
+    Plane next = best;
     Sums there;
     double part = 1;
     do {
-      next = {plane.n + part * change.n, plane.b + part * change.b};
+      if (part < 1) next = {plane.n + part * change.n, plane.b + part * change.b};
       there = sums_of(points, next, false);
       part *= 0.5;
     } while (!(there.objective < sums.objective) && part > 1e-6);
     if (!(there.objective < sums.objective)) break;  // as low as round-off allows
     plane = next, sums = there;
   }
-  return plane;
+  return sums.blocks;
 }
 
-/// Blocks with a particle for which c (n.x + b) < `below`.
+/// Whether a block has a particle for which c (n.x + b) < `below`.
 bool is_near(const LabelledPoints& points, std::size_t block, const Plane& plane, double below) {
   return any(short_of_one(points, block, plane) > Row(1 - below));
-}
-
-std::size_t count_near(const LabelledPoints& points, const Plane& plane, double below) {
-  std::size_t count = 0;
-  for (std::size_t block = 0; block < points.blocks(); ++block) count += is_near(points, block, plane, below);
-  return count;
 }
 
 }  // namespace
@@ -139,8 +138,11 @@ std::optional<Vec3<double>> separating_normal(const LabelledPoints& points, Labe
   near.clear();
   for (std::size_t block = 0; block < points.blocks(); ++block)
     if (is_near(points, block, plane, within)) near.add(points, block);
-  plane = best_plane(near, plane);
-  if (count_near(points, plane, 1) != count_near(near, plane, 1)) plane = best_plane(points, plane);
+  plane = {steeper * plane.n, steeper * plane.b};
+  const std::size_t used = find_best(near, plane);
+  std::size_t all = 0;
+  for (std::size_t block = 0; block < points.blocks(); ++block) all += is_near(points, block, plane, 1);
+  if (all != used) find_best(points, plane);
   const double size = std::sqrt(dot(plane.n, plane.n));
   if (!(size > nothing) || !std::isfinite(size)) return std::nullopt;
   return (1 / size) * plane.n;

@@ -34,17 +34,16 @@ class LabelledPoints {
   void clear() { blocks_.clear(); }
   /// labels: -1 for the first body, +1 for the second, 0 in lanes without a particle.
   void add(const Row& x, const Row& y, const Row& z, const Row& labels) {
-    Block& block = blocks_.emplace_back();
-    store(block.row[0], x), store(block.row[1], y), store(block.row[2], z), store(block.row[3], labels);
+    blocks_.push_back({{x, y, z, labels}});
   }
   void add(const LabelledPoints& other, std::size_t block) { blocks_.push_back(other.blocks_[block]); }
   std::size_t blocks() const { return blocks_.size(); }
   /// `row` 0..2: coordinates; 3: labels.
-  Row row(std::size_t block, int row) const { return load<Row>(blocks_[block].row[row]); }
+  const Row& row(std::size_t block, int row) const { return blocks_[block].row[row]; }
 
  private:
   struct Block {
-    alignas(64) double row[4][lanes];
+    Row row[4];
   };
   std::vector<Block> blocks_;
 };

@@ -8,33 +8,15 @@ namespace mpm::core {
 
 /// The box of the particles that some nodes may reach: a particle is among its nodes, so that those in
 /// question are no farther away than these are wide.
-struct NearNodes {
-  Vec3<double> lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
-
+struct NearNodes : AxisBox {
   /// A node of a brick's block; its place.
   Vec3<double> add(const BrickGrid& grid, Slot s, int node, int nodes_per_axis) {
     const NodeBlockShape shape = grid.shape();
     const int side = shape.side(), low = shape.lowest();
     const Vec3<double> x = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
                                                       node / side % side + low, node / (side * side) + low);
-    const double cells = nodes_per_axis - 1 + 1e-6;
-    for (int a = 0; a < 3; ++a) {
-      lower[a] = std::min(lower[a], x[a] - cells * grid.geometry().cell[a]);
-      upper[a] = std::max(upper[a], x[a] + cells * grid.geometry().cell[a]);
-    }
+    AxisBox::add(AxisBox{x, x}.wider(nodes_per_axis - 1, grid.geometry().cell));
     return x;
-  }
-  /// Bit mask of a block's particles in the box.
-  unsigned lanes(const ColumnLayout& layout, const double* block, int used) const {
-    const double* x = block + layout.offset(Column::position_x);
-    unsigned mask = 0;
-    for (int l = 0; l < used; ++l) {
-      bool in = true;
-      for (int a = 0; a < 3; ++a)
-        in = in && x[a * block_lanes + l] >= lower[a] && x[a * block_lanes + l] <= upper[a];
-      mask |= static_cast<unsigned>(in) << l;
-    }
-    return mask;
   }
 };
 
@@ -143,7 +125,7 @@ template <ShapePolicy S, TransferPolicy T>
 
 // --- surfaces ---------------------------------------------------------------------------------------------
 
-/// Maps m grad S (thesis 4-31) and m S of a component's particles.
+/// Maps m grad S (thesis 4-31) and m S of a component's particles, where they may meet others.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
   constexpr NodeFields what = mapped::surface;
@@ -152,12 +134,18 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
   const BrickFrame frame = this->frame(s);
   double* contributions = grid.contributions(what.array, s, field_of(s, component));
   std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+  if (grid.components(s).empty()) return;
+  const std::int32_t mine = component == all_components ? grid.components(s).front() : component;
+  const AxisBox near = contact_->zone(s, mine).wider(S::nodes_per_axis - 1, grid.geometry().cell);
   for_each_block(
       s, component, columns_to_mass,
       [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+        const unsigned wanted = near.lanes(layout, block, used);
+        if (wanted == 0) return;
         const Place place(frame, layout, block);
         const double* mass = block + layout.offset(Column::mass);
         for (int l = 0; l < used; ++l) {
+          if ((wanted >> l & 1u) == 0) continue;
           S::for_each_node(
               place, l, frame.inverse_cell,
               [&](int node, const NodeOffset&, double shape, const Vec3<double>& gradient) {

@@ -7,6 +7,7 @@
 #include "core/built.hpp"
 #include "core/step/passes.hpp"
 #include "io/input/build.hpp"
+#include "io/input/contact_words.hpp"
 
 namespace mpm::io {
 
@@ -31,9 +32,9 @@ core::ContactInput build_contact(const Node& root) {
   contact.limits_time_step = node->boolean("contact_time_step");
   contact.method = static_cast<core::ContactInput::Method>(node->small_integer("contact_type"));
   contact.record_force = node->boolean("record_contact_force");
-  const std::string normal = node->word("contact_normal");
-  if (normal == "mass_gradient") contact.normal = core::ContactInput::Normal::mass_gradient;
-  if (normal == "regression") contact.normal = core::ContactInput::Normal::regression;
+  const auto normal = std::ranges::find(contact_normals, node->word("contact_normal"));
+  if (normal != contact_normals.end())
+    contact.normal = static_cast<core::ContactInput::Normal>(normal - contact_normals.begin());
   return contact;
 }
 

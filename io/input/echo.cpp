@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/input/contact_words.hpp"
 #include "io/input/echo_parts.hpp"
 #include "io/input/text.hpp"
 #include "io/input/xml_writer.hpp"
@@ -125,8 +126,7 @@ void echo_contact(XmlWriter& w, const core::ContactInput& contact) {
   w.flag("contact_time_step", contact.limits_time_step);
   w.integer("contact_type", static_cast<int>(contact.method));
   w.flag("record_contact_force", contact.record_force);
-  constexpr const char* normals[] = {"automatic", "mass_gradient", "regression"};
-  w.text("contact_normal", normals[static_cast<std::size_t>(contact.normal)]);
+  w.text("contact_normal", contact_normals[static_cast<std::size_t>(contact.normal)]);
 }
 
 void echo_decomposition(XmlWriter& w, const core::DecompositionInput& decomposition) {
