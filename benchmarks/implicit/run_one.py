@@ -23,7 +23,7 @@ COMMON = ("status", "particles", "steps", "unknowns", "newton", "linear", "cuts"
 @dataclasses.dataclass(frozen=True)
 class Run:
     """`labels`: what tells the run from the study's others, {column: value}. `measure`: a function of the Result that
-    returns {column: number or text}. `options`: for PETSc. `files`: {name: text} beside the scene."""
+    returns {column: number or text}. `options`: for PETSc, where {folder} is that of the run. `files`: {name: text} beside the scene."""
 
     labels: dict
     scene: str
@@ -95,7 +95,8 @@ def run(one, out, keep=False):
     file.write_text(one.scene)
     for name, text in one.files.items():
         (folder / name).write_text(text)
-    code, said, processor, wall = timed_run.execute(file, folder, LIMIT, one.options, one.ranks)
+    code, said, processor, wall = timed_run.execute(file, folder, LIMIT, [o.replace("{folder}", str(folder)) for o in one.options],
+                                                    one.ranks)
     row = {**one.labels, **dict.fromkeys(COMMON, ""), "status": DONE, "note": ""}
     if code == 0:
         result = Result(folder)

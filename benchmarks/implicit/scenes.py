@@ -53,13 +53,13 @@ def explicit(end, factor=0.8, damping=None, more="", transfer="FLIP"):
     return _mpm.solution(repr(float(end)), factor=repr(factor), attributes=f'transfer="{transfer}"', more=relax + more)
 
 
-def pressed_block(shape, h, height, speed, is_implicit, solution, materials, output):
-    """A block of 2 x 2 cells between smooth walls and a rigid platen on it that moves down: it holds the nodes in implicit
-    steps and is in contact in explicit ones."""
+def pressed_block(shape, h, height, velocity, in_contact, solution, materials, output):
+    """A block of 2 x 2 cells between smooth walls and a rigid platen on it with this velocity, a number or an expression: it is
+    in contact, or holds the nodes."""
     body = block("block", (0, 0, 0), (2 * h, 2 * h, height), h / 2)
-    platen = block("platen", (0, 0, height), (2 * h, 2 * h, 2 * h), h / 2, "rigid", moved(vz=-speed))
+    platen = block("platen", (0, 0, height), (2 * h, 2 * h, 2 * h), h / 2, "rigid", moved(vz=velocity))
     parts = (grid(shape, (0, 0, 0), (2 * h, 2 * h, height + 4 * h), "222220", h), solution, materials, output)
-    if is_implicit:
+    if not in_contact:
         return scene([body, platen], *parts)
     return two_components([body], [platen], *parts, more='<Contact enable="1"/>')
 

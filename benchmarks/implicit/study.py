@@ -91,7 +91,7 @@ def against_explicit(rows, errors):
         for name in errors:
             best = min((r for r in others if r[name] <= row[name]), key=lambda r: r["seconds"], default=None)
             line += [f"{row[name]:.1e}", "none" if best is None else
-                     f"{best['steps by'].split()[1]}, {best['shape']}, {best['cells']:g}: {best['seconds']:.2g} s",
+                     f"{best['steps by'].removeprefix('explicit ')}, {best['shape']}, {best['cells']:g}: {best['seconds']:.2g} s",
                      "–" if best is None else f"{best['seconds'] / row['seconds']:.2g}"]
         lines.append(line)
         same = [r for r in others if r["shape"] == row["shape"] and r["cells"] == row["cells"]]

@@ -11,6 +11,8 @@ namespace {
 
 /// Cells with less of it empty have enough stiffness of their own.
 constexpr double hardly_empty = 0.01;
+/// Stiffness of a tie over that of the filling.
+constexpr double tie = 1e-3;
 
 }  // namespace
 
@@ -19,6 +21,8 @@ CellStabilisation::CellStabilisation(Model& model, const BrickFields& fields)
       fields_(fields),
       centred_(model.scene->grid.shape == ShapeFunction::sgmp ||
                model.scene->grid.shape == ShapeFunction::ddmp),
+      alpha_(model.scene->solution.implicit.value_or(ImplicitInput{}).stabilisation),
+      spring_(tie * alpha_),
       matrix_(cell_matrix(model.grid->geometry().cell)) {
   const NodeBlockShape shape = model.grid->shape();
   for (int n = 0; n < 8; ++n) corner_[n] = shape.index(n & 1, n >> 1 & 1, n >> 2) - shape.index(0, 0, 0);
@@ -92,7 +96,7 @@ void CellStabilisation::find_ties(const BrickField& field, int lowest, const dou
     if (node == fullest || nodes[node].number < 0 || !(part > 0 && part < hardly_any)) continue;
     const double modulus = sums[node_doubles * node + node_field::modulus.first] / volume;
     ties_[field.index].push_back(
-        {node, fullest, spring * (1 - part / hardly_any) * modulus * g.smallest_cell()});
+        {node, fullest, spring_ * (1 - part / hardly_any) * modulus * g.smallest_cell()});
   }
 }
 
@@ -102,6 +106,7 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
   const NodeBlockShape shape = grid.shape();
   cells_.resize(fields_.count());
   ties_.resize(fields_.count());
+  if (alpha_ == 0) return;
   const double cell_volume = g.cell_volume();
   for_each_by_threads(0, static_cast<int>(fields_.count()), 4, [&](int f) {
     const BrickField& field = fields_.all()[static_cast<std::size_t>(f)];
@@ -149,7 +154,7 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
           if (!(volume > 0)) continue;
           const double empty = centred_ ? 1 : 1 - fill;
           if (empty > hardly_empty && handles(field, at))
-            cells.push_back({lowest, alpha * empty * modulus / volume});
+            cells.push_back({lowest, alpha_ * empty * modulus / volume});
         }
       }
     }

@@ -7,13 +7,13 @@
 //   f = - alpha (1 - fill) M  integral of B^T (sym grad u),    M: the longitudinal modulus of the material
 //   around, at most four times its shear modulus
 // The displacement is that of the step and the grid is new in each, so this material never stores stress: it
-// changes a stiffness by the share alpha. Other remedies: ghost penalties on the faces of such cells (Coombs,
-// IJNME 124 (2023) 4841), which couple nodes two cells apart.
+// changes a stiffness by the share alpha (Implicit@stabilisation). Other remedies: ghost penalties on the
+// faces of such cells (Coombs, IJNME 124 (2023) 4841), which couple nodes two cells apart.
 //
 // Cells with inactive nodes, and those beyond a free face of the grid, have no such filling. There a node
 // with less than hardly_any of a cell's volume around it is tied to the fullest node of the cell by a spring
-// of a millionth of the material's stiffness: it acts on the difference of two displacements, so that it
-// carries no weight, however far a step moves both.
+// of a thousandth of alpha times the material's stiffness: it acts on the difference of two displacements, so
+// that it carries no weight, however far a step moves both.
 //
 // Where components are in contact each is stabilised by itself: a cell that two share is partly empty for
 // both.
@@ -37,8 +37,8 @@ CellMatrix cell_matrix(const Vec3<double>& cell);
 
 class CellStabilisation {
  public:
-  static constexpr double alpha = 1e-3;
-  static constexpr double hardly_any = 0.05, spring = 1e-6;
+  /// Part of a cell's volume below which a node is tied.
+  static constexpr double hardly_any = 0.05;
 
   CellStabilisation(Model& model, const BrickFields& fields);
 
@@ -63,7 +63,9 @@ class CellStabilisation {
 
   Model& model_;
   const BrickFields& fields_;
-  bool centred_;  ///< shape functions through cell centres
+  bool centred_;   ///< shape functions through cell centres
+  double alpha_;   ///< Implicit@stabilisation
+  double spring_;  ///< of a tie, over the material's stiffness
   CellMatrix matrix_;
   int corner_[8];                         ///< nodes of a cell relative to its lowest
   std::vector<std::vector<Cell>> cells_;  ///< by field

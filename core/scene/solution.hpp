@@ -88,6 +88,7 @@ struct ImplicitInput {
   double gravity_ramp = 0;  ///< time over which gravity grows from zero
   bool matrix_free = false;
   bool difference_tangent = false;  ///< derivatives of the stress by differences
+  double stabilisation = 1e-3;      ///< stiffness of the empty part of a cell, over the material's
 
   bool quasistatic() const { return type == ImplicitType::quasistatic; }
   bool linearised() const { return type == ImplicitType::semi; }

@@ -109,6 +109,7 @@ core::ImplicitInput build_implicit(const Node& node, const BuildContext& context
   implicit.gravity_ramp = node.given_real("gravity_ramp").value_or(0);
   implicit.matrix_free = node.word("jacobian") == "matrixfree";
   implicit.difference_tangent = node.word("jacobian") == "differences";
+  implicit.stabilisation = node.real("stabilisation");
   if (4 * implicit.newmark_beta < 2 * implicit.newmark_gamma - 1e-12)
     node.report(context.diagnostics, "newmark_beta",
                 fmt::format("steps are stable without limit only from half of newmark_gamma, {}",

@@ -130,6 +130,7 @@ void echo_implicit(XmlWriter& w, const core::ImplicitInput& implicit) {
   w.text("jacobian", implicit.matrix_free          ? "matrixfree"
                      : implicit.difference_tangent ? "differences"
                                                    : "assembled");
+  w.number("stabilisation", implicit.stabilisation);
 }
 
 void echo_fem(XmlWriter& w, const core::FemInput& fem) {

@@ -68,7 +68,9 @@ GridHierarchy::GridHierarchy(MPI_Comm comm, const core::NonlinearProblem& proble
 }
 
 GridHierarchy::~GridHierarchy() {
-  for (Mat& m : interpolations_) MatDestroy(&m);
+  for (std::vector<Mat>* list : {&interpolations_, &coarse_})
+    for (Mat& m : *list) MatDestroy(&m);
+  MatDestroy(&rows_);
 }
 
 bool GridHierarchy::is_of(const core::NonlinearProblem& problem) const {
@@ -83,7 +85,6 @@ void GridHierarchy::choose(PC pc) const {
   const std::size_t levels = interpolations_.size() + 1;
   check_petsc(PCSetType(pc, PCMG));
   check_petsc(PCMGSetLevels(pc, static_cast<PetscInt>(levels), nullptr));
-  check_petsc(PCMGSetGalerkin(pc, PC_MG_GALERKIN_BOTH));
   check_petsc(PCSetUseAmat(pc, PETSC_FALSE));  // there is no product with differences of residuals
   for (std::size_t l = 0; l < levels; ++l) {   // from the coarsest grid on
     KSP smoother = nullptr;
@@ -99,6 +100,29 @@ void GridHierarchy::choose(PC pc) const {
       check_petsc(KSPSetType(smoother, KSPCHEBYSHEV));
       check_petsc(PCSetType(of, PCPBJACOBI));
     }
+  }
+}
+
+void GridHierarchy::take(PC pc, Mat finest) {
+  PetscBool chosen = PETSC_FALSE, one = PETSC_FALSE, several = PETSC_FALSE;
+  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCMG, &chosen));
+  if (chosen == PETSC_FALSE) return;
+  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(finest), MATSEQAIJ, &one));
+  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(finest), MATMPIAIJ, &several));
+  const std::size_t grids = interpolations_.size();
+  const MatReuse reuse = coarse_.empty() ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX;
+  coarse_.resize(grids);
+  Mat from = finest;
+  if (one == PETSC_FALSE && several == PETSC_FALSE) {
+    check_petsc(MatConvert(finest, MATAIJ, reuse, &rows_));
+    from = rows_;
+  }
+  for (std::size_t i = 0; i < grids; ++i) {
+    check_petsc(MatPtAP(from, interpolations_[i], reuse, PETSC_DEFAULT, &coarse_[i]));
+    from = coarse_[i];
+    KSP smoother = nullptr;
+    check_petsc(PCMGGetSmoother(pc, static_cast<PetscInt>(grids - 1 - i), &smoother));
+    check_petsc(KSPSetOperators(smoother, from, from));
   }
 }
 

@@ -26,12 +26,16 @@ class GridHierarchy {
   bool is_of(const core::NonlinearProblem& problem) const;
   /// Makes `pc` multigrid on this hierarchy, unless it is.
   void choose(PC pc) const;
+  /// Makes the matrices of the coarser grids from that of the finest one, for `pc`. Collective.
+  void take(PC pc, Mat finest);
 
  private:
   std::vector<std::int32_t> places_, fields_;
   std::vector<std::uint8_t> held_;
   bool usable_ = false;
   std::vector<Mat> interpolations_;  ///< from the finest grid on
+  std::vector<Mat> coarse_;          ///< Galerkin products, in the same order
+  Mat rows_ = nullptr;  ///< the finest matrix by rows, where it is not: PETSc has products of such alone
 };
 
 }  // namespace mpm::parallel

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
+#include <string_view>
 
 #include "parallel/implicit/petsc_errors.hpp"
 
@@ -131,26 +132,21 @@ MatrixValues::~MatrixValues() { MatDestroy(&matrix_); }
 /// In each part the columns of a row are ascending as they are in `places_`, and all three scalar rows of a
 /// node have the same.
 void MatrixValues::find_parts() {
-  PetscBool one = PETSC_FALSE, several = PETSC_FALSE;
-  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix_), MATSEQAIJ, &one));
-  check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix_), MATMPIAIJ, &several));
-  direct_ = one == PETSC_TRUE || several == PETSC_TRUE;
+  MatType type = nullptr;
+  check_petsc(MatGetType(matrix_, &type));
+  const std::string_view format = type;
+  blocks_ = format == MATSEQBAIJ || format == MATMPIBAIJ;
+  direct_ = blocks_ || format == MATSEQAIJ || format == MATMPIAIJ;
   if (!direct_) return;
-  inner_.matrix = matrix_;
-  if (several == PETSC_TRUE)
-    check_petsc(MatMPIAIJGetSeqAIJ(matrix_, &inner_.matrix, &outer_.matrix, nullptr));
   const std::int64_t first = places_.first(), beyond = first + static_cast<std::int64_t>(places_.own());
-  std::size_t inside = 0, outside = 0;
+  inner_.first.assign(1, 0);
+  outer_.first.assign(1, 0);
   for (std::size_t i = 0; i < places_.own(); ++i) {
     const std::span<const std::int64_t> columns = places_.columns(i);
     const auto n = static_cast<std::size_t>(
         std::ranges::count_if(columns, [&](std::int64_t c) { return c >= first && c < beyond; }));
-    inner_.first.push_back(inside);
-    outer_.first.push_back(outside);
-    inner_.stride.push_back(3 * n);
-    outer_.stride.push_back(3 * (columns.size() - n));
-    inside += 9 * n;
-    outside += 9 * (columns.size() - n);
+    inner_.first.push_back(inner_.first.back() + 9 * n);
+    outer_.first.push_back(outer_.first.back() + 9 * (columns.size() - n));
   }
 }
 
@@ -159,11 +155,18 @@ void MatrixValues::begin() {
     check_petsc(MatZeroEntries(matrix_));
     return;
   }
+  // Anew each time: PETSc makes other ones when it copies a matrix of blocks.
+  PetscBool alone = PETSC_FALSE;
+  check_petsc(
+      PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(matrix_), &alone, MATSEQAIJ, MATSEQBAIJ, ""));
+  inner_.matrix = matrix_;
+  if (alone == PETSC_FALSE)
+    check_petsc((blocks_ ? MatMPIBAIJGetSeqBAIJ : MatMPIAIJGetSeqAIJ)(matrix_, &inner_.matrix, &outer_.matrix,
+                                                                      nullptr));
   for (Part* part : {&inner_, &outer_}) {
     if (part->matrix == nullptr) continue;
-    check_petsc(MatSeqAIJGetArray(part->matrix, &part->values));
-    if (!part->first.empty())
-      std::fill_n(part->values, part->first.back() + 3 * part->stride.back(), PetscScalar{0});
+    check_petsc((blocks_ ? MatSeqBAIJGetArray : MatSeqAIJGetArray)(part->matrix, &part->values));
+    std::fill_n(part->values, part->first.back(), PetscScalar{0});
   }
 }
 
@@ -210,18 +213,20 @@ void MatrixValues::add_row(std::size_t own_node, std::size_t row, const double* 
       throw std::logic_error("an entry of the matrix has no place");
     const bool own = column.node >= first && column.node < beyond;
     const Part& part = own ? inner_ : outer_;
-    const std::size_t stride = part.stride[own_node];
-    PetscScalar* to = part.values + part.first[own_node] + 3 * (own ? inside : at - inside);
+    const std::size_t block = own ? inside : at - inside, begin = part.first[own_node];
+    PetscScalar* const to = part.values + begin + (blocks_ ? 9 : 3) * block;
+    const std::size_t down = blocks_ ? 1 : (part.first[own_node + 1] - begin) / 3, right = blocks_ ? 3 : 1;
     const double* from = values + 3 * row * width + 3 * column.at;
-    for (int i = 0; i < 3; ++i, to += stride, from += width)
-      for (int j = 0; j < 3; ++j) to[j] += from[j];
+    for (std::size_t i = 0; i < 3; ++i, from += width)
+      for (std::size_t j = 0; j < 3; ++j) to[down * i + right * j] += from[j];
   }
 }
 
 void MatrixValues::end() {
   if (direct_)
     for (Part* part : {&inner_, &outer_})
-      if (part->matrix != nullptr) check_petsc(MatSeqAIJRestoreArray(part->matrix, &part->values));
+      if (part->matrix != nullptr)
+        check_petsc((blocks_ ? MatSeqBAIJRestoreArray : MatSeqAIJRestoreArray)(part->matrix, &part->values));
   check_petsc(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
   check_petsc(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
 }

@@ -1,11 +1,12 @@
-// The Jacobian as a matrix of PETSc (AIJ), with its own assembly.
+// The Jacobian as a matrix of PETSc, by rows (AIJ) or by blocks (BAIJ, -mat_type baij), with its own
+// assembly.
 //
 // MatSetValues looks every entry up in its row, and the particles of a site bring dense matrices of up to 81
 // rows (192 with CPDI2): with that, the assembly took three quarters of the time of an implicit run. Here the
 // rows of a node are found by 3 x 3 blocks: its columns are sorted, those of the dense matrix too, and one
 // walk through both finds all places. Rows of other ranks' nodes go through PETSc's stash.
-// Needs the formats seqaij and mpiaij; another one that the user chooses (-mat_type) is filled by
-// MatSetValuesBlocked. Shown by tests/system/physics_implicit.py.
+// Another format that the user chooses is filled by MatSetValuesBlocked. Shown by
+// tests/system/physics_implicit.py.
 #pragma once
 
 #include <cstdint>
@@ -69,12 +70,11 @@ class MatrixValues final : public core::BlockMatrix {
   void end();
 
  private:
-  /// One row of nodes in one of the two parts of the matrix: columns of own nodes, and of others'.
+  /// One of the two parts of the matrix: columns of own nodes, and of others'.
   struct Part {
     Mat matrix = nullptr;
-    std::vector<std::size_t> first;   ///< by own node: its first value
-    std::vector<std::size_t> stride;  ///< and values per scalar row
-    PetscScalar* values = nullptr;    ///< between begin() and end()
+    std::vector<std::size_t> first;  ///< by own node: its first value; and the end
+    PetscScalar* values = nullptr;   ///< between begin() and end()
   };
   void find_parts();
   void add_row(std::size_t own_node, std::size_t row, const double* values, std::size_t width);
@@ -82,6 +82,7 @@ class MatrixValues final : public core::BlockMatrix {
   MatrixPlaces places_;
   Mat matrix_ = nullptr;
   bool direct_ = false;  ///< the format is known
+  bool blocks_ = false;  ///< it is BAIJ, whose blocks are stored column by column
   Part inner_, outer_;
   struct Column {
     std::int64_t node;

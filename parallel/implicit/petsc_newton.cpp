@@ -64,6 +64,11 @@ PetscErrorCode set_up_preconditioner(SNES snes, Mat action, Mat matrix, NewtonSo
   KSP ksp = nullptr;
   PetscErrorCode code = SNESGetKSP(snes, &ksp);
   if (code == 0) code = KSPSetOperators(ksp, action, matrix);
+  PC pc = nullptr;
+  if (code == 0 && solve.grids != nullptr && solve.grids->usable()) {
+    code = KSPGetPC(ksp, &pc);
+    if (code == 0) code = guarded(solve, [&] { solve.grids->take(pc, matrix); });
+  }
   if (code == 0) code = KSPSetUp(ksp);
   solve.report.setup_seconds += MPI_Wtime() - start;
   return code;

@@ -208,7 +208,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
                                 const NewtonOptions& options) {
   const double start = MPI_Wtime();
   set_up(problem, options.linear);
-  now_ = {&problem, &options, of_->values.get(), {}, nullptr};
+  now_ = {&problem, &options, of_->values.get(), of_->grids.get(), {}, nullptr};
   NewtonReport& report = now_.report;
   const Vec solution = of_->solution, r = of_->residual;
   const SNES snes = of_->snes;
@@ -220,7 +220,15 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
     check_petsc(VecRestoreArray(solution, &to));
   };
   start_from_guess();
-  if (options.matrix_free && of_->action.object == nullptr) check_petsc(MatCreateSNESMF(snes, &of_->action));
+  if (options.matrix_free && of_->action.object == nullptr) {
+    // It would change the type of the product by differences.
+    PetscBool named = PETSC_FALSE;
+    check_petsc(PetscOptionsHasName(nullptr, nullptr, "-mat_type", &named));
+    if (named == PETSC_TRUE)
+      throw WrongSolverOptions(
+          "option -mat_type of PETSc after -- does not go with jacobian=\"matrixfree\"; remove it");
+    check_petsc(MatCreateSNESMF(snes, &of_->action));
+  }
   set_jacobian(snes, options.matrix_free ? of_->action.object : matrix, matrix, now_);
   check_petsc(SNESSetTolerances(snes, 0, 0, 0, options.max_iterations, 100 * options.max_iterations));
   if (options.linear) {

@@ -232,6 +232,18 @@ class Quick(_mpm.RunOnce):
             self.assertLessEqual(many, 1.25 * few)  # measured 8 and 8; the unknowns nearly triple
             self.assertLessEqual(many, 12)
 
+    def test_nodes_with_hardly_any_mass(self):
+        def of(solver, remedy):
+            return {"shape": "linear", "reach": 1e-3, "stabilisation": remedy, "solver": solver}
+
+        # Measured 3.1e4 and 4.4e8, 10.5 and 26.5 iterations.
+        condition = [self.one("condition", "conditioning", **of("none", s)) for s in (1e-3, 0.0)]
+        self.assertGreater(condition[1], 1000 * condition[0])
+        linear = [self.one("linear", "conditioning", **of("multigrid", s)) for s in (1e-3, 0.0)]
+        self.assertLess(linear[0], 0.6 * linear[1])
+        errors = [self.one("error", "conditioning", **of("multigrid", s)) for s in (1e-3, 0.0)]
+        self.assertAlmostEqual(*errors, delta=1e-4)
+
     def test_quadratic_convergence(self):
         for row in self.rows("laws"):
             self.assertGreater(float(row["order"]), 1.8, row)

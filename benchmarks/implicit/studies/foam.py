@@ -98,7 +98,7 @@ artificial viscosity) the platen is in contact, and moves at the stated part of 
         steps = round((1 - SHARE) * cells) * PARTS[by] if is_implicit else PICTURES
         solution = (scenes.implicit(end, end / steps, more=f'jacobian="{tangent}" max_newton="{NEWTON}"') if is_implicit
                     else scenes.explicit(end))
-        text = scenes.pressed_block(shape, h, HEIGHT, speed, is_implicit, solution,
+        text = scenes.pressed_block(shape, h, HEIGHT, -speed, not is_implicit, solution,
                                     [scenes.material("solid", DENSITY, LAW), scenes.rigid(DENSITY)],
                                     scenes.pictures(end / min(steps, PICTURES), ("SigmaZ", "density")))
 

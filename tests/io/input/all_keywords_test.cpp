@@ -227,7 +227,7 @@ std::string make_all_keywords() {
          "<Implicit type='quasistatic' newmark_beta='0.25' newmark_gamma='0.5' time_step='1' min_step='0.1' "
          "max_step='2' rtol='1e-6' "
          "atol='1e-9' max_newton='20' jacobian='matrixfree' rule='newmark' gravity_ramp='0.5' "
-         "spectral_radius='0.5'/></Solution>\n"
+         "spectral_radius='0.5' stabilisation='1e-3'/></Solution>\n"
          "<Output><Console print_time='1.0e-3' print_momentum='0'/><PostProcessing time_interval='1' "
          "h5part='1' vtk_data='2' "
          "tecplot='1' cellresult='1' OutGridData='2' StaFragSize='1' StaFragTimeInterval='1' "
