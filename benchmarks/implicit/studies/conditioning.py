@@ -38,7 +38,7 @@ weight above it; *error*: the mean over the particles of |sigma - exact|, over t
 the residual to 1e-8. *condition*: of the matrix, as estimated by their Lanczos process without a preconditioner. Estimates are
 lower bounds: of a system that is not solved the smallest eigenvalue has not been found. *Jacobi*, *multigrid*: iterations per linear
 system, preconditioned with the diagonal and with coarser grids; where a system is not solved, PETSc's reason (ITS: 10,000 iterations,
-DTOL: the residual grows 1e5 times, INDEFINITE_PC: rounding leaves the preconditioner not positive definite). *with*: the default
+DTOL: the residual has grown 1e5 times). *with*: the default
 `stabilisation="{REMEDIES[0]:g}"`, *without*: `stabilisation="0"`; what then bounds the condition is the stiffness of 1e-10 of nodes with less
 than a twentieth of a cell's volume, and that nodes with less than 1e-6 of support are no unknowns."""
     labels = ("shape", "reach", "stabilisation", "solver")
