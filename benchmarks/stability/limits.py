@@ -192,7 +192,8 @@ def tables(rows):
             row["transfer"] = "FLIP, consistent mass"
     some = {name: column for name, column in COLUMNS.items() if name not in ("bar", "shock")}
     return {"limits": results.markdown(flip, {n: c for n, c in COLUMNS.items() if n != "transfer"}),
-            "limits of transfers": results.markdown(other, some)}
+            "limits of transfers": "In the block and the fluid; what is not listed is refused. XPIC and FMPM are of order 2.\n\n"
+            + results.markdown(other, some)}
 
 
 def main():
