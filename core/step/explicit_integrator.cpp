@@ -125,6 +125,12 @@ void ExplicitIntegrator::begin_step(double dt) {
 StepLength ExplicitIntegrator::set_length(double dt) {
   Clock& clock = model_.clock;
   if (clock.step == 0) clock.first_lag = lag_before_ = 0.5 * dt;
+  // USF strains with the velocities of the step before, over this one's length: it must advance them by it,
+  // too.
+  if (model_.scene->solution.scheme == Scheme::usf) {
+    clock.lag = clock.first_lag = 0.5 * dt;
+    return {.dt = dt, .velocity_dt = dt, .lag = 0.5 * dt};
+  }
   const bool last = clock.time + dt >= model_.scene->solution.end_time;
   const StepLength length = step_length(dt, lag_before_, clock.first_lag, last);
   clock.lag = length.lag;

@@ -3,7 +3,8 @@
 // from its start to its end.
 //
 // With one length for both, a step that is shorter than the last one gains (dt_before - dt)/2 times the power
-// of the stresses: 4 % of the energy of a block that vibrates while its step changes by 6 %.
+// of the stresses: 4 % of the energy of a block that vibrates while its step changes by 6 %. USF has one
+// length for both (explicit_integrator.cpp).
 //
 // The velocities of the input are those of half a step before time zero, so that after a time t they hold the
 // impulses of a time t + first_lag - lag. The last step, which EndTime may shorten to any length, advances

@@ -75,7 +75,9 @@ void ReferenceStepper::step() {
 
 template <class Support>
 void ReferenceStepper::step_with() {
-  const double dt = this->dt(), velocity_dt = 0.5 * ((steps_ > 0 ? last_dt_ : dt) + dt);
+  const double dt = this->dt();
+  const bool one_length = case_.scheme == ReferenceScheme::usf || steps_ == 0;
+  const double velocity_dt = one_length ? dt : 0.5 * (last_dt_ + dt);
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
   const bool usf = case_.scheme == ReferenceScheme::usf;
   if (case_.shape == ReferenceShape::ddmp) find_cells_in_use();
@@ -107,6 +109,7 @@ void ReferenceStepper::step_with() {
     for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].corner = next_corner_[n];
   time_ += dt;
   last_dt_ = dt;
+  impulse_time_ += velocity_dt;
   ++steps_;
 }
 

@@ -77,6 +77,8 @@ class ReferenceStepper {
 
   std::span<const ReferenceParticle> particles() const { return case_.particles; }
   double time() const { return time_; }
+  /// For which velocities have been advanced.
+  double impulse_time() const { return impulse_time_; }
   /// Of the next step: dt_factor times the critical step of the present state, 2-51 and 2-74.
   double dt() const;
   ReferenceEnergy energy() const;
@@ -190,7 +192,7 @@ class ReferenceStepper {
   std::vector<Node> grid_;
   std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
   std::vector<DomainCorners> next_corner_;  ///< for cpdi2
-  double time_ = 0, last_dt_ = 0;
+  double time_ = 0, last_dt_ = 0, impulse_time_ = 0;
   int steps_ = 0;  ///< completed
 };
 

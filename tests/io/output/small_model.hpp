@@ -151,7 +151,13 @@ inline void fill(core::Model& model, core::Communication& exchange, const SmallS
     if (s == core::no_slot || s >= model.grid->owned()) continue;
     core::append(model, model.grid->brick(s), static_cast<int>(p.body), p.columns.data());
   }
-  model.clock = {120, 0.25, 1e-3, 1.25e-3, 1.5e-3};
+  model.clock = {.step = 120,
+                 .time = 0.25,
+                 .dt = 1e-3,
+                 .lag = 0.5e-3,
+                 .first_lag = 0.625e-3,
+                 .critical_dt = 1.25e-3,
+                 .first_critical_dt = 1.5e-3};
   model.initial_energy = 1e6;
   model.next_identity = identity;
   // Every rank has something in its ledger; their sum is the same on any number of ranks.

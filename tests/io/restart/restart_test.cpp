@@ -61,6 +61,8 @@ TEST_CASE("A restart file gives back the state to the last bit") {
   CHECK(copy.clock.step == 120);
   CHECK(copy.clock.time == 0.25);
   CHECK(copy.clock.dt == 1e-3);
+  CHECK(copy.clock.lag == 0.5e-3);
+  CHECK(copy.clock.first_lag == 0.625e-3);
   CHECK(copy.clock.critical_dt == 1.25e-3);
   CHECK(copy.clock.first_critical_dt == 1.5e-3);
   CHECK(copy.initial_energy == 1e6);
