@@ -12,7 +12,7 @@ namespace {
 /// Cells with less of it empty have enough stiffness of their own.
 constexpr double hardly_empty = 0.01;
 /// Stiffness of a tie over that of the filling.
-constexpr double tie = 1e-3;
+constexpr double tie_stiffness = 1e-3;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ CellStabilisation::CellStabilisation(Model& model, const BrickFields& fields)
       centred_(model.scene->grid.shape == ShapeFunction::sgmp ||
                model.scene->grid.shape == ShapeFunction::ddmp),
       alpha_(model.scene->solution.implicit.value_or(ImplicitInput{}).stabilisation),
-      spring_(tie * alpha_),
+      spring_(tie_stiffness * alpha_),
       matrix_(cell_matrix(model.grid->geometry().cell)) {
   const NodeBlockShape shape = model.grid->shape();
   for (int n = 0; n < 8; ++n) corner_[n] = shape.index(n & 1, n >> 1 & 1, n >> 2) - shape.index(0, 0, 0);
