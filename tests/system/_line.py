@@ -38,14 +38,18 @@ class Line:
         self.steps = 0
 
     def run(self, end):
-        time = 0.0
+        time = impulses = before = 0.0
         while time < end * (1 - 1e-12):
             dt = min(self.factor * self.critical, end - time)
-            self.step(dt)
-            time += dt
+            # Velocities are advanced from the middle of the step before to that of this one, at the end to the impulses of the
+            # whole time; with USF over the step.
+            last = time + dt >= end
+            own = end - impulses if last else 0.5 * ((before or dt) + dt)
+            self.step(dt, dt if self.algorithm == "USF" else own)
+            time, impulses, before = time + dt, impulses + own, dt
             self.steps += 1
 
-    def step(self, dt):
+    def step(self, dt, velocity_dt):
         lower = np.floor(self.x / self.cell).astype(int)
         s = self.x / self.cell - lower
         node, share, slope = np.stack([lower, lower + 1]), np.stack([1 - s, s]), np.array([[-1], [1]]) / self.cell
@@ -68,7 +72,7 @@ class Line:
             start = velocity_of(momentum)
             at_new_places = rate(start) + self.released(s, (share * start[node]).sum(axis=0), dt)
             wave = self.stress(at_new_places / (1 - dt * at_new_places), dt)
-        dv = dt * velocity_of(to_nodes(slope * self.volume * (self.p + self.q)))
+        dv = velocity_dt * velocity_of(to_nodes(slope * self.volume * (self.p + self.q)))
         velocity = at_wall(velocity_of(momentum) + dv)
         self.v += (share * dv[node]).sum(axis=0)
         if self.algorithm == "USL":
