@@ -108,6 +108,7 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options,
   if (strength_traits_.rigid) {
     std::fill_n(batch.critical_speed, core::batch_particles, 0.0);
     std::fill_n(batch.sound_speed, core::batch_particles, 0.0);
+    std::fill_n(batch.old_volume, core::batch_particles, 0.0);  // its stresses do no work
     return;
   }
   alignas(64) core::Row verdict;
