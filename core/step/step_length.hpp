@@ -8,7 +8,8 @@
 //
 // The velocities of the input are those of half a step before time zero, so that after a time t they hold the
 // impulses of a time t + first_lag - lag. The last step, which EndTime may shorten to any length, advances
-// them to the impulses of the time of the run, as far as it can without going back.
+// them to the impulses of the time of the run, as far as it can without going back or standing still: an
+// impulse over no time would be no force.
 #pragma once
 
 #include <algorithm>
@@ -22,10 +23,12 @@ struct StepLength {
   double load_part = 0.5;  ///< of dt, after which loads are evaluated: the middle of their impulses' time
 };
 
+inline constexpr double least_impulse = 1.0 / 64;  ///< time of the last step's impulses, over its length
+
 /// `first_lag`: half of the run's first step.
 inline StepLength step_length(double dt, double lag_before, double first_lag, bool last) {
   StepLength s{dt};
-  s.lag = last ? std::clamp(first_lag, lag_before - dt, lag_before + dt) : 0.5 * dt;
+  s.lag = last ? std::clamp(first_lag, lag_before - dt, lag_before + (1 - least_impulse) * dt) : 0.5 * dt;
   s.velocity_dt = dt + (lag_before - s.lag);
   s.load_part = (first_lag - lag_before + 0.5 * s.velocity_dt) / dt;
   return s;

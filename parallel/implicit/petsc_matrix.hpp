@@ -6,7 +6,7 @@
 // rows of a node are found by 3 x 3 blocks: its columns are sorted, those of the dense matrix too, and one
 // walk through both finds all places. Rows of other ranks' nodes go through PETSc's stash.
 // Another format that the user chooses is filled by MatSetValuesBlocked. Shown by
-// tests/system/physics_implicit.py.
+// tests/system/physics_implicit_systems.py.
 #pragma once
 
 #include <cstdint>

@@ -231,6 +231,20 @@ TEST_CASE("A symmetric problem stays symmetric") {
   }
 }
 
+TEST_CASE(
+    "Velocities are advanced by the mean of two steps, at the end to the impulses of the time of the run") {
+  const StepLength equal = step_length(2, 1, 1, false), shorter = step_length(1, 1, 1, false);
+  CHECK(equal.velocity_dt == 2);
+  CHECK(equal.load_part == 0.5);
+  CHECK(shorter.velocity_dt == 1.5);
+  CHECK(shorter.lag == 0.5);
+  CHECK(shorter.load_part == 0.75);
+  const StepLength last = step_length(0.5, 0.75, 0.875, true), tiny = step_length(0.0625, 0.25, 1, true);
+  CHECK(last.lag == 0.875);
+  CHECK(last.velocity_dt == 0.375);
+  CHECK(tiny.velocity_dt == 0.0625 / 64);  // not zero
+}
+
 TEST_CASE("The last step ends on time") {
   SmallRun run(tumbling(ReferenceScheme::musl));
   run.scene->solution.time_step.specified = 0.01;
