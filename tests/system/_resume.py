@@ -66,6 +66,11 @@ def start_and_kill(case, out, ranks=1, files=1):
     return outcome
 
 
+def warnings(outcome):
+    """What the run warned of, but for the error of its energy: whether that is notable depends on when the run ends."""
+    return [line for line in outcome.out.splitlines() if line.startswith("warning") and "energy balance" not in line]
+
+
 def time_of(restart):
     with h5py.File(restart) as file:
         return float(file.attrs["time"])

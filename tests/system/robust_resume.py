@@ -50,7 +50,7 @@ class Killed(Resume):
                 self.shorten(pictures=pictures)
                 outcome = self.go_on(ranks=ranks)
                 self.assertEqual(outcome.state, self.state)
-                self.assertNotIn("warning", outcome.out)
+                self.assertEqual(_resume.warnings(outcome), [])
                 self.check_same_files()
 
     def test_killed_again_and_again(self):
@@ -62,7 +62,7 @@ class Killed(Resume):
         self.shorten()
         outcome = self.go_on()
         self.assertEqual(outcome.state, self.state)
-        self.assertNotIn("warning", outcome.out)
+        self.assertEqual(_resume.warnings(outcome), [])
         self.check_same_files()
         groups = _resume.states(self.out / "case.h5part")[1]
         self.assertEqual([name for name in groups if not name.startswith("Step#")], [])
@@ -72,7 +72,7 @@ class Killed(Resume):
         self.shorten()
         outcome = self.go_on(_mpm.restarts(self.out)[0])
         self.assertEqual(outcome.state, self.state)
-        self.assertNotIn("warning", outcome.out)
+        self.assertEqual(_resume.warnings(outcome), [])
         self.check_same_files()
 
 
@@ -88,7 +88,7 @@ class Killed(Resume):
         self.shorten()
         outcome = self.go_on()
         self.assertEqual(outcome.state, self.state)
-        self.assertNotIn("warning", outcome.out)
+        self.assertEqual(_resume.warnings(outcome), [])
         self.check_same_files()
 
     def test_killed_when_nothing_is_left_but_the_last_row(self):
@@ -100,7 +100,7 @@ class Killed(Resume):
         (self.out / "case.sta").write_text("".join(rows[:-1]))
         outcome = self.run_in("out", [self.out / "case.pe"])
         self.assertEqual(outcome.state, self.state)
-        self.assertNotIn("warning", outcome.out)
+        self.assertEqual(_resume.warnings(outcome), [])
         self.check_same_files()
 
     def test_killed_before_its_first_restart_file_where_an_older_run_was(self):
@@ -123,7 +123,7 @@ class Stopped(Resume):
         self.shorten()
         outcome = self.go_on()
         self.assertEqual(outcome.state, self.state)
-        self.assertNotIn("warning", outcome.out)
+        self.assertEqual(_resume.warnings(outcome), [])
         self.check_same_files()
 
 
@@ -150,7 +150,7 @@ class Damaged(Resume):
         outcome = self.go_on()
         self.assertEqual(outcome.state, self.state)
         log = (self.out / "case.out").read_text(errors="replace")
-        warnings = [line for line in outcome.out.splitlines() if line.startswith("warning:")]
+        warnings = _resume.warnings(outcome)
         for line in warnings:
             self.assertIn(line, log)
         return "\n".join(warnings)
@@ -212,7 +212,7 @@ class Damaged(Resume):
     def test_in_another_folder_nothing_is_missing(self):
         outcome = self.run_in("elsewhere", [self.out / "case.pe", "-rt", self.case])
         self.assertEqual(outcome.state, self.state)
-        self.assertNotIn("warning", outcome.out)
+        self.assertEqual(_resume.warnings(outcome), [])
         self.assertIn("some files of the earlier run are missing in this folder",
                       (self.folder / "elsewhere/case.out").read_text())
 
