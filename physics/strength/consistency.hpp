@@ -2,8 +2,10 @@
 // hardening:
 //   f(x) = trial - 3 G x - sigma_y(x) = 0,   0 <= x <= trial/(3 G)
 // Newton's method safeguarded by a shrinking bracket, all lanes at once; converged lanes no longer change, so
-// their result does not depend on their neighbours. Converged means |f| below 1e-12 of the yield stress. Its
-// derivatives follow from f(x) = 0 at the result.
+// their result does not depend on their neighbours. Converged means |f| below 1e-12 of the yield stress, or
+// a Newton step below 1e-6 x: x f''/f' of rate, heat and hardening is of order one or less, so that what is
+// left is about 1e-12 x, and the yield stress, which costs most, is not evaluated once more. The derivatives
+// of x follow from f(x) = 0 at the result.
 #pragma once
 
 #include "core/simd/dual.hpp"
@@ -37,10 +39,11 @@ T plastic_increment(const T& trial, const T& threshold, const T& start, double s
     T x = core::select(plastic, max(trial - start, 1e-3 * (trial - threshold)) * (1 / stiffness), 0.0);
     if (!core::any(plastic)) return x;
     T low = 0.0, high = trial * (1 / stiffness);
+    core::MaskOf<T> open = plastic;
     for (int iteration = 0; iteration < 100; ++iteration) {
       const FlowStress<T> yield = flow(x);
       const T f = trial - stiffness * x - yield.value;
-      const core::MaskOf<T> open = plastic & (abs(f) > 1e-12 * yield.value + 1e-15 * trial);
+      open = open & (abs(f) > 1e-12 * yield.value + 1e-15 * trial);
       if (!core::any(open)) break;
       low = core::select(f > 0.0, x, low);
       high = core::select(f > 0.0, high, x);
@@ -53,6 +56,8 @@ T plastic_increment(const T& trial, const T& threshold, const T& start, double s
                             core::select((scaled > low) & (scaled < high), scaled, 0.5 * (low + high)));
       }
       x = core::select(open, next, x);
+      open = open & !(inside & (abs(step) <= 1e-6 * x));
+      if (!core::any(open)) break;
     }
     return x;
   }
