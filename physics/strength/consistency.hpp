@@ -20,23 +20,29 @@ struct FlowStress {
 };
 
 /// `threshold` is the yield stress for a vanishing increment: where the trial stress does not exceed it the
-/// result is zero. `start` is the stress at which flow starts: the greater of the threshold and the stress
-/// before the step; with it a steady flow is found at once. `flow(x)` returns the yield stress; for a law
-/// with a tangent it must take x with and without derivatives (core::as).
+/// result is zero. Its slope is that of hardening alone, as far as it is known without a rate; it and
+/// `start`, the stress at which flow starts, the greater of the threshold and the stress before the step,
+/// make the first guess, with which a steady flow is nearly found. `flow(x)` returns the yield stress; for a
+/// law with a tangent it must take x with and without derivatives (core::as).
 template <class T, class Flow>
-T plastic_increment(const T& trial, const T& threshold, const T& start, double shear, const Flow& flow) {
+T plastic_increment(const T& trial, const FlowStress<T>& threshold, const T& start, double shear,
+                    const Flow& flow) {
   using core::abs;
   using core::exp;
   using core::max;
   const double stiffness = 3 * shear;
   if constexpr (core::derivatives_of < T >> 0) {
-    const auto x = plastic_increment(trial.v, threshold.v, start.v, shear, flow);
+    const auto x =
+        plastic_increment(trial.v, FlowStress{threshold.value.v, threshold.slope.v}, start.v, shear, flow);
     const FlowStress<T> yield = flow(T(x));
     const T f = trial - stiffness * T(x) - yield.value;
     return core::select(x > 0.0, core::implicit_root(T(x), f, stiffness + yield.slope), T(x));
   } else {
-    const core::MaskOf<T> plastic = trial > threshold;
-    T x = core::select(plastic, max(trial - start, 1e-3 * (trial - threshold)) * (1 / stiffness), 0.0);
+    const core::MaskOf<T> plastic = trial > threshold.value;
+    T x = core::select(
+        plastic,
+        max((trial - start) / (stiffness + threshold.slope), (1e-3 / stiffness) * (trial - threshold.value)),
+        0.0);
     if (!core::any(plastic)) return x;
     T low = 0.0, high = trial * (1 / stiffness);
     core::MaskOf<T> open = plastic;

@@ -76,8 +76,10 @@ struct JohnsonCook : JohnsonCookPlasticity {
     const T before = mises(point.s), strain = point.effective_plastic_strain;
     elastic_step(point);
     const T trial = mises(point.s);
-    const T threshold = power_hardening(yield0, b, n, strain).value * softening(point.temperature);
-    const T start = core::max(before, threshold);
+    const T softened = softening(point.temperature);
+    const FlowStress<T> hardening = power_hardening(yield0, b, n, strain);
+    const FlowStress<T> threshold{hardening.value * softened, hardening.slope * softened};
+    const T start = core::max(before, threshold.value);
     const T heat = plastic_work_coefficient / (point.density * specific_heat);  // 3-5
     const T increment = plastic_increment(trial, threshold, start, shear, [&]<class X>(const X& x) {
       const X mean = core::as<X>(0.5 * (start + trial)), per_work = core::as<X>(heat);
@@ -87,7 +89,7 @@ struct JohnsonCook : JohnsonCookPlasticity {
       return power_hardening(yield0, b, n, X(core::as<X>(strain) + x)) * rate_factor(c, x, epso * point.dt) *
              softening(temperature, heating);
     });
-    return_to(point, trial, start, threshold, increment);
+    return_to(point, trial, start, threshold.value, increment);
     if (fails_by_damage()) accumulate_damage(point, increment);
   }
 

@@ -24,12 +24,12 @@ struct SimJohnsonCook : JohnsonCookPlasticity {
     const T before = mises(point.s), strain = point.effective_plastic_strain;
     elastic_step(point);
     const T trial = mises(point.s);
-    const T threshold = power_hardening(yield0, b, n, strain).value;
-    const T start = core::max(before, threshold);
+    const FlowStress<T> threshold = power_hardening(yield0, b, n, strain);
+    const T start = core::max(before, threshold.value);
     const T increment = plastic_increment(trial, threshold, start, shear, [&]<class X>(const X& x) {
       return power_hardening(yield0, b, n, X(core::as<X>(strain) + x)) * rate_factor(c, x, epso * point.dt);
     });
-    return_to(point, trial, start, threshold, increment);
+    return_to(point, trial, start, threshold.value, increment);
   }
 };
 

@@ -49,11 +49,11 @@ struct Voce : MisesPlasticity {
   void update(StrengthPoint<T>& point) const {
     elastic_step(point);
     const T trial = mises(point.s), strain = point.effective_plastic_strain;
-    const T threshold = flow_stress(strain).value;
-    const T increment = plastic_increment(trial, threshold, threshold, shear, [&]<class X>(const X& x) {
+    const FlowStress<T> threshold = flow_stress(strain);
+    const T increment = plastic_increment(trial, threshold, threshold.value, shear, [&]<class X>(const X& x) {
       return flow_stress(X(core::as<X>(strain) + x));
     });
-    return_to(point, trial, threshold, threshold, increment);
+    return_to(point, trial, threshold.value, threshold.value, increment);
   }
 
  private:
