@@ -18,7 +18,8 @@ Beside them the limit of a linear analysis (theory.py) and the program's own, k 
 
   limits.py                        every method and scene, an hour and a half on a core; --shape, --scheme, --transfer, --scene
                                    choose some
-  limits.py --docs                 every method: the tables of docs/stability.md"""
+  limits.py --docs                 the tables of docs/stability.md, FLIP's and that of the other transfers; --docs FLIP and
+                                   --docs others measure and write one of them"""
 
 import argparse
 import os
@@ -184,16 +185,24 @@ COLUMNS = {"shape": (lambda r: f"`{r['shape']}`", ""), "transfer": (lambda r: r[
            "limit": (lambda r: r["program"], ".2f")}
 
 
+def is_plain(transfer, mass):
+    return transfer == "FLIP" and mass == "lumped"
+
+
 def tables(rows):
-    flip = [r for r in rows if r["transfer"] == "FLIP" and r["mass"] == "lumped"]
-    other = [r for r in rows if r not in flip]
-    for row in other:
+    flip = [r for r in rows if is_plain(r["transfer"], r["mass"])]
+    others = [r for r in rows if r not in flip]
+    for row in others:
         if row["mass"] == "consistent":
             row["transfer"] = "FLIP, consistent mass"
     some = {name: column for name, column in COLUMNS.items() if name not in ("bar", "shock")}
-    return {"limits": results.markdown(flip, {n: c for n, c in COLUMNS.items() if n != "transfer"}),
-            "limits of transfers": "In the block and the fluid; what is not listed is refused. XPIC and FMPM are of order 2.\n\n"
-            + results.markdown(other, some)}
+    made = {}
+    if flip:
+        made["limits"] = results.markdown(flip, {n: c for n, c in COLUMNS.items() if n != "transfer"})
+    if others:
+        made["limits of transfers"] = ("In the block and the fluid; what is not listed is refused. XPIC and FMPM are of order 2."
+                                       "\n\n" + results.markdown(others, some))
+    return made
 
 
 def main():
@@ -205,29 +214,32 @@ def main():
     parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--csv", type=pathlib.Path)
     parser.add_argument("--factor", type=float, help="report the energy growth at this factor instead")
-    parser.add_argument("--docs", action="store_true", help="every method, and the tables of docs/stability.md")
+    parser.add_argument("--docs", nargs="*", choices=["FLIP", "others"], help="every method, and the tables of docs/stability.md")
     options = parser.parse_args()
     chosen = [(s, t, a, options.mass) for s in options.shape for t in options.transfer for a in options.scheme]
-    if options.docs:
+    docs = options.docs is not None
+    if docs:
+        wanted = options.docs or ["FLIP", "others"]
         chosen = [(s, t, a, m) for t in methods.choices("Solution", "transfer") for s in methods.shapes()
-                  for a in methods.schemes() for m in ("lumped", "consistent") if m == "lumped" or t == "FLIP"]
+                  for a in methods.schemes() for m in ("lumped", "consistent") if m == "lumped" or t == "FLIP"
+                  if ("FLIP" if is_plain(t, m) else "others") in wanted]
     rows = []
     for method in chosen:
-        plain = method[1] == "FLIP" and method[3] == "lumped"
-        scenes = [name for name in options.scene if plain or not options.docs or name in ("block", "fluid")]
+        plain = is_plain(method[1], method[3])
+        scenes = [name for name in options.scene if plain or not docs or name in ("block", "fluid")]
         try:
             if options.factor:
                 print(*method, *(f"{growth(name, method, options.factor):.4g}" for name in scenes), flush=True)
                 continue
             rows.append(measure(method, scenes))
         except Refused as refusal:
-            if options.docs:
+            if docs:
                 continue
             raise SystemExit(refusal)
         print(*(f"{v:.4g}" if isinstance(v, float) else v for v in rows[-1].values()), flush=True)
         if options.csv:
             results.write(options.csv, [{"bar": "", "shock": "", **row} for row in rows])
-    if options.docs:
+    if docs:
         results.refresh(PAGE, tables(rows))
 
 
