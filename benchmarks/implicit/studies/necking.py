@@ -61,10 +61,10 @@ def considere(part):
     return 1e-3 * np.pi * (part * RADIUS) ** 2 * (flow(strains)[0] * np.exp(-strains)).max()
 
 
-def bar(radial, axial, held=True):
+def bar(radial, axial, held=True, grading=3.0):
     """The reference, by finite elements."""
     metal = necked_bar.Metal(BULK, SHEAR, flow)
-    return necked_bar.Bar(metal, lambda z: RADIUS * (NECK + (1 - NECK) * z / HALF), HALF, radial, axial, held=held)
+    return necked_bar.Bar(metal, lambda z: RADIUS * (NECK + (1 - NECK) * z / HALF), HALF, radial, axial, grading, held)
 
 
 class Necking(study.Study):
