@@ -71,9 +71,13 @@ def identity(row, labels):
 
 
 def write(study, path, rows, head):
-    """Rows of this run, and those that the file had and this run did not measure, in the order of the study's runs."""
+    """Rows of this run, of the same labels that of the median time, and those that the file had and this run did not measure, in
+    the order of the study's runs."""
     kept = {identity(r, study.labels): r for r in results.read(path)[1]} if path.exists() else {}
-    kept.update({identity(r, study.labels): r for r in rows})
+    repeats = {}
+    for row in sorted(rows, key=lambda r: r["seconds"] or 0.0):
+        repeats.setdefault(identity(row, study.labels), []).append(row)
+    kept.update({key: same[len(same) // 2] for key, same in repeats.items()})
     places = {identity(r.labels, study.labels): i for i, r in enumerate(study.runs())}
     rows = [kept[key] for key in sorted(kept, key=lambda key: places.get(key, 0)) if key in places]
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -99,7 +103,7 @@ def run(options):
 
         rows = []
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            waiting = [pool.submit(measured, one) for one in runs]
+            waiting = [pool.submit(measured, one) for one in runs * options.repeat]
             try:
                 for ended in concurrent.futures.as_completed(waiting):
                     rows.append(ended.result())
@@ -147,6 +151,7 @@ def arguments(words=None):
     parser.add_argument("--quick", action="store_true", help="coarse grids of some studies; a minute")
     parser.add_argument("--keep", action="store_true", help="leave the files of the runs in OUT/runs")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time; above 1 they disturb each other's times a little")
+    parser.add_argument("--repeat", type=int, default=1, help="the list of runs so many times over; of each run the median time")
     parser.add_argument("--out", type=pathlib.Path, default=results.ROOT / "build/implicit", help="default: build/implicit")
     parser.add_argument("--docs", action="store_true", help="renew the tables of docs/implicit.md")
     return parser.parse_args(words)

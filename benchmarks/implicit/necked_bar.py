@@ -5,9 +5,11 @@ plasticity in the logarithms of the principal elastic stretches, in which the ra
 plastic flow keeps the volume; the yield stress is Kirchhoff's. Newton's method; the elements' matrices by differences.
 tests/system/benchmarks_implicit.py compares uniform tension with the closed form.
 
-  necked_bar.py [RADIAL AXIAL]     the table of studies/necking.py: elongation, ratio of radii, force"""
+  necked_bar.py [RADIAL AXIAL [HELD [GRADING]]]     the table of studies/necking.py: elongation, ratio of radii, force;
+                                                    HELD 0: ends free to narrow; GRADING 0: elements of one length"""
 
 import dataclasses
+import pathlib
 import sys
 
 import numpy as np
@@ -137,9 +139,10 @@ def curve(bar, pulled, steps):
     return np.array(rows)
 
 
-def main(radial=12, axial=40, held=1):
+def main(radial=12, axial=40, held=1, grading=3):
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
     from studies import necking
-    found = curve(necking.bar(int(radial), int(axial), bool(int(held))), necking.PULLED, 140)
+    found = curve(necking.bar(int(radial), int(axial), bool(int(held)), float(grading)), necking.PULLED, 140)
     found[:, 1] /= necking.RADIUS
     for elongation, ratio, force in found[::5]:
         print(f"({elongation:.4g}, {ratio:.5f}, {force / 1e3:.4f}),")

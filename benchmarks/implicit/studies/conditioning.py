@@ -15,10 +15,11 @@ REACHES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 REMEDIES = (1e-3, 0.0)  # Implicit@stabilisation
 # Particles along an edge, and how far the support of a node reaches beyond the one before the last, in cells.
 SHAPES = {"linear": (2 * CELLS + 1, 0.0), "QuadraticBSpline": (2 * CELLS + 2, 0.5)}
-CG = ("-ksp_type", "cg", "-ksp_rtol", "1e-8", "-ksp_max_it", "10000", "-snes_linesearch_type", "basic")
 ESTIMATE = "singular_values"
-SOLVERS = {"none": (*CG, "-pc_type", "none", "-ksp_view_singularvalues", f":{{folder}}/{ESTIMATE}"),
-           "Jacobi": (*CG, "-pc_type", "jacobi"), "multigrid": CG}
+CAPS = {"none": 2000, "Jacobi": 1000, "multigrid": 1000}  # iterations per linear system
+CG = ("-ksp_type", "cg", "-ksp_rtol", "1e-8", "-snes_linesearch_type", "basic")
+PRECONDITIONERS = {"none": ("-pc_type", "none", "-ksp_view_singularvalues", f":{{folder}}/{ESTIMATE}"),
+                   "Jacobi": ("-pc_type", "jacobi"), "multigrid": ()}
 QUICK = ("linear", 1e-3)
 
 
@@ -37,8 +38,8 @@ cell into the support of one more layer of nodes, on its three free faces, at it
 weight above it; *error*: the mean over the particles of |sigma - exact|, over the weight's stress at the bottom. Conjugate gradients reduce
 the residual to 1e-8. *condition*: of the matrix, as estimated by their Lanczos process without a preconditioner. Estimates are
 lower bounds: of a system that is not solved the smallest eigenvalue has not been found. *Jacobi*, *multigrid*: iterations per linear
-system, preconditioned with the diagonal and with coarser grids; where a system is not solved, PETSc's reason (ITS: 10,000 iterations,
-DTOL: the residual has grown 1e5 times). *with*: the default
+system, preconditioned with the diagonal and with coarser grids. A system is given up after {CAPS["none"]} iterations without a
+preconditioner, or {CAPS["Jacobi"]} with one ("> {CAPS["Jacobi"]}"); DTOL: the residual has grown 1e5 times. *with*: the default
 `stabilisation="{REMEDIES[0]:g}"`, *without*: `stabilisation="0"`; what then bounds the condition is the stiffness of 1e-10 of nodes with less
 than a twentieth of a cell's volume, and that nodes with less than 1e-6 of support are no unknowns."""
     labels = ("shape", "reach", "stabilisation", "solver")
@@ -50,7 +51,7 @@ than a twentieth of a cell's volume, and that nodes with less than 1e-6 of suppo
     @staticmethod
     def cases():
         return [(shape, reach, remedy, solver) for shape in SHAPES for reach in REACHES for remedy in REMEDIES
-                for solver in SOLVERS]
+                for solver in CAPS]
 
     @staticmethod
     def run(shape, reach, remedy, solver):
@@ -69,7 +70,7 @@ than a twentieth of a cell's volume, and that nodes with less than 1e-6 of suppo
             return {"error": error, **({"condition": condition(result.folder)} if solver == "none" else {})}
 
         return Run({"shape": shape, "reach": reach, "stabilisation": remedy, "solver": solver}, text, measure,
-                   (shape, reach) == QUICK, options=SOLVERS[solver])
+                   (shape, reach) == QUICK, options=(*CG, "-ksp_max_it", str(CAPS[solver]), *PRECONDITIONERS[solver]))
 
     def block(self, rows):
         text = []
@@ -119,9 +120,9 @@ def shown_iterations(row):
 
 
 def reason_of(row):
-    """PETSc's, without DIVERGED."""
+    """PETSc's, without DIVERGED; that of the iterations as their number."""
     found = re.findall(r"DIVERGED_(\w+)", row["note"])
-    return found[-1] if found else row["status"]
+    return row["status"] if not found else f"> {CAPS[row['solver']]} it." if found[-1] == "ITS" else found[-1]
 
 
 STUDY = Conditioning()
