@@ -17,6 +17,7 @@
 #include "core/exact_sum.hpp"
 #include "core/grid/brick_grid.hpp"
 #include "core/material/constitutive_model.hpp"
+#include "core/reaction.hpp"
 #include "core/scene/scene.hpp"
 
 namespace mpm::core {
@@ -30,6 +31,7 @@ struct Body {
   std::optional<Vec3<double>> prescribed_velocity;
   bool rigid = false;                     ///< moves freely under gravity where no velocity is prescribed
   std::optional<RigidState> rigid_state;  ///< in contact; the same on all ranks
+  bool inertia_given = false;  ///< energy of rotation and spin follow from the rigid state, not its particles
   bool no_output = false;
   /// Memory of this rank's particles; bodies with the same columns share one.
   std::shared_ptr<BlockPool> pool;
@@ -70,6 +72,7 @@ struct Model {
   std::vector<std::unique_ptr<ConstitutiveModel>> materials;
   UpdateOptions options;
   std::vector<Body> bodies;
+  std::vector<Reaction> reactions;  ///< of rigid bodies in contact and of prescribed motions, by body
   std::unique_ptr<BrickGrid> grid;
   Clock clock;
   Ledger ledger;

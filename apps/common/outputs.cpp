@@ -102,6 +102,7 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Redu
       start_time_(model.clock.time),
       wall_start_(wall()),
       momentum_(model.scene->output.console.print_momentum) {
+  if (from) status_.recall(mark_named(*from, status_ending));
   const core::OutputInput& out = model.scene->output;
   std::set<std::string> absent;
   const auto say_absent = [&](const std::vector<std::string>& names) {
@@ -151,7 +152,7 @@ std::map<std::string, std::string> Outputs::marks(core::Reductions& ranks) {
   const double before = wall();
   std::map<std::string, std::string> marks;
   status_.sync(ranks);
-  marks[status_ending] = status_.mark().text();
+  marks[status_ending] = status_.mark();
   history_.sync(ranks);
   marks[history_ending] = history_.mark().text();
   if (h5part_) marks[h5part_ending] = h5part_->mark(ranks);

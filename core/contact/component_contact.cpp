@@ -15,6 +15,12 @@ double stiffness(const MaterialInput& material) {
 
 }  // namespace
 
+bool has_reaction(const Scene& scene, const BodyInput& body) {
+  if (scene.solution.integration != Integration::explicit_dynamics) return false;
+  return body.prescribed_velocity || body.constrain_rigid_position ||
+         (scene.contact.enable && is_rigid(scene.materials[body.material]));
+}
+
 double normal_weight(const Scene& scene, std::size_t component, std::size_t material) {
   return scene.contact.automatic_weights ? stiffness(scene.materials[material])
                                          : scene.components[component].normal_weight;

@@ -10,6 +10,9 @@ namespace mpm::core {
 
 inline bool is_rigid(const MaterialInput& material) { return material.strength.type == "Rigid"; }
 
+/// Whether the reaction of a body is recorded: it is rigid and in contact, or its velocity is prescribed.
+bool has_reaction(const Scene& scene, const BodyInput& body);
+
 /// Weight of the normals of a component of this material, which is not rigid: as given or, with
 /// auto_normal_vector_weight, by stiffness.
 double normal_weight(const Scene& scene, std::size_t component, std::size_t material);

@@ -33,6 +33,7 @@
 #include "core/exact_sum.hpp"
 #include "core/model.hpp"
 #include "core/step/node_update.hpp"
+#include "core/step/offending_particle.hpp"
 #include "core/step/shared_nodes.hpp"
 
 namespace mpm::core {
@@ -67,13 +68,14 @@ struct MeetingNodes {
   };
   std::vector<Node> nodes;  ///< in the order of SharedNodes
   std::vector<Pair> pairs;
+  OffendingParticle overlap;  ///< of two driven rigid bodies, by number of the node; empty: none
   /// Where gaps are measured: outward normals by node of the list, then field; zero: none.
   std::vector<Vec3<double>> outward;
 
   std::span<const Pair> pairs_of(const Node& node) const {
     return std::span(pairs).subspan(node.first_pair, node.last_pair - node.first_pair);
   }
-  void clear() { nodes.clear(), pairs.clear(), outward.clear(); }
+  void clear() { nodes.clear(), pairs.clear(), outward.clear(), overlap = {}; }
   template <class F>
   void filter(F keep);
 };
@@ -146,6 +148,8 @@ class Contact {
   /// With their reach mapped, drops the pairs that are farther apart than the largest gap.
   void drop_distant_pairs(const BrickGrid& grid, const SharedNodes& shared, Slot s);
   const MeetingNodes& meetings(Slot s) const { return meetings_[static_cast<std::size_t>(s)]; }
+  /// Where two driven rigid bodies overlap, of this rank: the node of the lowest number.
+  OffendingParticle first_overlap() const;
 
   /// Free rigid bodies: the nodes at which the fields that a brick sees touch them, no later brick having
   /// these, and the answer of such a node to a trial motion of the bodies. The fields have the motion of the
@@ -179,6 +183,8 @@ class Contact {
   void find_normals(const BrickGrid& grid, Slot s, std::span<const FieldNodes> fields,
                     RegressionScratch& scratch);
   void complete(Slot s, std::span<const FieldNodes> fields);
+  void find_overlap(const BrickGrid& grid, Slot s, int node, std::span<const FieldNodes> fields,
+                    std::span<const int> present);
   static Vec3<double> outward(int field, std::span<const MeetingNodes::Pair> pairs);
   Vec3<double> outward(std::span<const FieldNodes> fields, int field, int node,
                        std::span<const MeetingNodes::Pair> pairs) const;
@@ -211,7 +217,9 @@ class Contact {
   std::vector<std::size_t> seen_begin_{0};
   std::vector<std::int32_t> seen_;
   ContactInput::Normal normal_;
-  bool regresses_ = false;              ///< some pairs of components
+  bool regresses_ = false;  ///< some pairs of components
+  /// Mass in a full cell, by component, of driven rigid bodies; 0: others. Empty with fewer than two of them.
+  std::vector<double> driven_mass_;
   ContactPoints points_;                ///< empty without regression
   std::vector<MeetingNodes> meetings_;  ///< by owned slot; those of slots that do not meet are not set
 };

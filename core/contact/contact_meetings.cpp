@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 #include "core/contact/contact.hpp"
 
 namespace mpm::core {
@@ -88,6 +90,7 @@ void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot 
       return share.neighbour > self_index &&
              brick.neighbour[static_cast<std::size_t>(share.neighbour)] != no_slot;
     });
+    if (counts && !driven_mass_.empty()) find_overlap(grid, s, node, fields, present);
     const std::size_t first = at.pairs.size();
     for (std::size_t a = 0; a < present.size(); ++a)
       for (std::size_t b = a + 1; b < present.size(); ++b) at.pairs.push_back({present[a], present[b], {}});
@@ -98,6 +101,61 @@ void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot 
     at.nodes.push_back({node, counts, brick.neighbour[static_cast<std::size_t>(finder->neighbour)],
                         finder->node, first, at.pairs.size()});
   });
+}
+
+/// Contact cannot part driven rigid bodies. Those that touch fill a node's cell together, whatever surface
+/// they share, but for the particles' steps in it; those that have entered each other fill it more than once.
+void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<const FieldNodes> fields,
+                           std::span<const int> present) {
+  constexpr double least = 0.3;  // of a cell
+  const NodeBlockShape shape = grid.shape();
+  const int side = shape.side(), low = shape.lowest();
+  const std::int64_t in_brick[3] = {node % side + low, node / side % side + low, node / (side * side) + low};
+  const Vec3<double> place = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
+                                                        node / side % side + low, node / (side * side) + low);
+  const auto filled = [&](int f) {
+    const FieldNodes& field = fields[static_cast<std::size_t>(f)];
+    const double
+        full = driven_mass_[static_cast<std::size_t>(field.component)],
+        mass = field.surface[static_cast<std::size_t>(node_doubles * node + node_field::surface_mass.first)];
+    return full > 0 ? mass / full : 0.0;
+  };
+  const auto velocity = [&](int f) {
+    return velocity_at(rigid_->state(rigid(fields[static_cast<std::size_t>(f)].component)), place);
+  };
+  for (std::size_t a = 0; a < present.size(); ++a) {
+    for (std::size_t b = a + 1; b < present.size(); ++b) {
+      const double first = filled(present[a]), second = filled(present[b]);
+      if (first + second - 1 < least || std::min(first, second) < least) continue;
+      if (velocity(present[a]) == velocity(present[b])) continue;  // they have been placed so
+      const auto name = [&](std::size_t k) {
+        const std::int32_t component = fields[static_cast<std::size_t>(present[k])].component;
+        return std::ranges::find(model_.bodies, component, &Body::component)->name;
+      };
+      const BrickCoord brick = grid.brick(s).coord;
+      const std::int64_t number[3] = {brick_cells * std::int64_t{brick.x} + in_brick[0],
+                                      brick_cells * std::int64_t{brick.y} + in_brick[1],
+                                      brick_cells * std::int64_t{brick.z} + in_brick[2]};
+      const auto& cells = grid.geometry().cells;
+      const auto order =
+          static_cast<double>((number[2] * (cells[1] + 1) + number[1]) * (cells[0] + 1) + number[0]);
+      meetings_[static_cast<std::size_t>(s)].overlap.offer(order, [&] {
+        return fmt::format(
+            "the rigid bodies '{}' and '{}', both of prescribed motion, have met and overlap near ({:.6g}, "
+            "{:.6g}, {:.6g}): contact cannot change their motion. Stop one of them before, or let it move "
+            "freely",
+            name(a), name(b), place.x, place.y, place.z);
+      });
+    }
+  }
+}
+
+OffendingParticle Contact::first_overlap() const {
+  OffendingParticle first;
+  if (driven_mass_.empty()) return first;
+  for (const MeetingNodes& at : meetings_)
+    if (!at.overlap.empty()) first.offer(at.overlap.identity, [&] { return at.overlap.words; });
+  return first;
 }
 
 /// Keeps the pairs for which `keep(number in the list of their node, pair)`, and the nodes that have some.

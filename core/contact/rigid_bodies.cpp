@@ -53,6 +53,9 @@ RigidBodies::RigidBodies(Model& model, Reductions& ranks) : model_(model), ranks
     by_component_[static_cast<std::size_t>(body.component)] = by_body_[b] = number;
     bodies_.push_back({.body = static_cast<int>(b), .driven = is_driven(model, b)});
   }
+  for (Reaction& reaction : model.reactions)
+    if (reaction.by_contact)
+      bodies_[static_cast<std::size_t>(of_body(reaction.body))].reaction = &reaction.since_start;
   node_mass_.resize(bodies_.size());
   find_states(ranks);
 }
@@ -117,6 +120,11 @@ void RigidBodies::find_states(Reductions& ranks) {
     state.cut = symmetry_planes_at(static_cast<int>(r));
     state.spin = spin_with(state, {s[6].value(), s[7].value(), s[8].value()});
     if (!bodies_[r].driven) keep_symmetry(state);
+    const BodyInput& input = *active_bodies(*model_.scene)[static_cast<std::size_t>(bodies_[r].body)];
+    if (input.rigid_inertia) {
+      state.mass = input.rigid_inertia->mass;
+      state.inertia = input.rigid_inertia->tensor.value_or(state.inertia);
+    }
     model_.bodies[static_cast<std::size_t>(bodies_[r].body)].rigid_state = state;
   }
 }
@@ -264,6 +272,10 @@ void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, 
     core::end_step(state, length_, rigid.end.velocity, rigid.end.spin, impulse, moment, rigid.driven);
     state.contacts = static_cast<double>(contacts[r]);
     if (ranks_.rank() != 0) continue;
+    if (rigid.reaction != nullptr) {
+      rigid.reaction->add(ReactionSums::impulse, impulse);
+      rigid.reaction->add(ReactionSums::moment, moment);
+    }
     work.add(without_contact - rigid.energy_before);
     if (rigid.driven)
       work.add(-given);

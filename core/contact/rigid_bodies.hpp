@@ -79,7 +79,8 @@ class RigidBodies {
   struct Rigid {
     int body = 0;
     bool driven = false;
-    double energy_before = 0;  ///< kinetic, at the start of the step
+    ReactionSums* reaction = nullptr;  ///< of the model, which keeps their number; null: not recorded
+    double energy_before = 0;          ///< kinetic, at the start of the step
     Vec3<double> velocity_before{}, spin_before{};
     RigidVelocity end{};  ///< with which it moves in this step
   };

@@ -10,6 +10,7 @@
 #include "core/scene/errors.hpp"
 #include "core/scene/expression.hpp"
 #include "core/scene/geometry.hpp"
+#include "core/tensor/tensor.hpp"
 #include "core/tensor/vec3.hpp"
 
 namespace mpm::core {
@@ -80,6 +81,12 @@ struct FixedLayer {
   double max = 0;
 };
 
+/// Of a free rigid body, instead of those of its particles.
+struct RigidInertia {
+  double mass = 0;                     ///< > 0
+  std::optional<Sym3<double>> tensor;  ///< about the centre of mass at the start, global axes
+};
+
 struct BodyInput {
   std::string name;
   std::size_t material = 0;  ///< index into Scene::materials
@@ -103,6 +110,7 @@ struct BodyInput {
   std::optional<double> adaptive_split;    ///< splits when longer than this fraction of a cell
   std::optional<double> fragment_spacing;  ///< particle spacing for the count of fragments
   std::vector<FixedLayer> fixed_layers;
+  std::optional<RigidInertia> rigid_inertia;
   SourceLocation source;
 };
 

@@ -30,12 +30,15 @@ struct PostProcessingInput {
   std::vector<std::string> variables;  ///< names as in keywords.md, each once, in the input's order
 };
 
-/// Histories of variables at the particle nearest to a point, or at a point in space.
+/// Histories of variables at the particle nearest to a point, or at a point in space, and of the reactions of
+/// bodies.
 struct TimeHistoryInput {
-  std::vector<std::string> variables;
+  std::vector<std::string> variables;  ///< of particles
   std::vector<Vec3<double>> particles;
   std::vector<Vec3<double>> points;
   SourceLocation source;
+  bool force = false, moment = false;  ///< of the bodies
+  std::vector<std::string> bodies;     ///< names
 };
 
 /// A line along one axis; (first, second) are the coordinates on the other two axes in ascending order.

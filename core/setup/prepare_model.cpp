@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/contact/component_contact.hpp"
 #include "core/discretise/seeds.hpp"
 #include "core/expressions/formula.hpp"
 #include "core/implicit/time_rule.hpp"
@@ -165,6 +166,10 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
       columns.add(Column::sound_speed);  // for the dashpots there
     columns.add(columns_of_expressions(input));
     body.pool = pools.of(columns);
+    body.inertia_given = input.rigid_inertia && input.rigid_inertia->tensor;
+    if (has_reaction(*scene, input))
+      model.reactions.push_back(
+          {static_cast<int>(model.bodies.size()), body.rigid && scene->contact.enable, {}});
     model.bodies.push_back(std::move(body));
   });
   model.ledger.body_eroded.resize(model.bodies.size());

@@ -136,6 +136,25 @@ void refuse_infinite(double energy, const Model& model) {
                     "the total energy of all particles overflows: check the units");
 }
 
+/// Scales the particles' masses to the mass that the input gives a rigid body.
+void give_masses(Model& model, const std::vector<bool>& joined, Reductions& ranks) {
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
+  for (std::size_t b = 0; b < joined.size(); ++b) {
+    if (!joined[b] || !inputs[b]->rigid_inertia) continue;
+    const auto over_particles = [&](auto f) {
+      for (const ParticleBlock& block : blocks_of(model)) {
+        if (block.body != static_cast<int>(b)) continue;
+        for (const Particle p : block) f(p[Column::mass]);
+      }
+    };
+    ExactSum mass;
+    over_particles([&](double m) { mass.add(m); });
+    ranks.sum(std::span(&mass, 1));
+    const double scale = inputs[b]->rigid_inertia->mass / mass.value();
+    over_particles([&](double& m) { m *= scale; });
+  }
+}
+
 double critical_step_of(const Model& model, const Fastest& fastest, Reductions& ranks) {
   return ranks.smallest(std::min(critical_step(*model.grid, fastest.speed), conduction_step(model)));
 }
@@ -143,7 +162,9 @@ double critical_step_of(const Model& model, const Fastest& fastest, Reductions& 
 }  // namespace
 
 void start_run(Model& model, Reductions& ranks) {
-  const Fastest fastest = initialise(model, std::vector<bool>(model.bodies.size(), true));
+  const std::vector<bool> all(model.bodies.size(), true);
+  give_masses(model, all, ranks);
+  const Fastest fastest = initialise(model, all);
   refuse_undefined(model, ranks);
   model.clock.critical_dt = model.clock.first_critical_dt = critical_step_of(model, fastest, ranks);
   refuse_endless(model, fastest, ranks);
@@ -155,6 +176,7 @@ void start_run(Model& model, Reductions& ranks) {
 void start_bodies(Model& model, std::span<const std::size_t> bodies, Reductions& ranks) {
   std::vector<bool> joined(model.bodies.size());
   for (const std::size_t b : bodies) joined[b] = true;
+  give_masses(model, joined, ranks);
   const Fastest fastest = initialise(model, joined);
   refuse_undefined(model, ranks);
   const double critical = critical_step_of(model, fastest, ranks);

@@ -236,7 +236,7 @@ template <ShapePolicy S, TransferPolicy T>
   take_velocities(frame, place, layout, block, at);
   if (falls) correct_work_of_gravity(forces_.gravity, dt, velocity_dt, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed)
-    prescribe_velocities(layout, motion.velocity, block, used, at);
+    prescribe_velocities(layout, motion, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())
     limit_velocities(layout, velocity_limit_, block, used, at);
 }

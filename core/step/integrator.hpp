@@ -41,7 +41,9 @@ struct StepStatistics {
   ExactSum work;           ///< external work
   ExactSum internal_lead;  ///< Ledger::internal_lead after this step
   ContactRecord contact;
-  OffendingParticle undefined;  ///< for which an expression of the input has no finite value
+  std::vector<ReactionSums> reactions;  ///< by number in Model::reactions; may be shorter
+  OffendingParticle overlap;            ///< of driven rigid bodies
+  OffendingParticle undefined;          ///< for which an expression of the input has no finite value
 };
 
 class Integrator {

@@ -72,6 +72,8 @@ Loads::Loads(const Model& model) : model_(&model), motions_(model.bodies.size())
       motions_[b].kind = BodyMotion::Kind::rigid;
     }
   }
+  for (std::size_t r = 0; r < model.reactions.size(); ++r)
+    motions_[static_cast<std::size_t>(model.reactions[r].body)].reaction = r;
   const GridGeometry& geometry = model.grid->geometry();
   for (const Boundary b : geometry.boundary) nonreflecting_ |= b == Boundary::nonreflecting;
   bool acts = nonreflecting_;

@@ -57,6 +57,7 @@ struct BodyMotion {
   enum class Kind { free, rigid, prescribed };
   Kind kind = Kind::free;
   PrescribedMotion velocity;
+  std::size_t reaction = 0;  ///< where prescribed without contact: number among the model's reactions
 };
 
 class Loads {

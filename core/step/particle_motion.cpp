@@ -8,16 +8,32 @@
 
 namespace mpm::core {
 
-void prescribe_velocities(const ColumnLayout& layout, const PrescribedMotion& prescribed, double* block,
-                          int used, ThreadScratch& at) {
+void prescribe_velocities(const ColumnLayout& layout, const BodyMotion& motion, double* block, int used,
+                          ThreadScratch& at) {
+  const double* x = block + layout.offset(Column::position_x);
+  double mass = 0;
+  Vec3<double> impulse{}, moment{}, place{};
   for (int i = 0; i < used; ++i) {
-    const Vec3<double> p = prescribed.velocity(block + i);
+    const Vec3<double> p = motion.velocity.velocity(block + i);
     double* v[3];
     for (int a = 0; a < 3; ++a) v[a] = block + i + layout.offset(next(Column::velocity_x, a));
     const double m = block[layout.offset(Column::mass) + i];
     at.work += m * ((p.x - *v[0]) * p.x + (p.y - *v[1]) * p.y + (p.z - *v[2]) * p.z);
+    const Vec3<double> at_x{x[i], x[block_lanes + i], x[2 * block_lanes + i]},
+        given = m * (p - Vec3<double>{*v[0], *v[1], *v[2]});
+    mass += m;
+    place = place + m * at_x;
+    impulse = impulse + given;
+    moment = moment + cross(at_x, given);
     for (int a = 0; a < 3; ++a) *v[a] = p[a];
   }
+  std::vector<ReactionSums>& reactions = at.statistics.reactions;
+  if (reactions.size() <= motion.reaction) reactions.resize(motion.reaction + 1);
+  ReactionSums& sums = reactions[motion.reaction];
+  sums.sums[ReactionSums::mass].add(mass);
+  sums.add(ReactionSums::place, place);
+  sums.add(ReactionSums::impulse, impulse);
+  sums.add(ReactionSums::moment, moment);
 }
 
 void limit_velocities(const ColumnLayout& layout, double limit, double* block, int used, ThreadScratch& at) {

@@ -25,9 +25,10 @@ struct alignas(128) ThreadScratch {
   }
 };
 
-/// Sets velocities to the prescribed ones; the constraint supplies the momentum m (v_p - v) at velocity v_p.
-void prescribe_velocities(const ColumnLayout& layout, const PrescribedMotion& prescribed, double* block,
-                          int used, ThreadScratch& at);
+/// Sets velocities to the prescribed ones; the constraint supplies the momentum m (v_p - v) at velocity v_p,
+/// and at the particle's position, that of the start of the step.
+void prescribe_velocities(const ColumnLayout& layout, const BodyMotion& motion, double* block, int used,
+                          ThreadScratch& at);
 /// Applies LimitVelocity.
 void limit_velocities(const ColumnLayout& layout, double limit, double* block, int used, ThreadScratch& at);
 /// Velocities of a free rigid body: those in at.old, accelerated by `acceleration`. The force that replaces

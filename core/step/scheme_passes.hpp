@@ -157,6 +157,7 @@ void PassesWith<S, T>::update_all() {
 template <ShapePolicy S, TransferPolicy T>
 StepStatistics PassesWith<S, T>::take_statistics() {
   StepStatistics total;
+  if (contact_) total.overlap = contact_->first_overlap();
   for (Scratch& w : scratch_) {
     total.fastest = std::max(total.fastest, w.statistics.fastest);
     total.limited += w.statistics.limited;
@@ -166,6 +167,9 @@ StepStatistics PassesWith<S, T>::take_statistics() {
     total.negative.merge(w.statistics.negative);
     total.work += w.statistics.work;
     total.internal_lead += w.statistics.internal_lead;
+    total.reactions.resize(std::max(total.reactions.size(), w.statistics.reactions.size()));
+    for (std::size_t r = 0; r < w.statistics.reactions.size(); ++r)
+      total.reactions[r] += w.statistics.reactions[r];
     if (contact_) {
       total.contact += w.contact.record;
       total.fastest = std::max(total.fastest, contact_->speed_of_step(w.contact));

@@ -84,6 +84,9 @@ void Stepper::reduce_status() {
   ledger.external_work += found.work;
   ledger.internal_lead = found.internal_lead;
   if (model_.scene->contact.enable) ledger.contact += found.contact;
+  for (std::size_t r = 0; r < model_.reactions.size(); ++r)
+    model_.reactions[r].since_start.add_step(r < found.reactions.size() ? found.reactions[r]
+                                                                        : ReactionSums{});
   ledger.velocity_limited += found.limited;
   ledger.wide_domains += found.domains.wide;
   ledger.tangled_domains += found.domains.tangled;
@@ -92,7 +95,8 @@ void Stepper::reduce_status() {
   incidents_ = {found.events, found.vanishing, found.negative, migration_.left_now(),
                 migration_.first_left()};
 
-  const bool failed = found.events.not_finite > 0 || !migration_.fault().empty() || !found.undefined.empty();
+  const bool failed = found.events.not_finite > 0 || !migration_.fault().empty() ||
+                      !found.undefined.empty() || !found.overlap.empty();
   const StepStatus all = communication_.reductions.combine(
       {integrator_->stable_step(found), migration_.wants_new_bricks(), failed, stop_requested_});
   ++clock.step;
@@ -103,6 +107,7 @@ void Stepper::reduce_status() {
 
   std::string what;
   if (all.failed) what = first_of_all(communication_, found.undefined).words;
+  if (all.failed && what.empty()) what = first_of_all(communication_, found.overlap).words;
   if (all.failed && what.empty()) {
     OffendingParticle mine = migration_.fault();
     if (found.events.not_finite > 0) {

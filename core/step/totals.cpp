@@ -193,6 +193,19 @@ BodySums sums_of_bodies(const Model& model, const std::vector<double>& inverse_d
   return all;
 }
 
+/// The kinetic energy and angular momentum of a rigid body whose inertia is not that of its particles.
+void take_rotation(const RigidState& state, ExactSum* sum) {
+  sum[kinetic] = {};
+  sum[kinetic].add(kinetic_energy(state));
+  const Vec3<double> l = cross(state.centre, state.mass * state.velocity) + state.inertia * state.spin;
+  for (int a = 0; a < 3; ++a) {
+    sum[angular_momentum + static_cast<std::size_t>(a)] = {};
+    sum[angular_momentum + static_cast<std::size_t>(a)].add(l[a]);
+  }
+}
+
+bool has_own_rotation(const Body& body) { return body.inertia_given && body.rigid_state; }
+
 }  // namespace
 
 Totals compute_totals(const Model& model, Reductions& ranks) {
@@ -205,9 +218,11 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
   std::array<ExactSum, sums> all;
   for (std::size_t first = 0; first < bodies; first += at_once) {
     const BodyRange range{first, std::min(first + at_once, bodies)};
-    const BodySums part = sums_of_bodies(model, inverse_density, range, ranks);
+    BodySums part = sums_of_bodies(model, inverse_density, range, ranks);
     for (std::size_t b = 0; b < range.last - range.first; ++b) {
-      const ExactSum* body_sum = &part.sum[sums * b];
+      ExactSum* body_sum = &part.sum[sums * b];
+      const Body& of = model.bodies[first + b];
+      if (has_own_rotation(of)) take_rotation(*of.rigid_state, body_sum);
       const std::int64_t* c = &part.count[4 * b];
       BodyTotals body = body_totals(body_sum, &part.low[lows * b], c[0]);
       body.failed = c[1];
@@ -252,31 +267,33 @@ struct EnergySums {
 };
 
 /// Of this rank's particles.
-EnergySums energy_sums(const Model& model) {
+EnergySums energy_sums(const Model& model, const Reductions& ranks) {
   const std::vector<double> inverse_density = inverse_densities(model);
   std::vector<EnergySums> local(1);
   over_bricks(model, local, [&](const Brick& brick, std::vector<EnergySums>& to) {
     for (const ConstParticleBlock& b : blocks_of(model, brick)) {
       const BlockEnergies sum =
           energies_of(*b.layout, b.data, b.used, inverse_density[static_cast<std::size_t>(b.body)]);
-      to[0].kinetic.add(sum.kinetic);
+      if (!has_own_rotation(model.bodies[static_cast<std::size_t>(b.body)])) to[0].kinetic.add(sum.kinetic);
       to[0].internal.add(sum.internal);
     }
   });
+  for (const Body& body : model.bodies)
+    if (has_own_rotation(body) && ranks.rank() == 0) local[0].kinetic.add(kinetic_energy(*body.rigid_state));
   return local[0];
 }
 
 }  // namespace
 
 Energies compute_energies(const Model& model, Reductions& ranks) {
-  const EnergySums local = energy_sums(model);
+  const EnergySums local = energy_sums(model, ranks);
   std::array<ExactSum, 2> sum{local.kinetic, local.internal};
   ranks.sum(std::span<ExactSum>(sum));
   return {sum[0].value(), sum[1].value()};
 }
 
 Totals compute_energy_totals(const Model& model, Reductions& ranks) {
-  const EnergySums local = energy_sums(model);
+  const EnergySums local = energy_sums(model, ranks);
   const Ledger& ledger = model.ledger;
   std::array sum{local.kinetic,          local.internal,          ledger.external_work,
                  ledger.removed_kinetic, ledger.removed_internal, ledger.contact.dissipated,

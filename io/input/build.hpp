@@ -45,7 +45,8 @@ void check_method(const Node& root, const core::Scene& scene, const BuildContext
 void check_contact(const Node& root, const core::Scene& scene, const BuildContext& context);
 /// What implicit steps cannot do.
 void check_implicit(const Node& root, const core::Scene& scene, const BuildContext& context);
-core::OutputInput build_output(const Node& root, double end_time, const BuildContext& context);
+/// Uses the bodies, contact and solution of `scene`.
+core::OutputInput build_output(const Node& root, const core::Scene& scene, const BuildContext& context);
 core::DecompositionInput build_decomposition(const Node& root, const BuildContext& context);
 core::FixedLayer build_fixed_layer(const Node& node, const BuildContext& context);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/contact/component_contact.hpp"
+#include "core/tensor/principal.hpp"
 #include "io/input/build.hpp"
 #include "io/input/text.hpp"
 
@@ -145,6 +146,13 @@ void build_loads(core::BodyInput& body, const Node& node, const BuildContext& co
     body.surface_loads.push_back(build_surface_load(load, context));
   if (const auto c = node.child("ConstrainRigidPosition"))
     body.constrain_rigid_position = c->boolean("value");
+  if (const auto i = node.child("RigidInertia")) {
+    core::RigidInertia& inertia = body.rigid_inertia.emplace();
+    inertia.mass = i->real("mass");
+    if (i->given_real("Ixx"))
+      inertia.tensor = core::Sym3<double>{i->real("Ixx"), i->real("Iyy"), i->real("Izz"),
+                                          i->real("Ixy"), i->real("Iyz"), i->real("Ixz")};
+  }
   if (const auto s = node.child("AdaptiveSplit")) body.adaptive_split = s->given_real("value");
   if (const auto f = node.child("CountFragDp")) body.fragment_spacing = f->given_real("value");
   for (const Node& layer : node.children("LocalBoundaryCond"))
@@ -203,6 +211,30 @@ void check_rotation(const core::BodyInput& body, const Node& node, bool rigid, c
                    : "angular accelerations turn rigid bodies only: set arx, ary, arz to 0");
 }
 
+/// The mass and inertia of a rigid body are those of its motion, which contact changes.
+void check_inertia(const core::BodyInput& body, const Node& node, bool rigid, const core::Scene& scene,
+                   const BuildContext& context) {
+  const std::optional<Node> at = node.child("RigidInertia");
+  if (!at) return;
+  if (!rigid || !scene.contact.enable)
+    at->report(context.diagnostics, "has an effect on a rigid body in contact only");
+  else if (body.prescribed_velocity || body.constrain_rigid_position)
+    at->report(context.diagnostics, "has no effect on a rigid body whose motion is prescribed");
+  if (!body.rigid_inertia->tensor) return;
+  const core::Vec3<double> principal = core::principal_values(*body.rigid_inertia->tensor);
+  constexpr double flat = 1 + 1e-9;  // a plate reaches the sum up to the digits that the input has
+  if (principal.z <= 0)
+    at->report(context.diagnostics,
+               fmt::format("the tensor of inertia must be positive definite; its principal moments are "
+                           "{:.6g}, {:.6g}, {:.6g}",
+                           principal.x, principal.y, principal.z));
+  else if (principal.x > flat * (principal.y + principal.z))
+    at->report(context.diagnostics,
+               fmt::format("no body has this tensor of inertia: of its principal moments {:.6g}, {:.6g}, "
+                           "{:.6g} the largest exceeds the sum of the others",
+                           principal.x, principal.y, principal.z));
+}
+
 /// A rigid body acts on others through contact only: in a single velocity field it would exert no force, so
 /// it may not be combined with deformable bodies.
 void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<Node>& nodes,
@@ -215,7 +247,10 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
   for (const core::BodyInput* b : bodies)
     if (takes_part(*b) && !rigid(*b)) deformable = deformable == nullptr ? b : deformable;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (takes_part(*bodies[i])) check_rotation(*bodies[i], nodes[i], rigid(*bodies[i]), scene, context);
+    if (takes_part(*bodies[i])) {
+      check_rotation(*bodies[i], nodes[i], rigid(*bodies[i]), scene, context);
+      check_inertia(*bodies[i], nodes[i], rigid(*bodies[i]), scene, context);
+    }
     if (!takes_part(*bodies[i]) || !rigid(*bodies[i])) continue;
     for (const Node& load : nodes[i].children("Traction"))
       load.report(context.diagnostics, "has no effect on a rigid body; use PrescribedAcceleration");

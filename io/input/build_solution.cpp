@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/built.hpp"
+#include "core/contact/component_contact.hpp"
 #include "core/step/passes.hpp"
 #include "io/input/build.hpp"
 #include "io/input/contact_words.hpp"
@@ -258,11 +259,41 @@ core::PostProcessingInput build_post_processing(const Node& node) {
   return post;
 }
 
-core::TimeHistoryInput build_history(const Node& node, const BuildContext& context) {
-  core::TimeHistoryInput history{node.words("var"), {}, {}, context.at(node)};
+/// The bodies of a history, whose variables are `force` and `moment`.
+void build_body_history(core::TimeHistoryInput& history, const Node& node, const core::Scene& scene,
+                        const BuildContext& context) {
+  history.force = std::erase(history.variables, "force") > 0;
+  history.moment = std::erase(history.variables, "moment") > 0;
+  const std::vector<const core::BodyInput*> bodies = core::active_bodies(scene);
+  std::vector<std::string_view> names;
+  for (const core::BodyInput* body : bodies) names.emplace_back(body->name);
+  for (const Node& of : node.children("Body")) {
+    const std::optional<std::size_t> body = resolve(of, "name", "body", names, context);
+    if (!body || bodies[*body]->material >= scene.materials.size()) continue;
+    if (!core::has_reaction(scene, *bodies[*body]))
+      of.report(context.diagnostics, "name",
+                "force and moment are those of rigid bodies in contact and of bodies with a prescribed "
+                "velocity, with explicit steps; this body is neither");
+    history.bodies.emplace_back(names[*body]);
+  }
+  const bool asks = history.force || history.moment;
+  if (asks != !node.children("Body").empty())
+    node.report(context.diagnostics, asks
+                                         ? "force and moment are variables of a <Body>: expected at least one"
+                                         : "the variables of a <Body> are force and moment");
+  if (history.variables.empty() && !(history.particles.empty() && history.points.empty()))
+    node.report(context.diagnostics,
+                "force and moment are variables of a <Body>: a <Particle> or <Point> "
+                "needs another");
+}
+
+core::TimeHistoryInput build_history(const Node& node, const core::Scene& scene,
+                                     const BuildContext& context) {
+  core::TimeHistoryInput history{node.words("var"), {}, {}, context.at(node), false, false, {}};
   for (const Node& place : node.children("Particle")) history.particles.push_back(place.reals("x", "y", "z"));
   for (const Node& place : node.children("Point")) history.points.push_back(place.reals("x", "y", "z"));
-  if (history.particles.empty() && history.points.empty())
+  build_body_history(history, node, scene, context);
+  if (!history.variables.empty() && history.particles.empty() && history.points.empty())
     node.report(context.diagnostics, "expected at least one <Particle> or <Point>");
   return history;
 }
@@ -274,7 +305,8 @@ std::optional<core::LineInput> build_line(const std::optional<Node>& node) {
 
 }  // namespace
 
-core::OutputInput build_output(const Node& root, double end_time, const BuildContext& context) {
+core::OutputInput build_output(const Node& root, const core::Scene& scene, const BuildContext& context) {
+  const double end_time = scene.solution.end_time;
   core::OutputInput output;
   output.console.print_time = end_time / 100;
   const std::optional<Node> node = root.child("Output");
@@ -285,7 +317,7 @@ core::OutputInput build_output(const Node& root, double end_time, const BuildCon
   }
   if (const auto post = node->child("PostProcessing")) output.post_processing = build_post_processing(*post);
   for (const Node& history : node->children("TimeHistory"))
-    output.histories.push_back(build_history(history, context));
+    output.histories.push_back(build_history(history, scene, context));
   output.grid_line = build_line(node->child("GridLineResults"));
   output.fem_profile = build_line(node->child("FEMProfileResults"));
   if (const auto restart = node->child("Restart"))

@@ -37,15 +37,14 @@ void note_driven(const core::Scene& scene, std::vector<core::Diagnostic>& notes)
       other = &body;
   });
   if (moves == nullptr || other == nullptr) return;
-  notes.push_back(
-      {moves->source.file,
-       moves->source.line,
-       "Body",
-       {},
-       {},
-       fmt::format("rigid bodies '{}' and '{}' both have a prescribed motion: where they meet they pass "
-                   "through each other",
-                   moves->name, other->name)});
+  notes.push_back({moves->source.file,
+                   moves->source.line,
+                   "Body",
+                   {},
+                   {},
+                   fmt::format("rigid bodies '{}' and '{}' both have a prescribed motion: where they meet "
+                               "contact cannot part them, and the run stops",
+                               moves->name, other->name)});
 }
 
 /// A plate that falls, or is pushed away, where it was to be held.

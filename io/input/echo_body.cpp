@@ -190,6 +190,14 @@ void echo_loads(XmlWriter& w, const core::BodyInput& body) {
     }
   }
   if (body.constrain_rigid_position) echo_value(w, "ConstrainRigidPosition", 1);
+  if (body.rigid_inertia) {
+    const auto scope = w.element("RigidInertia");
+    w.number("mass", body.rigid_inertia->mass);
+    if (const auto& i = body.rigid_inertia->tensor) {
+      w.numbers("Ixx", "Iyy", "Izz", {i->xx, i->yy, i->zz});
+      w.numbers("Ixy", "Iyz", "Ixz", {i->xy, i->yz, i->xz});
+    }
+  }
   if (body.adaptive_split) echo_value(w, "AdaptiveSplit", *body.adaptive_split);
   if (body.fragment_spacing) echo_value(w, "CountFragDp", *body.fragment_spacing);
   for (const core::FixedLayer& layer : body.fixed_layers) echo_fixed_layer(w, "LocalBoundaryCond", layer);

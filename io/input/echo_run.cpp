@@ -173,7 +173,10 @@ void echo_post_processing(XmlWriter& w, const core::PostProcessingInput& post) {
 
 void echo_history(XmlWriter& w, const core::TimeHistoryInput& history) {
   const auto scope = w.element("TimeHistory");
-  w.text("var", fmt::format("{}", fmt::join(history.variables, "|")));
+  std::vector<std::string> words = history.variables;
+  if (history.force) words.emplace_back("force");
+  if (history.moment) words.emplace_back("moment");
+  w.text("var", fmt::format("{}", fmt::join(words, "|")));
   const auto places = [&](std::string_view name, const std::vector<core::Vec3<double>>& list) {
     for (const core::Vec3<double>& place : list) {
       const auto element = w.element(name);
@@ -182,6 +185,10 @@ void echo_history(XmlWriter& w, const core::TimeHistoryInput& history) {
   };
   places("Particle", history.particles);
   places("Point", history.points);
+  for (const std::string& body : history.bodies) {
+    const auto element = w.element("Body");
+    w.text("name", body);
+  }
 }
 
 }  // namespace

@@ -267,6 +267,7 @@ const std::vector<IdleRule>& idle_rules() {
       {"Component/Body/HarmExcit", {}, operand, no_part},
       {"Component/Body/BodyForce", {}, operand, no_part},
       {"Component/Body/Traction", {}, operand, no_part},
+      {"Component/Body/RigidInertia", {}, operand, no_part},
       {"Component/Body/ConstrainRigidPosition", {}, operand, no_part},
       {"Component/Body/BodyContrl", {}, operand, no_part},
       {"Component/Body/InitialVelocity",

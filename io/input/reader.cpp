@@ -56,7 +56,7 @@ core::Scene build(const Node& root, const BuildContext& context) {
   check_method(root, scene, context);
   check_contact(root, scene, context);
   check_implicit(root, scene, context);
-  scene.output = build_output(root, scene.solution.end_time, context);
+  scene.output = build_output(root, scene, context);
   scene.decomposition = build_decomposition(root, context);
   return scene;
 }

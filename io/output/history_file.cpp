@@ -68,6 +68,22 @@ double finite(double value) {
   return narrowed<double>(value, cut);
 }
 
+/// Of the bodies of all histories.
+std::vector<ReactionColumns> reactions_of(const core::Model& model) {
+  std::vector<ReactionColumns> columns;
+  for (const core::TimeHistoryInput& history : model.scene->output.histories) {
+    for (const std::string& name : history.bodies) {
+      const auto found = std::ranges::find_if(model.reactions, [&](const core::Reaction& r) {
+        return model.bodies[static_cast<std::size_t>(r.body)].name == name;
+      });
+      if (found == model.reactions.end()) continue;
+      columns.push_back(
+          {static_cast<std::size_t>(found - model.reactions.begin()), history.force, history.moment});
+    }
+  }
+  return columns;
+}
+
 double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b) {
   const core::Vec3<double> d = a - b;
   return dot(d, d);
@@ -77,7 +93,7 @@ double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b
 
 HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
                          std::optional<Continuation> continuation, core::Reductions& ranks)
-    : targets_(targets_of(*model.scene)), forces_(*model.scene) {
+    : targets_(targets_of(*model.scene)), reactions_(reactions_of(model)), forces_(*model.scene) {
   for (Target& t : targets_) {
     t.first = record_;
     record_ += first_value + t.variables.size();
@@ -86,14 +102,15 @@ HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
   if (!continuation || !recall(continuation->tracked)) choose_particles(model, ranks);
   std::optional<TableContinuation> rows;
   if (continuation) rows = continuation->rows;
-  file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(), rows, ranks);
+  file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(model), rows, ranks);
 }
 
 /// False if it is not one of these targets.
 bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
   std::size_t length = 0;
   for (const Target& t : targets_) length += t.particle ? 2 + t.values.size() : 0;
-  if (tracked.size() != length + forces_.memory_length()) return false;
+  const std::size_t of_reactions = reactions_.memory_length();
+  if (tracked.size() != length + of_reactions + forces_.memory_length()) return false;
   auto next = tracked.begin();
   for (Target& t : targets_) {
     if (!t.particle) continue;
@@ -101,6 +118,7 @@ bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
     t.present = *next++ != 0;
     for (double& value : t.values) value = std::bit_cast<double>(*next++);
   }
+  reactions_.recall(std::span(tracked).subspan(length, of_reactions));
   forces_.recall(std::span(tracked).last(forces_.memory_length()));
   return true;
 }
@@ -143,7 +161,7 @@ void HistoryFile::choose_particles(const core::Model& model, core::Reductions& r
   }
 }
 
-std::string HistoryFile::head() const {
+std::string HistoryFile::head(const core::Model& model) const {
   std::string head = fmt::format("#{:>{}}", "step", width - 1);
   const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
   for (const char* name : {"time", "kinetic", "internal"}) add(name);
@@ -155,6 +173,7 @@ std::string HistoryFile::head() const {
     }
     if (t.particle) add(fmt::format("present[particle{}]", n));
   }
+  for (const std::string& column : reactions_.names(model)) add(column);
   for (const std::string& column : forces_.columns()) add(column);
   return head;
 }
@@ -176,7 +195,7 @@ std::string HistoryFile::legend() const {
     text +=
         "# present[particle]: 1; 0 once it is eroded or has left the grid; its other columns then keep their "
         "last values\n";
-  return text + forces_.legend();
+  return text + reactions_.legend() + forces_.legend();
 }
 
 void HistoryFile::look_up(const core::Model& model, int reach, std::vector<double>& values) const {
@@ -278,6 +297,7 @@ void HistoryFile::add(const core::Model& model, const core::Energies& energies, 
                       model.clock.step, model.clock.time, particles, t.identity));
     }
   }
+  for (const double value : reactions_.next(model, ranks)) put(value);
   for (const double force : forces_.next(model, ranks)) put(force);
   file_->add(model.clock.step, row);
 }
@@ -290,7 +310,8 @@ std::vector<std::uint64_t> HistoryFile::tracked() const {
     memory.push_back(t.present ? 1 : 0);
     for (const double value : t.values) memory.push_back(std::bit_cast<std::uint64_t>(value));
   }
-  const std::vector<std::uint64_t> of_forces = forces_.memory();
+  const std::vector<std::uint64_t> of_reactions = reactions_.memory(), of_forces = forces_.memory();
+  memory.insert(memory.end(), of_reactions.begin(), of_reactions.end());
   memory.insert(memory.end(), of_forces.begin(), of_forces.end());
   return memory;
 }

@@ -16,6 +16,7 @@
 #include "core/model.hpp"
 #include "core/step/totals.hpp"
 #include "io/output/contact_forces.hpp"
+#include "io/output/reactions.hpp"
 #include "io/output/table_file.hpp"
 #include "io/output/variables.hpp"
 
@@ -35,7 +36,7 @@ class HistoryFile {
               core::Reductions& ranks);
 
   /// With histories, every step has a row; otherwise the total energies are written on request.
-  bool each_step() const { return !targets_.empty(); }
+  bool each_step() const { return !targets_.empty() || reactions_.memory_length() > 0; }
   /// Adds the row of the present state to the buffer. Throws core::NumericalFailure if an energy is not
   /// finite. Collective.
   void add(const core::Model& model, core::Reductions& ranks);
@@ -51,7 +52,7 @@ class HistoryFile {
   const std::string& notice() const { return file_->notice(); }
 
   /// State of the histories for restart files: for each particle its identity, whether it is present (0, 1)
-  /// and the bits of its last values. The same on all ranks.
+  /// and the bits of its last values; then the means' memory. The same on all ranks.
   std::vector<std::uint64_t> tracked() const;
 
  private:
@@ -69,12 +70,13 @@ class HistoryFile {
   static std::vector<Target> targets_of(const core::Scene& scene);
   bool recall(const std::vector<std::uint64_t>& tracked);
   void choose_particles(const core::Model& model, core::Reductions& ranks);
-  std::string head() const;
+  std::string head(const core::Model& model) const;
   std::string legend() const;
   void look_up(const core::Model& model, int reach, std::vector<double>& values) const;
   void average(const core::Model& model, const Target& target, std::vector<double>& values) const;
 
   std::vector<Target> targets_;
+  Reactions reactions_;
   ContactForces forces_;
   std::size_t record_ = 0;  ///< doubles exchanged per row
   std::optional<TableFile> file_;

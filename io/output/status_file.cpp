@@ -1,5 +1,6 @@
 #include "io/output/status_file.hpp"
 
+#include <sstream>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,7 +17,15 @@ constexpr int width = 24;
 /// The quantities that .sta lists for a body or a material.
 constexpr const char* group_columns[] = {"px", "py", "pz", "kinetic", "internal", "vx", "vy", "vz"};
 
-std::string head_of(const core::Model& model) {
+/// Rigid bodies in contact have columns of the last step.
+std::vector<ReactionColumns> drives_of(const core::Model& model) {
+  std::vector<ReactionColumns> columns;
+  for (std::size_t r = 0; r < model.reactions.size(); ++r)
+    if (!model.reactions[r].by_contact) columns.push_back({r});
+  return columns;
+}
+
+std::string head_of(const core::Model& model, const Reactions& drives) {
   std::string head = fmt::format("#{:>{}}", "step", width - 1);
   const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
   for (const char* name :
@@ -37,6 +46,7 @@ std::string head_of(const core::Model& model) {
         add(fmt::format("{}[contact:{}]", column, safe_name(b.name)));
     }
   }
+  for (const std::string& column : drives.names(model)) add(column);
   if (model.scene->output.statistics.memory) {
     add("memory_max");
     add("memory_sum");
@@ -67,7 +77,9 @@ double total_cells(const core::Model& model) {
 
 StatusFile::StatusFile(const std::string& path, const core::Model& model,
                        const std::optional<TableContinuation>& from, core::Reductions& ranks)
-    : file_(path, to_text(provenance_of(*model.scene), "# "), head_of(model), from, ranks),
+    : drives_(drives_of(model)),
+      file_(path, to_text(provenance_of(*model.scene), "# ") + drives_.legend(), head_of(model, drives_),
+            from, ranks),
       memory_(model.scene->output.statistics.memory),
       occupancy_(model.scene->output.statistics.cell_occupancy) {}
 
@@ -99,6 +111,7 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
       for (int a = 0; a < 3; ++a) add(s.moment[a]);
     }
   }
+  for (const double value : drives_.next(model, ranks)) add(value);
   if (memory_) {
     const MemoryUse use = peak_memory(ranks);
     add(static_cast<double>(use.largest));
@@ -108,6 +121,21 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
   file_.add(clock.step, row);
   file_.flush(ranks);
   ++rows_;
+}
+
+std::string StatusFile::mark() const {
+  std::string text = file_.mark().text();
+  for (const std::uint64_t word : drives_.memory()) text += fmt::format(" {}", word);
+  return text;
+}
+
+void StatusFile::recall(const std::string& mark) {
+  std::istringstream words(mark);
+  std::string of_table;
+  for (int i = 0; i < 3; ++i) words >> of_table;
+  std::vector<std::uint64_t> memory;
+  for (std::uint64_t word = 0; words >> word;) memory.push_back(word);
+  drives_.recall(memory);
 }
 
 }  // namespace mpm::io

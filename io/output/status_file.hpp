@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/step/totals.hpp"
+#include "io/output/reactions.hpp"
 #include "io/output/table_file.hpp"
 
 namespace mpm::io {
@@ -24,10 +25,13 @@ class StatusFile {
   std::int64_t rows_added() const { return rows_; }
   /// Syncs the rows to disk. Throws FileError. Collective.
   void sync(core::Reductions& ranks) { file_.sync(ranks); }
-  const TableMark& mark() const { return file_.mark(); }
+  /// For restart files: the table's mark, then the memory of the reactions' means.
+  std::string mark() const;
+  void recall(const std::string& mark);
   const std::string& notice() const { return file_.notice(); }
 
  private:
+  Reactions drives_;  ///< of prescribed motions
   TableFile file_;
   bool memory_;
   bool occupancy_;

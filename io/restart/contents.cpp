@@ -122,6 +122,9 @@ Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::R
     ledger.contact.impulses.resize(3 * core::ContactPairs(core::component_count(*model.scene)).size());
     for (const core::ExactSum& sum : sums_of(ledger.contact)) sums.push_back(sum);
   }
+  const std::size_t of_ledger = sums.size();
+  for (const core::Reaction& reaction : model.reactions)
+    sums.insert(sums.end(), reaction.since_start.sums.begin(), reaction.since_start.sums.end());
   ranks.sum(std::span(sums));
   ranks.sum(std::span(counts));
   std::size_t s = 0, n = 0;
@@ -130,7 +133,11 @@ Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::R
     ledger.*sum = sums[s++];
   }
   for (std::size_t i = s; i < sums.size(); ++i) sums[i].normalise();
-  ledger.contact = contact_of(std::span(sums).subspan(s));
+  ledger.contact = contact_of(std::span(sums).subspan(s, of_ledger - s));
+  auto next = sums.begin() + static_cast<std::ptrdiff_t>(of_ledger);
+  for (const core::Reaction& reaction : model.reactions)
+    for (core::ExactSum& sum : bodies[static_cast<std::size_t>(reaction.body)].reaction.emplace().sums)
+      sum = *next++;
   for (const auto& [name, count] : count_names) ledger.*count = counts[n++];
   for (const auto& [name, count] : event_names) ledger.events.*count = static_cast<long>(counts[n++]);
   for (BodyRecord& b : bodies) {
@@ -160,15 +167,25 @@ std::vector<TileRecord> read_tiles(hid_t file) {
   return tiles;
 }
 
+std::vector<std::int64_t> limbs_of(std::span<const core::ExactSum> sums) {
+  std::vector<std::int64_t> limbs;
+  for (const core::ExactSum& sum : sums) limbs.insert(limbs.end(), sum.raw().begin(), sum.raw().end());
+  return limbs;
+}
+
+std::vector<core::ExactSum> sums_from(const std::vector<std::int64_t>& limbs) {
+  const std::size_t width = core::ExactSum{}.raw().size();
+  if (limbs.size() % width != 0) throw FileError("an exact sum has the wrong number of limbs");
+  std::vector<core::ExactSum> sums(limbs.size() / width);
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    std::copy_n(limbs.begin() + static_cast<std::ptrdiff_t>(i * width), width, sums[i].raw().begin());
+  return sums;
+}
+
 void write_ledger(hid_t file, const Ledger& ledger) {
   const hdf5::Handle group = hdf5::create_group(file, "books");
   for (const auto& [name, sum] : sum_names) hdf5::write_all(group, name, (ledger.*sum).raw());
-  if (!ledger.contact.empty()) {
-    std::vector<std::int64_t> limbs;
-    for (const core::ExactSum& sum : sums_of(ledger.contact))
-      limbs.insert(limbs.end(), sum.raw().begin(), sum.raw().end());
-    hdf5::write_all(group, contact_sums, limbs);
-  }
+  if (!ledger.contact.empty()) { hdf5::write_all(group, contact_sums, limbs_of(sums_of(ledger.contact))); }
   for (const auto& [name, count] : count_names) hdf5::write_attribute(group, name, ledger.*count);
   for (const auto& [name, count] : event_names)
     hdf5::write_attribute(group, name, std::int64_t{ledger.events.*count});
@@ -185,13 +202,7 @@ Ledger read_ledger(hid_t file) {
     std::copy(limbs.begin(), limbs.end(), raw.begin());
   }
   if (hdf5::has_link(group, contact_sums)) {
-    const std::vector<std::int64_t> limbs = hdf5::read_all_int64(group, contact_sums);
-    const std::size_t width = core::ExactSum{}.raw().size();
-    if (limbs.size() % width != 0) throw FileError("an exact sum has the wrong number of limbs");
-    std::vector<core::ExactSum> sums(limbs.size() / width);
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      std::copy_n(limbs.begin() + static_cast<std::ptrdiff_t>(i * width), width, sums[i].raw().begin());
-    ledger.contact = contact_of(sums);
+    ledger.contact = contact_of(sums_from(hdf5::read_all_int64(group, contact_sums)));
   }
   for (const auto& [name, count] : count_names) {
     // Files of earlier versions do not have all of them.
@@ -202,7 +213,7 @@ Ledger read_ledger(hid_t file) {
   return ledger;
 }
 
-constexpr const char* rigid_motion = "rigid_motion";
+constexpr const char *rigid_motion = "rigid_motion", *reaction_sums = "reaction";
 
 void write_body(hid_t group, const BodyRecord& b) {
   hdf5::write_attribute(group, "name", b.name);
@@ -220,6 +231,7 @@ void write_body(hid_t group, const BodyRecord& b) {
     const auto values = std::bit_cast<std::array<double, core::RigidState::size>>(*b.rigid);
     hdf5::write_all(group, rigid_motion, std::span<const double>(values));
   }
+  if (b.reaction) hdf5::write_all(group, reaction_sums, limbs_of(b.reaction->sums));
 }
 
 BodyRecord read_body(hid_t group) {
@@ -241,6 +253,12 @@ BodyRecord read_body(hid_t group) {
     if (values.size() != state.size()) throw FileError("the motion of a rigid body has the wrong length");
     std::ranges::copy(values, state.begin());
     b.rigid = std::bit_cast<core::RigidState>(state);
+  }
+  if (hdf5::has_link(group, reaction_sums)) {
+    const std::vector<core::ExactSum> sums = sums_from(hdf5::read_all_int64(group, reaction_sums));
+    if (sums.size() != core::ReactionSums::count)
+      throw FileError("the reaction of a body has the wrong length");
+    std::ranges::copy(sums, b.reaction.emplace().sums.begin());
   }
   return b;
 }
@@ -355,10 +373,19 @@ RestartContents contents_of(const core::Model& model, const RestartExtra& extra,
   c.extra = extra;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const core::Body& b = model.bodies[i];
-    c.bodies.push_back({b.name, scene.components[static_cast<std::size_t>(b.component)].name,
-                        scene.materials[static_cast<std::size_t>(b.material)].name, b.component, b.material,
-                        b.model->reference_density(), b.no_output, columns_of(b.pool->layout().set()),
-                        order.particles[i], 0, 0, b.rigid_state});
+    c.bodies.push_back({b.name,
+                        scene.components[static_cast<std::size_t>(b.component)].name,
+                        scene.materials[static_cast<std::size_t>(b.material)].name,
+                        b.component,
+                        b.material,
+                        b.model->reference_density(),
+                        b.no_output,
+                        columns_of(b.pool->layout().set()),
+                        order.particles[i],
+                        0,
+                        0,
+                        b.rigid_state,
+                        {}});
   }
   c.ledger = summed(model, c.bodies, ranks);
   return c;
@@ -372,7 +399,8 @@ std::uint64_t expected_bytes(const RestartContents& c) {
   for (const auto& [name, mark] : c.extra.marks) bytes += 2048 + mark.size();
   bytes += sizeof(core::ExactSum) * (2 + c.ledger.contact.impulses.size());
   for (const BodyRecord& b : c.bodies)
-    bytes += 16384 + 8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
+    bytes += 16384 + (b.reaction ? 2048 + sizeof(core::ReactionSums) : 0) +
+             8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
   return bytes;
 }
 

@@ -33,7 +33,8 @@ struct BodyRecord {
   std::int64_t particles = 0;
   std::int64_t eroded = 0;
   std::int64_t left = 0;
-  std::optional<core::RigidState> rigid;  ///< of rigid bodies in contact
+  std::optional<core::RigidState> rigid;       ///< of rigid bodies in contact
+  std::optional<core::ReactionSums> reaction;  ///< of all ranks
 };
 
 struct RestartContents {

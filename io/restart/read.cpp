@@ -165,6 +165,9 @@ void restore_ledger(const RestartContents& contents, const Fit& fit, core::Model
   if (!keeper) return;
   for (std::size_t b = 0; b < contents.bodies.size(); ++b) {
     if (!fit.bodies[b]) continue;
+    for (core::Reaction& reaction : model.reactions)
+      if (static_cast<std::size_t>(reaction.body) == fit.bodies[b]->number && contents.bodies[b].reaction)
+        reaction.since_start = *contents.bodies[b].reaction;
     model.ledger.body_eroded[fit.bodies[b]->number] = contents.bodies[b].eroded;
     model.ledger.body_left[fit.bodies[b]->number] = contents.bodies[b].left;
   }

@@ -61,6 +61,40 @@ def thrown(end=1.5, output="", partition="", kind=1, cells=1, algorithm="MUSL"):
     return text.replace("</PeneBlast>", partition + "</PeneBlast>")
 
 
+def inertia_of(tensor, mass=None):
+    """An element RigidInertia with a tensor of this matrix."""
+    six = {f"I{'xyz'[i]}{'xyz'[j]}": tensor[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
+    return f'<RigidInertia mass="{mass}" ' + " ".join(f'{name}="{float(value)!r}"' for name, value in six.items()) + "/>"
+
+
+def turning(more, end, step):
+    """A free rigid brick without contact that is given a spin about no principal axis, and then turns by itself under gravity."""
+    soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
+    table = "".join(f'<Coefficient time="{t}" cx="0" cy="0" cz="0" crx="{c}" cry="{c}" crz="{c}"/>' for t, c in ((0, 1), (0.1, 1), (0.11, 0)))
+    law = f'<PrescribedAcceleration ax="0" ay="0" az="0" arx="20" ary="30" arz="10">{table}</PrescribedAcceleration>'
+    bodies = [_mpm.block("far", (0, 0, 0), (1, 1, 1)), _mpm.block("brick", (8, 8, 12), (2, 3, 4), (1, 0.5, 2), of="iron", more=law + more)]
+    text = scene(bodies, _mpm.grid((0, 0, 0), (20, 20, 20), "000020"), _mpm.solution(end, more='<Gravity ax="0" ay="0" az="-3"/>'), soft, 0,
+                 f'<Console print_time="{end / 5}"/><PostProcessing time_interval="{end / 5}" h5part="1" '
+                 'var="velocity_0|velocity_1|velocity_2"/>')
+    return text.replace('<TimeStep factor="0.5"/>', f'<TimeStep specified="{step!r}"/>')
+
+
+def euler(spin, tensor, time, steps=4000):
+    """The rotation in a time of a body without torque, by the classical Runge-Kutta method in the body's axes; and the spin at
+    the end, in global axes."""
+    inverse, h = np.linalg.inv(tensor), time / steps
+    cross = lambda w: np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+    rate = lambda w, r: (-inverse @ np.cross(w, tensor @ w), r @ cross(w))
+    w, r = np.array(spin), np.eye(3)
+    for _ in range(steps):
+        a = rate(w, r)
+        b = rate(w + h / 2 * a[0], r + h / 2 * a[1])
+        c = rate(w + h / 2 * b[0], r + h / 2 * b[1])
+        d = rate(w + h * c[0], r + h * c[1])
+        w, r = (x + h / 6 * (k + 2 * l + 2 * m + n) for x, k, l, m, n in zip((w, r), a, b, c, d))
+    return r, r @ w
+
+
 class Rigid(_mpm.Case):
     def go(self, text, folder="run", **how):
         outcome = self.run_in(folder, [self.write(text)], **how)
@@ -118,6 +152,128 @@ class Rigid(_mpm.Case):
                 self.assertGreater(np.abs(status["mx[contact:brick]"]).max(), 0)
         for kind in (0, 2):
             self.assertEqual(self.go(thrown(kind=kind, cells=cells))[0], state)
+
+    def test_given_inertia(self):
+        """A brick of 2 x 3 x 4 with another mass and the inertia of another body turns as that body does (Euler), falls with g and
+        keeps momentum and energy. The error is of first order in the step."""
+        # Principal moments 9, 5, 12 in axes that are turned about z and x.
+        c, s = math.cos(0.5), math.sin(0.5)
+        axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+        tensor, mass, end = 10 * axes @ np.diag([9.0, 5.0, 12.0]) @ axes.T, 37.0, 1.5
+        errors, steps = [], (0.01, 0.005)
+        for step in steps:
+            _, summary, status = self.go(turning(inertia_of(tensor, mass), end, step))
+            states = _cases.States(self.folder / "run")
+            brick = slice(8, None)
+
+            def at(which):
+                place = np.array([states.column(a, which)[brick] for a in "xyz"]).T
+                velocity = np.array([states.column(f"velocity_{a}", which)[brick] for a in range(3)]).T
+                return place - place.mean(axis=0), velocity - velocity.mean(axis=0)
+
+            first, begins = at(1)
+            inverse = np.linalg.inv((first**2).sum() * np.eye(3) - first.T @ first)
+            spin = inverse @ np.cross(first, begins).sum(axis=0)
+            # How the brick has turned until then.
+            start, _ = at(0)
+            u, _, v = np.linalg.svd(first.T @ start)
+            turned = u @ v
+            rotation, _ = euler(spin, turned @ tensor @ turned.T, states.times[-1] - states.times[1])
+            last, _ = at(-1)
+            errors.append(np.linalg.norm(last - first @ rotation.T, axis=1).max())
+            wrong, _ = euler(spin, turned @ np.diag([3**2 + 4**2, 2**2 + 4**2, 2**2 + 3**2]) @ turned.T,
+                             states.times[-1] - states.times[1])
+            apart = np.linalg.norm(first @ (wrong - rotation).T, axis=1).max()
+            self.assertAlmostEqual(summary["bodies"][1]["mass"], mass, delta=1e-12 * mass)
+            self.assertAlmostEqual(status["pz[body:brick]"][-1], mass * (2 - 3 * end), delta=1e-12 * mass)
+            self.assertLess(abs(summary["energy"]["relative_drift"]), 0.01)
+        order = _cases.order(steps, errors)[0]
+        print(f"brick with given inertia: places off by {errors[0]:.4f}, {errors[1]:.4f}, order {order:.2f}; the particles' inertia "
+              f"leads {apart:.2f} away; drift {summary['energy']['relative_drift']:+.1e}")
+        self.assertLess(errors[1], 0.05)
+        self.assertGreater(order, 0.8)
+        self.assertGreater(apart, 1)
+
+    def test_given_mass_in_a_hit(self):
+        """Momentum is exact with a mass and an inertia that are not those of the particles, and the books of energy close. A heavier
+        body loses less of its velocity."""
+        left = []
+        for mass in (20.0, 48.0, 100.0):
+            with self.subTest(mass=mass):
+                tensor = np.diag([3**2 + 2**2, 2**2 + 2**2, 2**2 + 3**2]) * mass / 8
+                text = thrown(1.0).replace('vz="-2"/></Body>', 'vz="-2"/>' + inertia_of(tensor, mass) + "</Body>")
+                _, summary, _ = self.go(text)
+                momentum = np.sum([np.array(b["velocity"]) * b["mass"] for b in summary["bodies"]], axis=0)
+                first, drift = np.array([0.4, 0.2, -2]) * mass, summary["energy"]["relative_drift"]
+                error = np.abs(momentum - first).max() / np.abs(first).max()
+                left.append(summary["bodies"][1]["velocity"][2])
+                print(f"thrown brick of mass {mass}: momentum {error:.1e}, velocity {left[-1]:.3f}, drift {drift:+.1e}")
+                self.assertAlmostEqual(summary["bodies"][1]["mass"], mass, delta=1e-12 * mass)
+                self.assertLess(error, 1e-12)
+                self.assertLess(abs(drift), 0.03)
+        self.assertGreater(left[0], left[1])
+        self.assertGreater(left[1], left[2])
+        # Ranks and a restart.
+        text = thrown(1.0).replace('vz="-2"/></Body>', 'vz="-2"/>' + inertia_of(tensor, mass) + "</Body>")
+        one, summary, _ = self.go(text, "one")
+        other, again, _ = self.go(text, "three", ranks=3)
+        self.assertEqual(other, one)
+        self.assertEqual(again["energy"], summary["energy"])
+        self.assertEqual(self.run_in("resumed", [self.folder / "one" / _mpm.restarts(self.folder / "one")[0]], ranks=2).state, one)
+
+    def test_senseless_inertia(self):
+        for more, words in ((inertia_of(np.diag([1, 1, 3]), 1), "no body has this tensor of inertia: of its principal moments 3, 1, 1 the"),
+                            (inertia_of([[1, 2, 0], [2, 1, 0], [0, 0, 1]], 1), "must be positive definite; its principal moments are 3, 1, -1"),
+                            ('<RigidInertia mass="0"/>', '<RigidInertia mass="0">: expected a number greater than 0'),
+                            ('<RigidInertia mass="1" Ixx="1"/>', "must be given together or not at all; missing: Iyy"),
+                            ('<RigidInertia mass="1"/><ConstrainRigidPosition value="1"/>', "whose motion is prescribed")):
+            with self.subTest(more=more):
+                outcome = self.run_in("run", [self.write(turning(more, 1.0, 0.01))], code=_mpm.INPUT_ERROR)
+                self.assertIn(words, outcome.err)
+
+    def driven_pair(self, bodies, end, upper, faces="000000", distance=SURFACES, cell=1):
+        soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
+        text = scene([_mpm.block("soft", (0, 0, 0), (1, 1, 1)), *bodies], _mpm.grid((0, 0, 0), upper, faces, cell),
+                     _mpm.solution(end).replace('<TimeStep factor="0.5"/>', '<TimeStep specified="0.02"/>'), soft,
+                     distance=distance, output=f'<Console print_time="{end / 5}"/>')
+        return self.write(text)
+
+    def test_driven_bodies_meet(self):
+        """Two driven rigid blocks stop the run when they are in each other, not when they touch; the same words on three ranks."""
+        left = _mpm.block("left", (2, 3, 3), (3, 4, 4), of="iron", more=held(1.0))
+        right = _mpm.block("right", (7, 3.5, 2.5), (3, 4, 4), of="iron", more=held(-0.5))
+        # They touch at t = 4/3, and are half a cell in each other 1/3 later.
+        for distance in ("", SURFACES):
+            with self.subTest(distance=distance):
+                self.run_in("touch", [self.driven_pair([left, right], 1.34, (14, 10, 10), distance=distance)])
+                words = set()
+                for ranks in (1, 3):
+                    outcome = self.run_in("meet", [self.driven_pair([left, right], 3.0, (14, 10, 10), distance=distance)],
+                                          code=_mpm.NUMERICAL_FAILURE, ranks=ranks)
+                    line = next(line for line in outcome.complaint.splitlines() if "have met" in line)
+                    words.add(line)
+                    self.assertIn("'left' and 'right'", line)
+                self.assertEqual(len(words), 1)
+                print(*words)
+                time = float(line.split("time ")[1].split(":")[0])
+                self.assertGreater(time, 4 / 3)
+                self.assertLess(time, 4 / 3 + 1 / 1.5)
+
+    def test_piston_in_a_sleeve(self):
+        """Without clearance: a square piston in a sleeve of four plates, and a round one, a lattice of particles, in a tube of
+        another lattice or of rings."""
+        sleeve = [_mpm.block("low", (2, 2, 4), (4, 1, 8), of="iron", more=held()), _mpm.block("high", (2, 5, 4), (4, 1, 8), of="iron", more=held()),
+                  _mpm.block("front", (2, 3, 4), (1, 2, 8), of="iron", more=held()), _mpm.block("back", (5, 3, 4), (1, 2, 8), of="iron", more=held())]
+        piston = _mpm.block("piston", (3, 3, 2.1), (2, 2, 6), of="iron", more=held(vz=1.0))
+        self.run_in("square", [self.driven_pair([*sleeve, piston], 6.0, (10, 10, 20))])
+        for x0, dp, rings in ((5.0, 0.5, 0), (5.13, 0.5, 1), (5.07, 0.4, 0), (5.2, 0.29, 1)):
+            with self.subTest(x0=x0, dp=dp):
+                def tube(name, inner, outer, z0, height, more, kind, x0=x0, dp=dp):
+                    return (f'<Body name="{name}" material="iron" type="Cylinder"><Geometry x0="{x0}" y0="5" z0="{z0}" '
+                            f'Bottom_Outer_Radius="{outer}" Top_Outer_Radius="{outer}" Bottom_Inner_Radius="{inner}" Top_Inner_Radius="{inner}" '
+                            f'height="{height}" dp_bottom="{dp}" dp_top="{dp}" discretization="{kind}"/>{more}</Body>')
+                bodies = [tube("tube", 2, 3.5, 4, 8, held(), rings), tube("piston", 0, 2, 2.1, 6, held(vz=1.0), 0, dp=dp * 1.07)]
+                self.run_in("round", [self.driven_pair(bodies, 6.0, (10, 10, 20))])
 
     def test_faster_than_waves(self):
         """A plate drives into soil at 200 m/s, four times its wave speed: all that it sweeps up must have its velocity, 70.4 kg m/s

@@ -126,6 +126,9 @@ TEST_CASE("known, but not implemented yet") {
       {"</PeneBlast>", "<DomainDecomposition rebalance_interval='auto'/></PeneBlast>", {"ok"}},
       {"<InitialVelocity", "<ConstrainRigidPosition value='1'/><InitialVelocity", {"ok"}},
       {"<InitialVelocity",
+       "<RigidInertia mass='1'/><InitialVelocity",
+       {"line 14: <RigidInertia>: has an effect on a rigid body in contact only"}},
+      {"<InitialVelocity",
        "<Traction tx='1' xmin='2' xmax='1'/><InitialVelocity",
        {"line 14: <Traction>: normal is the axis of the traction tx, ty, tz: give both or neither",
         "line 14: <Traction xmax=\"1\">: must be greater than xmin"}},
@@ -289,12 +292,26 @@ TEST_CASE("solution and output") {
        "<Output><TimeHistory var='pres'/></Output></PeneBlast>",
        {"line 26: <TimeHistory>: expected at least one <Particle> or <Point>"}},
       {"</PeneBlast>",
+       "<Output><TimeHistory var='force'/></Output></PeneBlast>",
+       {"line 26: <TimeHistory>: force and moment are variables of a <Body>: expected at least one"}},
+      {"</PeneBlast>",
+       "<Output><TimeHistory var='force|moment'><Point x='0' y='0' z='0'/><Body "
+       "name='rood'/></TimeHistory></Output></PeneBlast>",
+       {"line 26: <Body name=\"rood\">: there is no body of this name; did you mean 'rod'?",
+        "line 26: <TimeHistory>: force and moment are variables of a <Body>: a <Particle> or <Point> needs "
+        "another"}},
+      {"</PeneBlast>",
+       "<Output><TimeHistory var='force'><Body name='rod'/></TimeHistory></Output></PeneBlast>",
+       {"line 26: <Body name=\"rod\">: force and moment are those of rigid bodies in contact and of bodies "
+        "with a prescribed velocity, with explicit steps; this body is neither"}},
+      {"</PeneBlast>",
        "<Output><TimeHistory var='press'><Point x='0' y='0' z='0'/></TimeHistory></Output></PeneBlast>",
        {"line 26: <TimeHistory var=\"press\">: expected one or more of seqv, epef, pres, density, tria, "
         "fail, engk, "
         "engi, cp, sigy, damg, body, com, mat, kelv, velocity_0, velocity_1, velocity_2, exx, eyy, ezz, "
         "posx, posy, "
-        "posz, SigmaX, SigmaY, SigmaZ, SigmaXY, SigmaYZ, SigmaXZ, joined by |; did you mean 'pres'?"}},
+        "posz, SigmaX, SigmaY, SigmaZ, SigmaXY, SigmaYZ, SigmaXZ, force, moment, joined by |; did you mean "
+        "'pres'?"}},
       {"</PeneBlast>",
        "<DomainDecomposition dimension0='2'/></PeneBlast>",
        {"line 26: <DomainDecomposition>: dimension0, dimension1, dimension2 must be given together or not at "

@@ -1,0 +1,157 @@
+"""Reactions of bodies whose velocity is prescribed and of rigid bodies: .sta and histories against exact ones.
+
+Prints what it measures."""
+
+import math
+
+import _cases
+import _mpm
+import numpy as np
+import physics_rigid
+
+YOUNG, POISSON = 1000.0, 0.3
+AXES = "xyz"
+
+
+def driven(vx="0", vy="0", vz="0"):
+    return f'<PrescribedVelocity vx="{vx}" vy="{vy}" vz="{vz}"/>'
+
+
+def drive(status, name, letter="f"):
+    return np.array([status[f"{letter}{axis}[drive:{name}]"] for axis in AXES])
+
+
+def impulse(rows, forces):
+    """Sum of force times interval over the rows after the first."""
+    return (forces[:, 1:] * np.diff(rows["time"])).sum(axis=1)
+
+
+def hit(algorithm="MUSL", end=1.0, more=""):
+    """A driven block, which also shears, runs into a free one in empty space."""
+    bodies = [_mpm.block("ram", (2, 3, 3), (3, 3, 3), more=driven("3 + sin(5*t)", "0.2*(x - 3)", "0.5*t")),
+              _mpm.block("block", (5, 3.5, 3), (4, 3, 4))]
+    histories = '<TimeHistory var="moment|force"><Body name="ram"/></TimeHistory>'
+    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), (20, 12, 12)), _mpm.solution(end, algorithm),
+                      output=f'<Console print_time="{end / 7}"/><Restart time_interval="{end / 2}"/>' + histories, more=more)
+
+
+def rows(path):
+    return [line for line in path.read_text().splitlines() if line and not line.startswith("#")]
+
+
+class Reactions(_mpm.Case):
+    def go(self, text, folder="run", **how):
+        outcome = self.run_in(folder, [self.write(text)], **how)
+        return outcome, _cases.status(self.folder / folder)
+
+    def test_pushing_a_column(self):
+        """Slowly by 0.5 % in uniaxial strain: the stress in the column times its area, and with smaller cells that of the law: the
+        driven body, as soft as the column, is strained in its first cell, too."""
+        end, length, by, errors = 8.0, 8.0, 0.04, []
+        mu, lame = YOUNG / (2 * (1 + POISSON)), YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
+        stretch = 1 - by / length
+        exact = 4 * (mu * (stretch**2 - 1) + lame * math.log(stretch)) / stretch
+        law = _mpm.material(strength=f'type="NeoHookean" Young="{YOUNG}" Poisson="{POISSON}"')
+        # From rest to rest.
+        speed = f"if(t &lt; {end / 2}, {-by * 2 / end!r}*(1 - cos({4 * math.pi / end!r}*t)), 0)"
+        for cell in (1.0, 0.5):
+            bodies = [_mpm.block("column", (0, 0, 0), (2, 2, length), dp=cell / 2),
+                      _mpm.block("ram", (0, 0, length), (2, 2, 2), dp=cell / 2, more=driven(vz=speed))]
+            text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 12), "222220", cell), _mpm.solution(end), [law],
+                              output=f'<Console print_time="{end / 40}"/><TimeHistory var="SigmaZ"><Point x="1" y="1" z="4"/></TimeHistory>')
+            _, status = self.go(text)
+            half = len(status["time"]) // 2
+            force, moment = (drive(status, "ram", letter)[:, half + 2:].mean(axis=1) for letter in "fm")
+            history = _mpm.table(self.folder / "run/case_curv.dat")
+            late = np.array(history["time"]) > 0.55 * end
+            inside = 4 * np.array(history["SigmaZ[point1]"])[late].mean()
+            errors.append(force[2] / exact - 1)
+            print(f"driven ram on a column, cells of {cell}: force {force[2]:.3f}, stress in the column times area {inside:.3f}, law {exact:.3f}")
+            self.assertAlmostEqual(force[2] / inside, 1, delta=0.01)
+            self.assertLess(np.abs(force[:2]).max(), 1e-9 * abs(exact))
+            self.assertLess(np.abs(moment).max(), 1e-9 * abs(exact))
+        self.assertLess(abs(errors[0]), 1 / (length + 1) + 0.02)
+        self.assertLess(abs(errors[1]), 0.6 * abs(errors[0]))
+
+    def test_momentum(self):
+        """What the drive gives is all that the momentum of the scene gains, from row to row."""
+        for algorithm in ("MUSL", "USF", "USL"):
+            with self.subTest(algorithm=algorithm):
+                _, status = self.go(hit(algorithm), algorithm)
+                momentum = np.array([status[f"p{axis}"] for axis in AXES])
+                given, gained = drive(status, "ram")[:, 1:] * np.diff(status["time"]), np.diff(momentum)
+                error = np.abs(given - gained).max() / np.abs(momentum).max()
+                print(f"driven block hits a free one, {algorithm}: momentum closed to {error:.1e}")
+                self.assertGreater(np.abs(status["px[body:block]"][-1]), 10)
+                self.assertLess(error, 1e-12)
+                history = _mpm.table(self.folder / algorithm / "case_curv.dat")
+                every = impulse(history, drive(history, "ram"))
+                self.assertLess(np.abs(every - given.sum(axis=1)).max(), 1e-12 * np.abs(momentum).max())
+                self.assertGreater(len(history["time"]), 3 * len(status["time"]))
+
+    def test_moment(self):
+        """A body that is driven to turn: the moment about its centre is its inertia times the angular acceleration. It hardly
+        has strength."""
+        end, rate = 0.05, 4.0
+        weak = _mpm.material(strength='type="IsoElastic" Young="1e-6" Poisson="0.3"')
+        body = _mpm.block("wheel", (3, 3, 3), (4, 4, 2), more=driven(f"-{rate}*t*(y - 5)", f"{rate}*t*(x - 5)"))
+        text = _mpm.scene([body], _mpm.grid((0, 0, 0), (10, 10, 8)), _mpm.solution(end).replace(
+            '<TimeStep factor="0.5"/>', f'<TimeStep specified="{end / 50!r}"/>'), [weak], output=f'<Console print_time="{end}"/>')
+        _, status = self.go(text)
+        moment = drive(status, "wheel", "m")[:, -1]
+        # Of 8 x 8 particles of mass 1/8 on a side of 4, by 4 layers.
+        places = np.arange(-1.75, 2, 0.5)
+        inertia = 4 / 8 * 2 * len(places) * (places**2).sum()
+        print(f"driven wheel: moment {moment[2]:.6f}, inertia times acceleration {rate * inertia:.6f}")
+        self.assertAlmostEqual(moment[2] / (rate * inertia), 1, delta=1e-4)
+        self.assertLess(np.abs(drive(status, "wheel")[:, -1]).max(), 1e-9)
+        self.assertLess(np.abs(moment[:2]).max(), 1e-9)
+
+    def test_same_bits(self):
+        """Ranks, threads, partitions and restarts, and a restart with nothing left to do."""
+        def files(folder):
+            return rows(self.folder / folder / "case.sta"), rows(self.folder / folder / "case_curv.dat")
+
+        self.go(hit(), "one")
+        expected = files("one")
+        for ranks, threads, more in ((1, 2, ""), (3, 1, ""), (2, 1, '<DomainDecomposition method="metis"/>')):
+            with self.subTest(ranks=ranks, threads=threads):
+                self.go(hit(more=more), "other", ranks=ranks, threads=threads)
+                self.assertEqual(files("other"), expected)
+        for restart in _mpm.restarts(self.folder / "one"):
+            with self.subTest(restart=restart.name):
+                self.run_in("one", [restart], ranks=2)
+                self.assertEqual(files("one"), expected)
+
+    def test_rigid_body_in_a_history(self):
+        """Forces and moments of contact on a free rigid brick, step by step: its momentum and angular momentum."""
+        end = 1.0
+        pictures = f'<PostProcessing time_interval="{end}" h5part="1" var="velocity_0|velocity_1|velocity_2"/>'
+        history = '<TimeHistory var="force|moment"><Body name="brick"/></TimeHistory>'
+        text = physics_rigid.thrown(end, pictures + history)
+        self.run_in("run", [self.write(text)])
+        table = _mpm.table(self.folder / "run/case_curv.dat")
+        brick = _mpm.summary(self.folder / "run")["bodies"][1]
+        gained = brick["mass"] * (np.array(brick["velocity"]) - [0.4, 0.2, -2])
+        given = impulse(table, np.array([table[f"f{a}[contact:brick]"] for a in AXES]))
+        self.assertGreater(np.abs(gained).max(), 1)
+        self.assertLess(np.abs(given - gained).max(), 1e-11 * np.abs(gained).max())
+        states = _cases.States(self.folder / "run")
+        mine = states.column("x", 0).size  # of all particles
+        of_brick = np.arange(mine) >= mine - 4 * 6 * 4
+        place = np.array([states.column(a)[of_brick] for a in AXES]).T
+        velocity = np.array([states.column(f"velocity_{a}")[of_brick] for a in range(3)]).T
+        arm = place - place.mean(axis=0)
+        turns = (brick["mass"] / len(arm)) * np.cross(arm, velocity - velocity.mean(axis=0)).sum(axis=0)
+        moment = impulse(table, np.array([table[f"m{a}[contact:brick]"] for a in AXES]))
+        print(f"brick: angular momentum {turns}, impulse of the moment {moment}")
+        self.assertGreater(np.abs(turns).max(), 0.1)
+        self.assertLess(np.abs(moment - turns).max(), 1e-4 * np.abs(turns).max())
+
+    def test_scenes_without_have_no_columns(self):
+        self.go(_mpm.bounce(0.1))
+        self.assertNotIn("drive:", (self.folder / "run/case.sta").read_text())
+
+
+if __name__ == "__main__":
+    _mpm.main()
