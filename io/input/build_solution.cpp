@@ -281,7 +281,7 @@ void build_body_history(core::TimeHistoryInput& history, const Node& node, const
     node.report(context.diagnostics, asks
                                          ? "force and moment are variables of a <Body>: expected at least one"
                                          : "the variables of a <Body> are force and moment");
-  if (history.variables.empty() && !(history.particles.empty() && history.points.empty()))
+  if (asks && history.variables.empty() && !(history.particles.empty() && history.points.empty()))
     node.report(context.diagnostics,
                 "force and moment are variables of a <Body>: a <Particle> or <Point> "
                 "needs another");

@@ -119,7 +119,8 @@ std::string bodies() {
   const std::string nodes = "<Point node_id='1' x='0' y='0' z='0'/><Point node_id='2' x='1' y='0' z='0'/>";
   std::string text =
       "<Body name='a' material='1' type='Block' density='1' workPlane='plane' Deactive='0' ForBoolBody='1'>" +
-      block + "</Body><Body name='b' material='1' type='Block' ForBoolBody='1'>" + corner + "</Body>" +
+      block + "</Body><Body name='b' material='1' type='Block' ForBoolBody='1'>" + corner +
+      "<RigidInertia mass='1' Ixx='1' Iyy='1' Izz='1' Ixy='0' Iyz='0' Ixz='0'/></Body>" +
       "<Body name='a-b' material='1' type='Bool' BoolType='subtract' BoolBodyA='a' BoolBodyB='b'/>";
   text += body("Point", "<Geometry><Point mass='1' x='1' y='1' z='1'/></Geometry>");
   text += body("Point", "<Geometry file='points.txt'/>");
@@ -163,7 +164,6 @@ std::string bodies() {
                "vx='0' vy='0' vz='0'/>"
                "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'>"
                "<Coefficient time='0' cx='1' cy='0' cz='0' crx='0' cry='0' crz='0'/></PrescribedAcceleration>"
-               "<RigidInertia mass='1' Ixx='1' Iyy='1' Izz='1' Ixy='0' Iyz='0' Ixz='0'/>"
                "<ConstrainRigidPosition value='1'/><AdaptiveSplit value='0.5'/><CountFragDp value='1'/>"
                "<BodyContrl Deactive='0' NoOutput='1'/>");
   text += body(
@@ -236,8 +236,7 @@ std::string make_all_keywords() {
          "engk|engi|cp|sigy|damg|body|com|mat|kelv|velocity_0|velocity_1|velocity_2|exx|eyy|ezz|posx|posy|"
          "posz|SigmaX|SigmaY|SigmaZ|"
          "SigmaXY|SigmaYZ|SigmaXZ'/><TimeHistory var='pres|seqv|force|moment'><Particle x='0' y='0' "
-         "z='0'/><Point "
-         "x='0' y='0' z='0'/><Body name='b'/>"
+         "z='0'/><Point x='0' y='0' z='0'/><Body name='b15'/>"
          "</TimeHistory><GridLineResults normal='0' x='0' y='0'/><FEMProfileResults normal='0' x='0' y='0'/>"
          "<Restart time_interval='1'/><Statistics memory='1' cell_occupy='1'/><Summary "
          "enable='1'/></Output>\n"
