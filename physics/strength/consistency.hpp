@@ -32,8 +32,9 @@ T plastic_increment(const T& trial, const FlowStress<T>& threshold, const T& sta
   using core::max;
   const double stiffness = 3 * shear;
   if constexpr (core::derivatives_of < T >> 0) {
-    const auto x =
-        plastic_increment(trial.v, FlowStress{threshold.value.v, threshold.slope.v}, start.v, shear, flow);
+    using Value = decltype(trial.v);
+    const FlowStress<Value> first{threshold.value.v, threshold.slope.v};
+    const Value x = plastic_increment(trial.v, first, start.v, shear, flow);
     const FlowStress<T> yield = flow(T(x));
     const T f = trial - stiffness * T(x) - yield.value;
     return core::select(x > 0.0, core::implicit_root(T(x), f, stiffness + yield.slope), T(x));
