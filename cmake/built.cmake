@@ -5,17 +5,17 @@ set(MPM_SHAPES all CACHE STRING "Shape functions to build, a list of the names o
 
 option(MPM_CORRECTIONS "Build XPIC, FMPM and the consistent mass matrix, which map several times per step" ON)
 
-# Name in the input language, policy and header in core/shape, and whether affine transfers go with it.
+# Name in the input language, policy and header in core/shape, and what goes with it: affine transfers, the consistent mass.
 set(mpm_known_shapes
-  "linear Linear linear plain"
-  "SGMP Sgmp sgmp plain"
-  "DDMP Ddmp ddmp plain"
-  "uGIMP UniformGimp gimp affine"
-  "cpGIMP ContiguousGimp gimp affine"
-  "CPDI Cpdi cpdi plain"
-  "CPDI2 Cpdi2 cpdi plain"
-  "QuadraticBSpline QuadraticBSpline bspline affine"
-  "CubicBSpline CubicBSpline bspline affine")
+  "linear Linear linear consistent"
+  "SGMP Sgmp sgmp consistent"
+  "DDMP Ddmp ddmp consistent"
+  "uGIMP UniformGimp gimp affine consistent"
+  "cpGIMP ContiguousGimp gimp affine consistent"
+  "CPDI Cpdi cpdi"
+  "CPDI2 Cpdi2 cpdi"
+  "QuadraticBSpline QuadraticBSpline bspline affine consistent"
+  "CubicBSpline CubicBSpline bspline affine consistent")
 
 # mpm_instantiate_passes(out_sources FILE file POLICY shape HEADER header TRANSFERS transfer...)
 function(mpm_instantiate_passes out)
@@ -75,7 +75,9 @@ function(mpm_shapes out)
       continue()
     endif()
     mpm_instantiate_passes(sources FILE passes_${name}_corrected POLICY ${policy} HEADER ${header} TRANSFERS Corrected)
-    mpm_instantiate_passes(sources FILE passes_${name}_consistent POLICY ${policy} HEADER ${header} TRANSFERS Consistent)
+    if("consistent" IN_LIST shape)
+      mpm_instantiate_passes(sources FILE passes_${name}_consistent POLICY ${policy} HEADER ${header} TRANSFERS Consistent)
+    endif()
   endforeach()
 
   if(NOT MPM_SHAPES STREQUAL all)

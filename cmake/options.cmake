@@ -95,7 +95,8 @@ endif()
 
 if(MPM_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # g++ 12 treats precompiled system headers as ours; the preset dev reports our warnings.
-  list(APPEND mpm_private_options -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+  list(APPEND mpm_private_options
+    -Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 else()
   set(MPM_PRECOMPILE OFF)  # clang requires identical options and definitions
 endif()

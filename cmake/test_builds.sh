@@ -1,16 +1,15 @@
 #!/bin/sh
-# test_builds.sh [BUILD...]: tests that test.sh does not cover, each in its own build; all of them or those named:
+# test_builds.sh [BUILD...]: tests that test.sh does not cover, each in its own build:
 #   minimal                the first command of the README; what that build lacks is refused by name
-#   lanes1                 the unit tests of core and physics without vectors
 #   sanitize               all unit tests with clang under the address and undefined-behaviour sanitizers, with vectors of
 #                          two, warnings as errors, every file with its own includes
 # and, if named:
-#   lanes2, lanes4         as lanes1, with vectors of two and four
-#   clang                  the same with the widest vectors and without sanitizers
+#   lanes1, lanes2, lanes4 the unit tests of core and physics without vectors, and with vectors of two and four
+#   clang                  as sanitize, with the widest vectors and without sanitizers
 #   race                   data races between the threads of a rank
 set -eu
 cd "$(dirname "$0")/.."
-[ $# -gt 0 ] || set -- minimal lanes1 sanitize
+[ $# -gt 0 ] || set -- minimal sanitize
 
 report=""
 for build in "$@"; do

@@ -2,6 +2,7 @@
 
   accuracy.py run                     every case; about an hour on two cores
   accuracy.py run --case riemann      this case only; --shape, --transfer, --scheme, --study choose alike
+  accuracy.py run --every             with every shape, transfer and scheme: many hours
   accuracy.py run --quick             a minute: the coarse grids of some studies
   accuracy.py list                    cases, studies and methods
   accuracy.py point KEY               measures one point again; KEY as `list --points` prints it
@@ -65,7 +66,7 @@ def selected(options):
     studies = chosen("study", options.study, list(dict.fromkeys(s for name in cases for s in CASES[name].studies)))
     found = {}
     for name in cases:
-        points = [p for p in CASES[name].points(options.quick) if p.study in studies and p.method.shape in shapes
+        points = [p for p in CASES[name].points(options.quick, options.every) if p.study in studies and p.method.shape in shapes
                   and p.method.transfer in transfers and p.method.scheme in schemes]
         if points:
             found[name] = points
@@ -91,12 +92,10 @@ def find(key):
         if word not in there_is:
             refuse(kind, word, there_is)
     method = methods.Method(*words[2:5])
-    there_are = sorted({str(m) for m in case.methods_of(words[1])})
     if case.excluded(method):
+        there_are = sorted({str(m) for m in case.methods_of(words[1], every=True)})
         raise SystemExit(f"{case.name} leaves out {method}: {case.excluded(method)}; there is: {', '.join(there_are)}")
-    if method not in case.methods_of(words[1]):
-        refuse(f"{case.name}, {words[1]}: method", str(method), there_are)
-    points = [p for p in [*case.points(), *case.points(quick=True)] if p.study == words[1] and p.method == method]
+    points = [*case.points_of(words[1], method), *case.points_of(words[1], method, quick=True)]
     for point in points:
         if point.key == key:
             return case, point
@@ -201,6 +200,7 @@ def arguments(words=None):
     parser.add_argument("key", nargs="?", help="with point: CASE/STUDY/SHAPE/TRANSFER/SCHEME/CELLS/SPLIT/FACTOR")
     for word in ("case", "study", "shape", "transfer", "scheme"):
         parser.add_argument(f"--{word}", nargs="+", metavar=word.upper())
+    parser.add_argument("--every", action="store_true", help="every shape with every transfer and scheme, in every study")
     parser.add_argument("--quick", action="store_true", help="coarse grids of some studies; a minute")
     parser.add_argument("--points", action="store_true", help="with list: the key of every point")
     parser.add_argument("--keep", action="store_true", help="leave the files of the runs in OUT/runs")
@@ -210,6 +210,8 @@ def arguments(words=None):
     options = parser.parse_args(words)
     if (options.command == "point") != (options.key is not None):
         parser.error("the command point needs a key, the others take none")
+    if options.quick and options.every:
+        parser.error("--quick has few methods; leave --every away")
     if options.docs and options.out:
         parser.error("--docs says where the results go; leave --out away")
     pictures = results.ROOT / "build/accuracy"

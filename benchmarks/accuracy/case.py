@@ -40,7 +40,7 @@ class Study:
     factors: object = 0.5
     splits: tuple = (2,)
     axis: str = "cells"
-    quick: bool = False  # its coarsest grids are part of --quick, with few methods
+    quick: tuple = ()  # the cells that are part of --quick, with few methods
     methods: object = None  # a function that gives the study's methods; those of the case where None
     fine: tuple = ()  # cells for `fine_methods` alone
     fine_methods: tuple = ()
@@ -92,23 +92,25 @@ class Case:
         """{error: value} of the run in `folder`."""
         raise NotImplementedError
 
-    def methods_of(self, study):
-        chosen = self.studies[study].methods or self.methods
+    def methods_of(self, study, every=False):
+        """Those that the study names, or `every` one; without those that the case leaves out."""
+        chosen = methods.every if every else self.studies[study].methods or self.methods
         return [m for m in chosen() if self.excluded(m) is None]
 
-    def points(self, quick=False):
-        found = []
-        for name, study in self.studies.items():
-            if quick and not study.quick:
-                continue
-            for method in self.methods_of(name):
-                if quick and method not in methods.quick():
-                    continue
-                cells = study.cells + (study.fine if method in study.fine_methods else ())
-                found += [Point(self.name, name, method, n, split, factor)
-                          for split in study.splits for n in (cells[:3] if quick else cells)
-                          for factor in study.factors_at(n)]
-        return list(dict.fromkeys(found))
+    def points(self, quick=False, every=False):
+        """Those of the studies; `quick`: of the coarse grids, with few methods; `every`: with every method."""
+        return [point for study in self.studies for method in self.methods_of(study, every)
+                if not quick or method in methods.quick() for point in self.points_of(study, method, quick)]
+
+    def points_of(self, name, method, quick=False):
+        study = self.studies[name]
+        cells = study.quick if quick else study.cells + (study.fine if method in study.fine_methods else ())
+        return [Point(self.name, name, method, n, split, factor)
+                for split in study.splits for n in cells for factor in study.factors_at(n)]
+
+    def all_points(self):
+        """The same, those of the studies first."""
+        return list(dict.fromkeys([*self.points(), *self.points(quick=True), *self.points(every=True)]))
 
 
 def order(coarse, fine, ratio):

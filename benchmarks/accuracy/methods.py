@@ -63,6 +63,11 @@ def every_transfer(some_shapes=None, some_schemes=("MUSL",)):
     return product(some_shapes, transfers(), some_schemes)
 
 
+def every():
+    """Every shape with every transfer and scheme: also those that the program refuses."""
+    return product(None, transfers(), schemes())
+
+
 def quick():
     """Every shape with FLIP, and one affine transfer."""
     return [*flip(), Method("QuadraticBSpline", "APIC")]

@@ -51,7 +51,7 @@ def write(case, path, rows, head, earlier):
         line = [] if before[:len(head)] == head else [f"{words}: {', '.join(head)}"]
         head = [*(line for line in before if not line.startswith(f"{words}: ")), *line]
     places = {}
-    for point in [*case.points(), *case.points(quick=True)]:
+    for point in case.all_points():
         m = point.method
         key = (point.study, m.shape, m.transfer, m.scheme, float(point.cells), float(point.split), float(point.factor))
         places.setdefault(key, len(places))

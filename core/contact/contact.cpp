@@ -96,8 +96,8 @@ AxisBox Contact::zone(Slot s, std::int32_t component) const {
     const auto others = [&](std::int32_t there) { return there != component; };
     if (std::ranges::none_of(grid.components(neighbour), others)) continue;
     const BrickCoord brick = grid.brick(s).coord + neighbour_offset(n);
-    zone.add({grid.geometry().node_place(brick, low, low, low),
-              grid.geometry().node_place(brick, high, high, high)});
+    zone.add({grid.geometry().node_place(brick, {low, low, low}),
+              grid.geometry().node_place(brick, {high, high, high})});
   }
   return zone;
 }

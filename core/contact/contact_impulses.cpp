@@ -219,14 +219,11 @@ void Contact::book(const Node& at, ContactSums& sums) const {
 /// The fields with mass at a node, and their pairs that touch; false without any.
 bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
                         const MeetingNodes::Node& node, Node& at) const {
-  const NodeBlockShape shape = grid.shape();
-  const int side = shape.side(), low = shape.lowest(), n = node.number;
   at.clear();
-  at.place = grid.geometry().node_place(grid.brick(s).coord, n % side + low, n / side % side + low,
-                                        n / (side * side) + low);
+  at.place = grid.geometry().node_place(grid.brick(s).coord, grid.shape().node(node.number));
   int rigid_fields = 0;
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const Motion record{fields[f].motion.data() + node_doubles * n};
+    const Motion record{fields[f].motion.data() + node_doubles * node.number};
     if (!(record.mass() > 0)) continue;
     const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
     const int number = rigid(fields[f].component);

@@ -108,11 +108,8 @@ void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot 
 void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<const FieldNodes> fields,
                            std::span<const int> present) {
   constexpr double least = 0.3;  // of a cell
-  const NodeBlockShape shape = grid.shape();
-  const int side = shape.side(), low = shape.lowest();
-  const std::int64_t in_brick[3] = {node % side + low, node / side % side + low, node / (side * side) + low};
-  const Vec3<double> place = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
-                                                        node / side % side + low, node / (side * side) + low);
+  const std::array<int, 3> in_brick = grid.shape().node(node);
+  const Vec3<double> place = grid.geometry().node_place(grid.brick(s).coord, in_brick);
   const auto filled = [&](int f) {
     const FieldNodes& field = fields[static_cast<std::size_t>(f)];
     const double
@@ -181,18 +178,14 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
                            RegressionScratch& scratch) {
   MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
   const NodeBlockShape shape = grid.shape();
-  const auto place = [&](int node, int axis) {
-    const int side = shape.side(), stride[3] = {1, side, side * side};
-    return node / stride[axis] % side + shape.lowest();
-  };
   if (regresses_) {
     PointsByCell::Range range;
-    for (int a = 0; a < 3; ++a) {
+    for (std::size_t a = 0; a < 3; ++a) {
       range.lowest[a] = shape.highest(), range.highest[a] = shape.lowest();
       for (const MeetingNodes::Node& node : at.nodes) {
         if (node.finder != s) continue;
-        range.lowest[a] = std::min(range.lowest[a], place(node.number, a));
-        range.highest[a] = std::max(range.highest[a], place(node.number, a));
+        range.lowest[a] = std::min(range.lowest[a], shape.node(node.number)[a]);
+        range.highest[a] = std::max(range.highest[a], shape.node(node.number)[a]);
       }
     }
     if (range.lowest[0] > range.highest[0]) return;
@@ -206,8 +199,8 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
                        &second = fields[static_cast<std::size_t>(pair.second)];
       std::optional<Vec3<double>> normal;
       if (by_regression(first.component, second.component)) {
-        scratch.by_cell.around(grid, s, {place(node.number, 0), place(node.number, 1), place(node.number, 2)},
-                               first.component, second.component, scratch.points);
+        scratch.by_cell.around(grid, s, shape.node(node.number), first.component, second.component,
+                               scratch.points);
         normal = separating_normal(scratch.points, scratch.near);
       }
       if (!normal) normal = contact_normal(surface(first, node.number), surface(second, node.number));

@@ -125,16 +125,16 @@ void PointsByCell::take(const BrickGrid& grid, const ContactPoints& points, Slot
   begin_.front() = 0;
 }
 
-void PointsByCell::around(const BrickGrid& grid, Slot s, const int (&node)[3], std::int32_t first,
+void PointsByCell::around(const BrickGrid& grid, Slot s, const std::array<int, 3>& node, std::int32_t first,
                           std::int32_t second, LabelledPoints& points) const {
   const GridGeometry& g = grid.geometry();
   const BrickCoord coord = grid.brick(s).coord;
-  const Vec3<double> place = g.node_place(coord, node[0], node[1], node[2]);
+  const Vec3<double> place = g.node_place(coord, node);
   const std::int32_t brick[3] = {coord.x, coord.y, coord.z};
   double scale[3];
   for (int a = 0; a < 3; ++a) {
     const auto axis = static_cast<std::size_t>(a);
-    const std::int64_t number = std::int64_t{brick_cells} * brick[a] + node[a];
+    const std::int64_t number = std::int64_t{brick_cells} * brick[a] + node[axis];
     const bool on_face = (number == 0 && is_constrained(g.boundary[2 * axis])) ||
                          (number == g.cells[axis] && is_constrained(g.boundary[2 * axis + 1]));
     scale[a] = on_face ? 0 : g.inverse_cell[a];

@@ -87,8 +87,8 @@ class PointsByCell {
   void take(const BrickGrid& grid, const ContactPoints& points, Slot s, const Range& nodes);
   /// The particles of two components around a node. On a constrained face of the grid the normal is
   /// perpendicular to the face's, as if the particles had mirror images.
-  void around(const BrickGrid& grid, Slot s, const int (&node)[3], std::int32_t first, std::int32_t second,
-              LabelledPoints& points) const;
+  void around(const BrickGrid& grid, Slot s, const std::array<int, 3>& node, std::int32_t first,
+              std::int32_t second, LabelledPoints& points) const;
   /// f(x, component) for the particles in the cells from `lowest` to `highest`, both included, counted as
   /// nodes are: cell (i, j, k) is above node (i, j, k).
   template <class F>

@@ -24,12 +24,10 @@ struct RigidState {
   Vec3<double> velocity{};  ///< of the centre
   Vec3<double> spin{};      ///< angular velocity
   Sym3<double> inertia{};   ///< about the centre, global axes
-  // Of the last step.
-  Vec3<double> force{}, moment{};  ///< by contact, mean over the step; the moment about the centre
-  double contacts = 0;             ///< nodes at which the body touched others
-  Vec3<double> cut{};              ///< 1 for the axes normal to symmetry planes that cut the body
+  double contacts = 0;      ///< nodes at which the body touched others in the last step
+  Vec3<double> cut{};       ///< 1 for the axes normal to symmetry planes that cut the body
 
-  static constexpr int size = 26;  ///< doubles, in restart files
+  static constexpr int size = 20;  ///< doubles, in restart files
 };
 static_assert(sizeof(RigidState) == RigidState::size * sizeof(double));
 
@@ -96,8 +94,6 @@ inline void end_step(RigidState& s, const StepLength& length, const Vec3<double>
   const Vec3<double> angular_momentum = s.inertia * s.spin + moment;
   s.inertia = rotate(rotation(length.dt * spin), s.inertia);
   s.centre = s.centre + length.dt * velocity;
-  s.force = (1 / length.velocity_dt) * impulse;
-  s.moment = (1 / length.velocity_dt) * moment;
   if (driven) return;
   s.velocity = s.velocity + (1 / s.mass) * impulse;
   s.spin = spin_with(s, angular_momentum);

@@ -95,10 +95,10 @@ struct GridGeometry {
     return static_cast<std::int64_t>(c == n && s == n ? c - 1 : c);
   }
   /// Of node (i, j, k) of a brick (NodeBlockShape).
-  Vec3<double> node_place(BrickCoord b, int i, int j, int k) const {
-    const double along[3] = {double(std::int64_t{brick_cells} * b.x + i),
-                             double(std::int64_t{brick_cells} * b.y + j),
-                             double(std::int64_t{brick_cells} * b.z + k)};
+  Vec3<double> node_place(BrickCoord b, const std::array<int, 3>& node) const {
+    const double along[3] = {double(std::int64_t{brick_cells} * b.x + node[0]),
+                             double(std::int64_t{brick_cells} * b.y + node[1]),
+                             double(std::int64_t{brick_cells} * b.z + node[2])};
     return {origin.x + along[0] * cell.x, origin.y + along[1] * cell.y, origin.z + along[2] * cell.z};
   }
   bool contains(const Vec3<double>& x) const {
@@ -146,6 +146,10 @@ struct NodeBlockShape {
   constexpr int nodes() const { return side() * side() * side(); }
   constexpr int index(int i, int j, int k) const {
     return (i + below) + side() * ((j + below) + side() * (k + below));
+  }
+  /// (i, j, k) of the node with this index.
+  constexpr std::array<int, 3> node(int index) const {
+    return {index % side() - below, index / side() % side() - below, index / (side() * side()) - below};
   }
   constexpr bool operator==(const NodeBlockShape&) const = default;
 };

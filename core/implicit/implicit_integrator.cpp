@@ -431,7 +431,35 @@ void ImplicitIntegrator::fail(const std::string& why) {
       true);
 }
 
+/// The forces are those of the end of the step, or where it is dynamic the means over it; damping counts
+/// among them.
+void ImplicitIntegrator::find_reactions() {
+  map_forces(solution_);
+  find_contact_forces();
+  const double dt = model_.clock.dt, damping = model_.scene->solution.damping;
+  std::vector<double> impulses(solution_.size());
+  unknowns_.for_each_own([&](std::size_t i, const double* sum) {
+    const NodeState& at = state_[i];
+    for (int a = 0; a < 3; ++a) {
+      if ((unknowns_.moved()[i] >> a & 1) == 0) continue;
+      const std::size_t k = 3 * i + static_cast<std::size_t>(a);
+      const double at_end = at.external[a] + sum[4 + a];
+      double impulse = -dt * (at_end + at.contact[a]);
+      if (rule_.dynamic()) {
+        const double v = solution_[k] / dt,
+                     force = (rule_.carry * at.force[a] + at_end - damping * at.mass * v) / (1 + rule_.carry);
+        impulse = at.mass * (v - at.velocity[a]) - dt * (force + at.contact[a]);
+      }
+      impulses[k] = impulse / unknowns_.moved_volume()[i];
+    }
+  });
+  AlignedDoubles records;
+  unknowns_.distribute(impulses, records);
+  passes_->add_reactions(records);
+}
+
 void ImplicitIntegrator::move() {
+  if (moves_bodies_) find_reactions();
   // The last residual of a line search need not be that of the solution.
   distribute(solution_);
   find_contact_forces();

@@ -79,6 +79,9 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   void solve();
   NewtonReport solve_once(std::span<double> u, const NewtonOptions& options);
   void settle_friction(std::span<double> u, const NewtonOptions& options, NewtonReport& report);
+  /// Impulses on the nodes that bodies of prescribed motion hold, by the solution; to these bodies.
+  /// Collective.
+  void find_reactions();
   void move();
   void find_fields();
   void find_contacts();

@@ -41,6 +41,10 @@ class ImplicitPasses {
   virtual void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
                            BlockMatrix& matrix) = 0;
 
+  /// Adds the reactions of bodies of prescribed motion, with the impulses on the nodes that they hold over
+  /// the volume that they fill there, in MotionRecords. Before the particles move.
+  virtual void add_reactions(const AlignedDoubles& impulses) = 0;
+
   /// What the displacements do to this rank's particles, which do not change.
   virtual StepMotion motion_of(const AlignedDoubles& displacements) = 0;
   /// Moves the particles by the displacements, updates their stress and, where the step is dynamic, adds the

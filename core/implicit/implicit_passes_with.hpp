@@ -52,6 +52,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   bool map_forces(const AlignedDoubles& displacements) override;
   void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
                    BlockMatrix& matrix) override;
+  void add_reactions(const AlignedDoubles& impulses) override;
   StepMotion motion_of(const AlignedDoubles& displacements) override;
   void move_particles(const AlignedDoubles& displacements, const AlignedDoubles* velocities,
                       const AlignedDoubles* lags) override;
@@ -153,6 +154,12 @@ class ImplicitPassesWith final : public ImplicitPasses {
   /// Number of the rigid body in contact that is this body; -1: none.
   int rigid(int body) const { return rigid_ == nullptr ? -1 : rigid_->of_body(body); }
   bool prescribed(int body) const { return loads_.motion(body).kind == BodyMotion::Kind::prescribed; }
+  ReactionSums& reaction_of(int body, Scratch& at) const {
+    std::vector<ReactionSums>& reactions = at.statistics.reactions;
+    const std::size_t r = loads_.motion(body).reaction;
+    if (reactions.size() <= r) reactions.resize(r + 1);
+    return reactions[r];
+  }
   /// Adds the motion of a batch of copies, which it moves.
   void find_motion(const ParticleTile& tile, const Body& body, Scratch& at);
   void move_block(const BrickFrame& frame, const ParticleTile& tile, int b, double* block, int used,
@@ -160,6 +167,8 @@ class ImplicitPassesWith final : public ImplicitPasses {
   void move_field(const BrickField& field, const AlignedDoubles& displacements,
                   const AlignedDoubles* velocities, const AlignedDoubles* lags,
                   std::vector<DepartingParticle>& departing, Scratch& at);
+  void add_missing_impulses(int body, const Place& place, const ColumnLayout& layout, const double* block,
+                            int used, Scratch& at) const;
   static void add_increments(const ColumnLayout& layout, const Place& place, const typename S::Field& of,
                              Column first, double* block);
 
@@ -235,6 +244,8 @@ StepStatistics ImplicitPassesWith<S>::take_statistics() {
     all.domains += mine.domains;
     all.events += mine.events;
     all.work += mine.work;
+    all.reactions.resize(std::max(all.reactions.size(), mine.reactions.size()));
+    for (std::size_t r = 0; r < mine.reactions.size(); ++r) all.reactions[r] += mine.reactions[r];
     mine = {};
   }
   all.undefined = loads_.take_fault();

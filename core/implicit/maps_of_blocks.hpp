@@ -20,9 +20,10 @@ void ImplicitPassesWith<S>::map_start() {
     for_each_block(
         field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
           const Place place(frame, layout, block);
+          const Vec3<double> weight = gravity_ + loads_.acceleration(tile.body);  // per mass
           for (int l = 0; l < used; ++l) {
             const double m = block[layout.offset(Column::mass) + l];
-            double per_shape[8] = {0, 0, 0, m, m * gravity_.x, m * gravity_.y, m * gravity_.z, 1};
+            double per_shape[8] = {0, 0, 0, m, m * weight.x, m * weight.y, m * weight.z, 1};
             for (int a = 0; a < 3; ++a)
               per_shape[a] = m * block[layout.offset(next(Column::velocity_x, a)) + l];
             S::for_each_node(place, l, inverse_cell,
@@ -34,7 +35,7 @@ void ImplicitPassesWith<S>::map_start() {
                              });
           }
           if (loads_.act(*model_.grid, field.slot, tile.body))
-            add_load_forces<S>(loads_, model_, field.slot, tile.body, place, block, used, contributions);
+            add_load_forces<S>(loads_, model_, field.slot, tile.body, {}, place, block, used, contributions);
         });
     fold(mapped::implicit_start, field, contributions);
   });
@@ -93,6 +94,42 @@ void ImplicitPassesWith<S>::map_surface() {
     };
     for_each_block(field, true, map);
     fold(mapped::implicit_surface, field, contributions);
+  });
+}
+
+/// The impulse on a node acts on the bodies that hold it by their volumes there.
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::add_reactions(const AlignedDoubles& impulses) {
+  const GridGeometry& g = model_.grid->geometry();
+  for_fields([&](const BrickField& field, Scratch& at) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickCoord brick = model_.grid->brick(field.slot).coord;
+    const double* of_nodes = records(impulses, field);
+    for_each_block(
+        field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+          if (!prescribed(tile.body)) return;
+          const Place place(frame, layout, block);
+          double mass = 0;
+          Vec3<double> impulse{}, moment{}, mass_place{};
+          for (int l = 0; l < used; ++l) {
+            const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
+            const double volume = get(Column::volume), m = get(Column::mass);
+            mass += m;
+            for (int a = 0; a < 3; ++a) mass_place[a] += m * get(next(Column::position_x, a));
+            for_each_weight<S>(place, l, g.inverse_cell, [&](int node, double shape) {
+              const double* v = MotionRecord<const double>{of_nodes + node_doubles * node}.velocity();
+              const Vec3<double> given = (volume * shape) * Vec3<double>{v[0], v[1], v[2]};
+              if (given == Vec3<double>{}) return;
+              impulse = impulse + given;
+              moment = moment + cross(g.node_place(brick, model_.grid->shape().node(node)), given);
+            });
+          }
+          ReactionSums& sums = reaction_of(tile.body, at);
+          sums.sums[ReactionSums::mass].add(mass);
+          sums.add(ReactionSums::place, mass_place);
+          sums.add(ReactionSums::impulse, impulse);
+          sums.add(ReactionSums::moment, moment);
+        });
   });
 }
 

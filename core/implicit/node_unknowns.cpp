@@ -69,7 +69,7 @@ std::vector<double> NodeUnknowns::number() {
           own_.push_back({field.index, n});
           components_.push_back(field.component);
           start.insert(start.end(), sum + node_doubles * n, sum + node_doubles * (n + 1));
-          const Vec3<double> x = grid().geometry().node_place(grid().brick(s).coord, i, j, k);
+          const Vec3<double> x = grid().geometry().node_place(grid().brick(s).coord, {i, j, k});
           coordinates_.insert(coordinates_.end(), {x.x, x.y, x.z});
           const BrickCoord b = grid().brick(s).coord;
           lattice_.insert(lattice_.end(),
@@ -126,8 +126,12 @@ void NodeUnknowns::hold_moved(double dt) {
     for (int n = 0; n < nodes(); ++n)
       if (is_moved(sum + node_doubles * n)) of[n].held = 7;
   }
+  moved_.assign(own_.size(), 0);
+  moved_volume_.assign(own_.size(), 0.0);
   for_each_own([&](std::size_t i, const double* record) {
     if (!is_moved(record)) return;
+    moved_[i] = static_cast<std::uint8_t>(7 & ~held_[i]);
+    moved_volume_[i] = record[node_field::moved_volume.first];
     for (int a = 0; a < 3; ++a) {
       // A wall that fixes a component goes before.
       if ((held_[i] >> a & 1) == 0)

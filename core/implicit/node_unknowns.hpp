@@ -86,6 +86,10 @@ class NodeUnknowns {
   /// Three bits and three displacements per own node.
   std::span<const std::uint8_t> held() const { return held_; }
   std::span<const double> held_displacements() const { return held_to_; }
+  /// Per own node: the components that bodies of prescribed motion hold, as bits, and the volume that they
+  /// fill around it. Empty without such bodies.
+  std::span<const std::uint8_t> moved() const { return moved_; }
+  std::span<const double> moved_volume() const { return moved_volume_; }
 
   /// Values of the own unknowns, three per node, to the records of all bricks' nodes: components 0..2 and
   /// 4..6 (velocity and strain velocity of a MotionRecord). Collective.
@@ -149,7 +153,8 @@ class NodeUnknowns {
   std::int64_t first_ = 0, all_ = 0;
   std::vector<double> coordinates_, held_to_;
   std::vector<std::int32_t> lattice_, components_;
-  std::vector<std::uint8_t> held_;
+  std::vector<std::uint8_t> held_, moved_;
+  std::vector<double> moved_volume_;
   AlignedDoubles buffer_;
 };
 

@@ -31,6 +31,7 @@ void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTi
   const bool moved = prescribed(tile.body);
   if (moved) {
     const PrescribedMotion& motion = loads_.motion(tile.body).velocity;
+    if (dynamic) add_missing_impulses(tile.body, place, layout, block, used, at);
     for (int l = 0; l < used; ++l) {
       const Vec3<double> v = motion.velocity(block + l);
       for (int a = 0; a < 3; ++a) {
@@ -56,6 +57,31 @@ void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTi
   if constexpr (deforms)
     at.statistics.domains += S::deform(frame, layout, at.gradient, block_lanes * b, 1.0, block, used);
   if constexpr (settles) at.statistics.domains += S::settle(frame, layout, !moved, block, used);
+}
+
+/// Of a dynamic step: what a body of prescribed motion gets beside the nodes' increments, which serve the
+/// particles of others.
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::add_missing_impulses(int body, const Place& place, const ColumnLayout& layout,
+                                                 const double* block, int used, Scratch& at) const {
+  const typename S::Interpolation gained(place, at.velocities.increment());
+  alignas(64) double increment[3][block_lanes];
+  for (int a = 0; a < 3; ++a) store(increment[a], gained.value[a]);
+  Vec3<double> impulse{}, moment{};
+  for (int l = 0; l < used; ++l) {
+    const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
+    const Vec3<double> wanted = loads_.motion(body).velocity.velocity(block + l);
+    Vec3<double> missing{}, x{};
+    for (int a = 0; a < 3; ++a) {
+      missing[a] = get(Column::mass) * (wanted[a] - get(next(Column::velocity_x, a)) - increment[a][l]);
+      x[a] = get(next(Column::position_x, a));
+    }
+    impulse = impulse + missing;
+    moment = moment + cross(x, missing);
+  }
+  ReactionSums& sums = reaction_of(body, at);
+  sums.add(ReactionSums::impulse, impulse);
+  sums.add(ReactionSums::moment, moment);
 }
 
 template <ShapePolicy S>

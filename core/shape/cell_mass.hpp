@@ -21,8 +21,8 @@ inline constexpr int cells = brick_cells * brick_cells * brick_cells;
 
 /// Of a cell by its lowest point, and back.
 constexpr int cell_at(int point) {
-  constexpr int side = lattice_points.side();
-  return point % side + brick_cells * (point / side % side + brick_cells * (point / (side * side)));
+  const auto [i, j, k] = lattice_points.node(point);
+  return i + brick_cells * (j + brick_cells * k);
 }
 constexpr int lowest_point(int cell) {
   constexpr int side = lattice_points.side();

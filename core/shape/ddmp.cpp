@@ -355,8 +355,7 @@ void Ddmp::shape_and_gradient(const Place& place, int lane, const Vec3<double>& 
   const auto number = [](int i, int j, int k) { return i + 1 + 4 * (j + 1 + 4 * (k + 1)); };
   std::fill_n(shape, 64, 0.0);
   std::fill_n(gradient, 64, Vec3<double>{});
-  const int side = lattice_points.side(), point = place.node[lane];
-  const int cell[3] = {point % side, point / side % side, point / (side * side)};
+  const std::array<int, 3> cell = lattice_points.node(place.node[lane]);
   double alpha = 64;
   for (const auto& fraction : place.f) alpha *= fraction[lane] * (1 - fraction[lane]);
   const auto of_corner = [&](int, const NodeOffset& offset, double s, const Vec3<double>& direct) {

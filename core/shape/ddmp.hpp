@@ -282,8 +282,8 @@ struct Ddmp {
  private:
   /// Of the lowest node of a particle's cell.
   static int lowest_of_cell(const Place& place, int lane) {
-    const int side = lattice_points.side(), point = place.node[lane];
-    return node_block.index(point % side, point / side % side, point / (side * side));
+    const auto [i, j, k] = lattice_points.node(place.node[lane]);
+    return node_block.index(i, j, k);
   }
   /// On the nodes i + 4 j + 16 k around the particle's cell.
   static void shape_and_gradient(const Place& place, int lane, const Vec3<double>& inverse_cell,

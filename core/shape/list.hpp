@@ -25,25 +25,31 @@ using Shapes =
 template <class S>
 inline constexpr bool is_built = std::ranges::find(built_shapes, S::name) != std::ranges::end(built_shapes);
 
-/// f(std::type_identity<S>()) with the policy of `shape`.
+/// f(std::type_identity<S>()) with the policy of `shape`, whether this build has its passes or not.
 template <class F>
-auto with_shape(ShapeFunction shape, F f) {
-  const auto with = [&]<class S>(std::type_identity<S> of) -> decltype(f(std::type_identity<Linear>())) {
-    if constexpr (is_built<S>) return f(of);
-    throw std::logic_error("a shape function that this build does not have");
-  };
+auto with_known_shape(ShapeFunction shape, F f) {
   switch (shape) {
-    case ShapeFunction::linear: return with(std::type_identity<Linear>());
-    case ShapeFunction::sgmp: return with(std::type_identity<Sgmp>());
-    case ShapeFunction::ddmp: return with(std::type_identity<Ddmp>());
-    case ShapeFunction::uniform_gimp: return with(std::type_identity<UniformGimp>());
-    case ShapeFunction::contiguous_particle_gimp: return with(std::type_identity<ContiguousGimp>());
-    case ShapeFunction::cpdi: return with(std::type_identity<Cpdi>());
-    case ShapeFunction::cpdi2: return with(std::type_identity<Cpdi2>());
-    case ShapeFunction::quadratic_bspline: return with(std::type_identity<QuadraticBSpline>());
-    case ShapeFunction::cubic_bspline: return with(std::type_identity<CubicBSpline>());
+    case ShapeFunction::linear: return f(std::type_identity<Linear>());
+    case ShapeFunction::sgmp: return f(std::type_identity<Sgmp>());
+    case ShapeFunction::ddmp: return f(std::type_identity<Ddmp>());
+    case ShapeFunction::uniform_gimp: return f(std::type_identity<UniformGimp>());
+    case ShapeFunction::contiguous_particle_gimp: return f(std::type_identity<ContiguousGimp>());
+    case ShapeFunction::cpdi: return f(std::type_identity<Cpdi>());
+    case ShapeFunction::cpdi2: return f(std::type_identity<Cpdi2>());
+    case ShapeFunction::quadratic_bspline: return f(std::type_identity<QuadraticBSpline>());
+    case ShapeFunction::cubic_bspline: return f(std::type_identity<CubicBSpline>());
   }
   throw std::logic_error("a shape function without a policy");
+}
+
+/// The same, of those that this build has.
+template <class F>
+auto with_shape(ShapeFunction shape, F f) {
+  using Result = decltype(f(std::type_identity<Linear>()));
+  return with_known_shape(shape, [&]<class S>(std::type_identity<S> of) -> Result {
+    if constexpr (is_built<S>) return f(of);
+    throw std::logic_error("a shape function that this build does not have");
+  });
 }
 
 }  // namespace mpm::core

@@ -147,8 +147,8 @@ struct Sgmp {
   }
 
   static int lowest_of(const Place& place, int lane) {
-    const int side = lattice_points.side(), centre = place.node[lane];
-    return node_block.index(centre % side - 1, centre / side % side - 1, centre / (side * side) - 1);
+    const auto [i, j, k] = lattice_points.node(place.node[lane]);
+    return node_block.index(i - 1, j - 1, k - 1);
   }
   static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
     return g.site_index(x, axis) - 1;

@@ -15,14 +15,16 @@ namespace mpm::core {
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what, class Scatter, class F>
 [[gnu::noinline]] void PassesWith<S, T>::map_tile(Slot s, std::size_t c, const BrickFrame& frame, Scratch& at,
-                                                  double* contributions, SpreadPrefetch& room,
-                                                  Scatter& running, double* records, F before) {
+                                                  const Weight& weight, double* contributions,
+                                                  SpreadPrefetch& room, Scatter& running, double* records,
+                                                  F before) {
   const BrickGrid& grid = *model_.grid;
   const ParticleTile& tile = grid.brick(s).tiles[c];
   const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
   const BlockPrefetch prefetch(model_, s, c);
   const ColumnLayout& layout = body.pool->layout();
-  const bool loaded = maps_force(what) && loads_.act(grid, s, tile.body);
+  const bool loaded = maps_force(what) && (weight.by_particle || loads_.act(grid, s, tile.body));
+  const Vec3<double> acceleration = weight.by_particle ? loads_.acceleration(tile.body) : Vec3<double>{};
   SiteAverages* const pressures = maps_force(what) && averages_volume_change() ? &at.averages : nullptr;
   if (pressures != nullptr) sum_pressures(frame, tile, *pressures);
   Scatter cell = running;
@@ -41,10 +43,26 @@ template <NodeFields what, class Scatter, class F>
     before(tile.body, place, block, used);
     add_block<S, T, what>(frame, place, layout, block, used, cell, records, pressures);
     if constexpr (maps_force(what)) {
-      if (loaded) add_load_forces<S>(loads_, model_, s, tile.body, place, block, used, contributions);
+      if (loaded)
+        add_load_forces<S>(loads_, model_, s, tile.body, acceleration, place, block, used, contributions);
     }
   }
   running = cell;
+}
+
+template <ShapePolicy S, TransferPolicy T>
+typename PassesWith<S, T>::Weight PassesWith<S, T>::weight_of(Slot s, std::int32_t component) const {
+  Weight found;
+  if (!loads_.any()) return found;
+  bool first = true;
+  for (const ParticleTile& tile : model_.grid->brick(s).tiles) {
+    if (!holds(tile, component)) continue;
+    const Vec3<double> acceleration = loads_.acceleration(tile.body);
+    if (!first && acceleration != found.acceleration) return {{}, true};
+    found.acceleration = acceleration;
+    first = false;
+  }
+  return found;
 }
 
 /// before(body, place, block, used) for every block of a component, then its contribution to the nodes.
@@ -59,12 +77,14 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   double* contributions = grid.contributions(what.array, s, field);
   using Sums = typename S::template Sums<what>;
   constexpr bool can_replace = requires(Sums sums) { sums.replace(frame); };
-  // Loads add to the nodes themselves.
+  const Weight weight = maps_force(what) ? weight_of(s, component) : Weight{};
+  const auto loaded = [&](const ParticleTile& tile) {
+    return weight.by_particle || loads_.act(grid, s, tile.body);
+  };
+  // Loads that particles map are added to the nodes themselves.
   const NodeMask* some = reached(s);
-  const bool replaces = can_replace && some == nullptr &&
-                        !(maps_force(what) && std::ranges::any_of(brick.tiles, [&](const ParticleTile& tile) {
-                            return loads_.act(grid, s, tile.body);
-                          }));
+  const bool replaces =
+      can_replace && some == nullptr && !(maps_force(what) && std::ranges::any_of(brick.tiles, loaded));
   if (selects_)
     sparse_.begin_map(what.array, grid.shape(), s, width, replaces, contributions);
   else if (!replaces)
@@ -77,14 +97,15 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   cell.clear();
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     if (holds(brick.tiles[c], component))
-      map_tile<what>(s, c, frame, at, contributions, room, cell, sums.records, before);
+      map_tile<what>(s, c, frame, at, weight, contributions, room, cell, sums.records, before);
   }
   cell.flush(frame, sums.records);
   if constexpr (can_replace) {
     if (replaces) sums.replace(frame);
   }
   if (!replaces) sums.finish(frame, some);
-  if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, field, contributions);
+  if constexpr (S::node_block != NodeBlockShape{}) faces(s).fold(what, contributions);
+  if constexpr (maps_force(what)) add_weight<what>(s, field, weight.acceleration, contributions);
 }
 
 /// Sums a tile's pressures in its sites.
@@ -100,18 +121,19 @@ template <ShapePolicy S, TransferPolicy T>
   }
 }
 
-/// Adds to the inner nodes what has been mapped beyond the grid's constrained faces.
+/// Adds the weight by loads to folded contributions, and to that and gravity, which the nodes' equation of
+/// motion adds, what walls reverse.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
-void PassesWith<S, T>::fold_at_walls(Slot s, int field, double* contributions) {
-  const BoundaryFaces walls = faces(s);
-  if (walls.none()) return;
-  walls.fold(what, contributions);
-  if constexpr (maps_force(what)) {
-    constexpr NodeArray masses = maps_mass(what) ? what.array : NodeArray::second;
-    walls.reverse_weights(forces_.gravity, masses, model_.grid->contributions(masses, s, field),
-                          contributions);
-  }
+void PassesWith<S, T>::add_weight(Slot s, int field, const Vec3<double>& acceleration,
+                                  double* contributions) {
+  constexpr NodeArray array = maps_mass(what) ? what.array : NodeArray::second;
+  constexpr bool folds = S::node_block != NodeBlockShape{};
+  const bool accelerates = acceleration != Vec3<double>{};
+  if (!accelerates && !folds) return;
+  const double* masses = model_.grid->contributions(array, s, field);
+  if (accelerates) add_weights(acceleration, shared_.nodes(), array, masses, contributions);
+  if constexpr (folds) faces(s).reverse_weights(forces_.gravity + acceleration, array, masses, contributions);
 }
 
 /// Those of a brick with few particles, inside the grid's faces and without loads.
@@ -121,7 +143,9 @@ void PassesWith<S, T>::find_reached(Slot s) {
     const BrickGrid& grid = *model_.grid;
     const Brick& brick = grid.brick(s);
     if (!has_few_particles(s)) return sparse_.set_all(s);
-    const auto loaded = [&](const ParticleTile& tile) { return loads_.act(grid, s, tile.body); };
+    const auto loaded = [&](const ParticleTile& tile) {
+      return loads_.act(grid, s, tile.body) || loads_.acceleration(tile.body) != Vec3<double>{};
+    };
     if (!faces(s).none() || std::ranges::any_of(brick.tiles, loaded)) return sparse_.set_all(s);
     NodeMask nodes;
     const BrickFrame frame = this->frame(s);
@@ -224,17 +248,13 @@ template <ShapePolicy S, TransferPolicy T>
     at.work += work_of_loads<S>(loads_, model_, s, body, place, block, used, at.nodes.data(), velocity_dt);
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
   const BodyMotion& motion = loads_.motion(body);
-  if (motion.kind == BodyMotion::Kind::rigid) {
-    std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
-    take_velocities(frame, place, layout, block, at);
-    integrate_rigid_velocities(layout, forces_.gravity + loads_.acceleration(body), velocity_dt, block, used,
-                               at);
-    return;
-  }
-  const bool falls = forces_.gravity != Vec3<double>{};
-  if (falls) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
+  const Vec3<double> weight = forces_.gravity + loads_.acceleration(body);
+  const bool falls = weight != Vec3<double>{}, is_rigid = motion.kind == BodyMotion::Kind::rigid;
+  if (falls || is_rigid) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   take_velocities(frame, place, layout, block, at);
-  if (falls) correct_work_of_gravity(forces_.gravity, dt, velocity_dt, layout, block, used, at);
+  if (is_rigid) integrate_rigid_velocities(layout, weight, velocity_dt, block, used, at);
+  if (falls) correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
+  if (is_rigid) return;
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion, block, used, at);
   else if (velocity_limit_ < std::numeric_limits<double>::infinity())
@@ -242,7 +262,7 @@ template <ShapePolicy S, TransferPolicy T>
 }
 
 /// x += dt v, with the grid's velocity or, for a body that keeps its own velocities, with those; and the work
-/// of gravity and damping.
+/// of weight and damping.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at) {
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
@@ -252,14 +272,15 @@ void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* bl
     return;
   }
   if (const int number = rigid(body); number >= 0) return rigid_->move(number, layout, block);
-  const bool does_work = forces_.damping != 0 || forces_.gravity != Vec3<double>{};
+  const Vec3<double> weight = forces_.gravity + loads_.acceleration(body);
+  const bool does_work = forces_.damping != 0 || weight != Vec3<double>{};
   if (does_work) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.old);
   if (loads_.motion(body).kind != BodyMotion::Kind::free)
     move_at_own_velocity(layout, dt, block);
   else
     motion.move(layout, dt, block);
   if constexpr (settles) motion.carry(layout, dt, block);
-  if (does_work) add_work_of_motion(forces_, velocity_dt / dt, layout, block, used, at);
+  if (does_work) add_work_of_motion(weight, velocity_dt / dt * forces_.damping, layout, block, used, at);
 }
 
 /// The particles' domains: by the velocity gradient of the batch's block `b`, or as they have been carried.

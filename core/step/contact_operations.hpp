@@ -11,10 +11,7 @@ namespace mpm::core {
 struct NearNodes : AxisBox {
   /// A node of a brick's block; its place.
   Vec3<double> add(const BrickGrid& grid, Slot s, int node, int nodes_per_axis) {
-    const NodeBlockShape shape = grid.shape();
-    const int side = shape.side(), low = shape.lowest();
-    const Vec3<double> x = grid.geometry().node_place(grid.brick(s).coord, node % side + low,
-                                                      node / side % side + low, node / (side * side) + low);
+    const Vec3<double> x = grid.geometry().node_place(grid.brick(s).coord, grid.shape().node(node));
     AxisBox::add(AxisBox{x, x}.wider(nodes_per_axis - 1, grid.geometry().cell));
     return x;
   }

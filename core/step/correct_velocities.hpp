@@ -52,7 +52,7 @@ void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] 
                    });
     cell.flush(frame, sums.records);
     sums.finish(frame);
-    if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, 0, contributions);
+    if constexpr (S::node_block != NodeBlockShape{}) faces(s).fold(what, contributions);
   }
 }
 

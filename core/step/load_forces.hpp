@@ -24,10 +24,12 @@ inline double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double
   return w[0] * w[1] * w[2];
 }
 
-/// f(node, force) for every particle and every node of its support, in that order.
+/// f(node, force) for every particle on which loads act and every node of its support, in that order.
+/// `acceleration`: Loads::acceleration() where the particles map it, else zero.
 template <ShapePolicy S, class F>
 void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int body,
-                         const typename S::Place& place, const double* block, int used, F f) {
+                         const Vec3<double>& acceleration, const typename S::Place& place,
+                         const double* block, int used, F f) {
   const Loads::OfBody& mine = loads.of(body);
   const GridGeometry& g = model.grid->geometry();
   const Body& of_body = model.bodies[static_cast<std::size_t>(body)];
@@ -38,18 +40,21 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
     const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
     const double m = get(Column::mass), volume = get(Column::volume);
     const Vec3<double> x{get(Column::position_x), get(Column::position_y), get(Column::position_z)};
-    Vec3<double> per_shape{};
+    Vec3<double> per_shape = m * acceleration;
     Vec3<double> per_gradient[3]{};  // columns
+    bool acts = acceleration != Vec3<double>{};
     if (mine.loaded) {
-      per_shape = m * mine.acceleration;
+      acts = acts || !mine.force.of_place.empty();
       if (!mine.force.of_place.empty())
         per_shape = per_shape + m * loads.varying_acceleration(mine, of_body, block + l);
       for (const Loads::Surface& s : mine.surfaces) {
         Vec3<double> slope{};
         const double weight = box_weight(*s.input, s.ramp, x, slope);
+        if (weight == 0) continue;
+        acts = true;
         const Vec3<double>* column = s.column;
         Loads::Stress varying;
-        if (weight > 0 && !s.terms.of_place.empty()) {
+        if (!s.terms.of_place.empty()) {
           varying = loads.varying_stress(s, of_body, block + l);
           column = varying.column;
           per_shape = per_shape + (volume * weight) * varying.divergence;
@@ -61,6 +66,7 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
       }
     }
     if (!dashpots && mine.surfaces.empty()) {
+      if (!acts) continue;
       // Without the gradients; the zero rounds the product as the sum with them does, to the same bits.
       for_each_weight<S>(place, l, g.inverse_cell, [&](int node, double shape_value) {
         f(node, shape_value * per_shape + Vec3<double>{});
@@ -79,12 +85,14 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
         if (g.boundary[2 * a + 1] == Boundary::nonreflecting && last < S::nodes_per_axis)
           side[a] = static_cast<int>(last);
         if (side[a] < 0) continue;
+        acts = true;
         for (int i = 0; i < 3; ++i) {
           const double rate = (i == axis ? c_p : c_s) * g.inverse_cell[axis];
           dashpot[a][i] = -2 * m * rate * get(next(Column::velocity_x, i));
         }
       }
     }
+    if (!acts) continue;
     S::for_each_node(place, l, g.inverse_cell,
                      [&](int node, const NodeOffset& offset, double shape_value, const Vec3<double>& slope) {
                        Vec3<double> force = shape_value * per_shape + slope.x * per_gradient[0] +
@@ -102,23 +110,23 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
 /// Adds the forces on a block's first `used` particles to the forces of the brick's contributions.
 template <ShapePolicy S>
 [[gnu::noinline]] void add_load_forces(const Loads& loads, const Model& model, Slot slot, int body,
-                                       const typename S::Place& place, const double* block, int used,
-                                       double* contributions) {
+                                       const Vec3<double>& acceleration, const typename S::Place& place,
+                                       const double* block, int used, double* contributions) {
   detail::for_each_load_force<S>(
-      loads, model, slot, body, place, block, used, [&](int node, const Vec3<double>& force) {
+      loads, model, slot, body, acceleration, place, block, used, [&](int node, const Vec3<double>& force) {
         for (int a = 0; a < 3; ++a)
           contributions[node_doubles * node + node_field::force.first + a] += force[a];
       });
 }
 
-/// Work of these forces over the step, whose velocities advance by `dt`. It uses the nodes' velocity at
-/// midstep, since the nodes gain the kinetic energy f (v + v')/2 dt.
+/// Work of these forces, without the acceleration, over the step, whose velocities advance by `dt`. It uses
+/// the nodes' velocity at midstep, since the nodes gain the kinetic energy f (v + v')/2 dt.
 template <ShapePolicy S>
 [[gnu::noinline]] double work_of_loads(const Loads& loads, const Model& model, Slot slot, int body,
                                        const typename S::Place& place, const double* block, int used,
                                        const double* nodes, double dt) {
   double power = 0;
-  detail::for_each_load_force<S>(loads, model, slot, body, place, block, used,
+  detail::for_each_load_force<S>(loads, model, slot, body, {}, place, block, used,
                                  [&](int node, const Vec3<double>& force) {
                                    const MotionRecord<const double> at{nodes + node_doubles * node};
                                    for (int a = 0; a < 3; ++a)

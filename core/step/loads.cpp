@@ -213,6 +213,22 @@ Loads::Stress Loads::varying_stress(const Surface& surface, const Body& body, co
   return t;
 }
 
+bool Loads::reach(const OfBody& of, const BrickGrid& grid, Slot slot) {
+  if (!of.loaded) return false;
+  if (!of.force.of_place.empty()) return true;
+  // A brick's particles are less than a cell beyond its cells.
+  constexpr int low = -1, high = brick_cells + 1;
+  const BrickCoord brick = grid.brick(slot).coord;
+  const Vec3<double> lower = grid.geometry().node_place(brick, {low, low, low}),
+                     upper = grid.geometry().node_place(brick, {high, high, high});
+  return std::ranges::any_of(of.surfaces, [&](const Surface& s) {
+    const double beyond = 0.5 * s.ramp;
+    for (int a = 0; a < 3; ++a)
+      if (upper[a] < s.input->lower[a] - beyond || lower[a] > s.input->upper[a] + beyond) return false;
+    return true;
+  });
+}
+
 bool Loads::touches_nonreflecting(const BrickGrid& grid, Slot slot) const {
   const GridGeometry& g = grid.geometry();
   const BrickCoord b = grid.brick(slot).coord;

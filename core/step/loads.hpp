@@ -1,7 +1,11 @@
 // External actions on particles other than gravity: a body's force per mass over place and time, a pressure
-// or traction on its surface, and the absorption at non-reflecting faces of the grid. Their nodal forces are
-// added after the particles' internal forces, particle by particle; the same forces over the nodal
-// displacements give the work. Bodies and bricks without loads cost nothing.
+// or traction on its surface, and the absorption at non-reflecting faces of the grid. Bodies without loads
+// and bricks beyond the boxes of surface loads cost nothing.
+//
+// The part of a body's force per mass that is the same for all its particles acts as gravity does: it
+// multiplies the masses of the nodes, but in bricks where several bodies share a velocity field, and works
+// over the particles' displacements. The nodal forces of all other loads are added after the particles'
+// internal forces, particle by particle; the same forces over the nodal displacements give the work.
 //
 // Surface loads need no surface representation. By Gauss's theorem a traction T n, T constant, weighted with
 // phi(x), is a volume integral, with particles as quadrature points:
@@ -72,7 +76,7 @@ class Loads {
   void begin_step(double time, double dt, double part = 0.5);
 
   bool any() const { return !bodies_.empty(); }
-  /// Per mass, in this step: the part that is the same for all its particles.
+  /// Force per mass on a body in this step: the part that is the same for all its particles.
   Vec3<double> acceleration(int body) const {
     return any() ? bodies_[static_cast<std::size_t>(body)].acceleration : Vec3<double>{};
   }
@@ -81,9 +85,9 @@ class Loads {
   /// How the body's velocities evolve in this step.
   const BodyMotion& motion(int body) const { return motions_[static_cast<std::size_t>(body)]; }
   bool nonreflecting() const { return nonreflecting_; }
-  /// Whether add_load_forces has any effect on this body in this brick.
+  /// Whether loads other than acceleration() act on this body in this brick.
   bool act(const BrickGrid& grid, Slot slot, int body) const {
-    return any() && (bodies_[static_cast<std::size_t>(body)].loaded ||
+    return any() && (reach(bodies_[static_cast<std::size_t>(body)], grid, slot) ||
                      (nonreflecting_ && touches_nonreflecting(grid, slot)));
   }
 
@@ -119,6 +123,8 @@ class Loads {
   bool touches_nonreflecting(const BrickGrid& grid, Slot slot) const;
 
  private:
+  /// Whether a body's loads act on particles in this brick.
+  static bool reach(const OfBody& of, const BrickGrid& grid, Slot slot);
   void add_functions(const Model& model, const std::vector<const BodyInput*>& inputs);
   LoadFunctions& functions();
   void set_stress(Surface& surface, const Body& body);

@@ -25,7 +25,11 @@ ColumnSet transfer_columns(const Scene& scene) {
 }
 
 bool affine_transfers_go_with(ShapeFunction shape) {
-  return with_shape(shape, []<class S>(std::type_identity<S>) { return affine_with<S>; });
+  return with_known_shape(shape, []<class S>(std::type_identity<S>) { return affine_with<S>; });
+}
+
+bool consistent_mass_goes_with(ShapeFunction shape) {
+  return with_known_shape(shape, []<class S>(std::type_identity<S>) { return consistent_mass_with<S>; });
 }
 
 Site site_of(const Scene& scene) {

@@ -65,6 +65,15 @@ bool is_mass(NodeFields what, int c) {
 
 }  // namespace
 
+void add_weights(const Vec3<double>& acceleration, int nodes, NodeArray of, const double* masses,
+                 double* records) {
+  const Half a(Half::vector{acceleration.x, acceleration.y, acceleration.z, 0});
+  for (int n = 0; n < nodes; ++n) {
+    double* force = MappedRecord<double>{records + node_doubles * n}.force();
+    store(force, load<Half>(force) + Half(masses[record_doubles(of) * n + node_field::mass.first]) * a);
+  }
+}
+
 void BoundaryFaces::fold(NodeFields what, double* contributions) const {
   for (int i = 0; i < count_; ++i) {
     if (record_doubles(what.array) == node_doubles)

@@ -18,6 +18,10 @@ struct NodeForces {
   double strain_mass_floor = 0;
 };
 
+/// Adds to the forces of records of the first array the masses in records of array `of` times `acceleration`.
+void add_weights(const Vec3<double>& acceleration, int nodes, NodeArray of, const double* masses,
+                 double* records);
+
 /// A brick's faces that lie on a constrained face of the grid, found once per pass.
 ///
 /// Shape functions wider than a cell also reach nodes outside the grid. At a wall these are no unknowns: each

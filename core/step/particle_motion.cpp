@@ -68,29 +68,27 @@ void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block) 
   for (int i = 0; i < 3 * block_lanes; ++i) x[i] += dt * v[i];
 }
 
-void correct_work_of_gravity(const Vec3<double>& gravity, double dt, double velocity_dt,
-                             const ColumnLayout& layout, const double* block, int used, ThreadScratch& at) {
+void correct_work_of_weight(const Vec3<double>& weight, double dt, double velocity_dt,
+                            const ColumnLayout& layout, const double* block, int used, ThreadScratch& at) {
   const double* m = block + layout.offset(Column::mass);
   const double* v = block + layout.offset(Column::velocity_x);
   for (int i = 0; i < used; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double now = v[block_lanes * a + i], old = at.old[block_lanes * a + i];
-      at.work += m[i] * gravity[a] * (0.5 * velocity_dt * (old + now) - dt * now);
+      at.work += m[i] * weight[a] * (0.5 * velocity_dt * (old + now) - dt * now);
     }
   }
 }
 
-void add_work_of_motion(const NodeForces& forces, double share, const ColumnLayout& layout,
+void add_work_of_motion(const Vec3<double>& weight, double damping, const ColumnLayout& layout,
                         const double* block, int used, ThreadScratch& at) {
-  const Vec3<double> g = forces.gravity;
-  const double damping = share * forces.damping;
   const double* m = block + layout.offset(Column::mass);
   const double* x = block + layout.offset(Column::position_x);
   const double* v = block + layout.offset(Column::velocity_x);
   for (int i = 0; i < used; ++i) {
     for (int a = 0; a < 3; ++a) {
       const int at_a = block_lanes * a + i;
-      at.work += m[i] * (g[a] - damping * v[at_a]) * (x[at_a] - at.old[at_a]);
+      at.work += m[i] * (weight[a] - damping * v[at_a]) * (x[at_a] - at.old[at_a]);
     }
   }
 }

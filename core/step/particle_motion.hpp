@@ -38,15 +38,14 @@ void integrate_rigid_velocities(const ColumnLayout& layout, const Vec3<double>& 
 /// x += dt v with the particles' own velocities.
 void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block);
 /// A particle moves with its new velocity, but a force on it works with the mean of the old and the new one,
-/// over the time between these: replaces the work of gravity over the displacement, m g . v dt, by m g .
-/// (v_old + v) velocity_dt/2, v_old in at.old. Over the run this adds up to no more than one step's fall, but
-/// at the start of a fall that is much.
-void correct_work_of_gravity(const Vec3<double>& gravity, double dt, double velocity_dt,
-                             const ColumnLayout& layout, const double* block, int used, ThreadScratch& at);
+/// over the time between these: replaces the work of its weight (`weight` is per mass) over the displacement,
+/// m g . v dt, by m g . (v_old + v) velocity_dt/2, v_old in at.old. Over the run this adds up to no more than
+/// one step's fall, but at the start of a fall that is much.
+void correct_work_of_weight(const Vec3<double>& weight, double dt, double velocity_dt,
+                            const ColumnLayout& layout, const double* block, int used, ThreadScratch& at);
 
-/// Work of gravity and damping over a block's displacement from the positions in at.old; damping acts for
-/// `share` of the displacement's time.
-void add_work_of_motion(const NodeForces& forces, double share, const ColumnLayout& layout,
+/// Work of weight and damping (1/time) over a block's displacement from the positions in at.old.
+void add_work_of_motion(const Vec3<double>& weight, double damping, const ColumnLayout& layout,
                         const double* block, int used, ThreadScratch& at);
 
 /// USF takes the velocity gradient L at the particles' new positions, x = x_old + dt v(x_old), for the

@@ -84,8 +84,9 @@ std::unique_ptr<Passes> make_passes(Model& model, NodeHalo& halo, RigidBodies* r
 /// The columns that the scene's shape functions and transfer add to every particle.
 ColumnSet shape_columns(const Scene& scene);
 ColumnSet transfer_columns(const Scene& scene);
-/// Whether affine transfers go with these shape functions.
+/// Whether affine transfers, or the consistent mass matrix, go with these shape functions.
 bool affine_transfers_go_with(ShapeFunction shape);
+bool consistent_mass_goes_with(ShapeFunction shape);
 /// How bricks take particles for the scene's shape functions, and the nodes that a brick keeps.
 Site site_of(const Scene& scene);
 NodeBlockShape node_block_of(const Scene& scene);

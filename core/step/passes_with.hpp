@@ -193,13 +193,20 @@ class PassesWith final : public Passes {
   }
   template <NodeFields what, class F>
   void map_brick(Slot s, std::int32_t component, Scratch& at, F before);
+  /// Of a velocity field in a brick: the acceleration by loads that its bodies have in common, or that their
+  /// particles map it.
+  struct Weight {
+    Vec3<double> acceleration{};
+    bool by_particle = false;
+  };
   template <NodeFields what, class Scatter, class F>
-  void map_tile(Slot s, std::size_t c, const BrickFrame& frame, Scratch& at, double* contributions,
-                SpreadPrefetch& room, Scatter& running, double* records, F before);
+  void map_tile(Slot s, std::size_t c, const BrickFrame& frame, Scratch& at, const Weight& weight,
+                double* contributions, SpreadPrefetch& room, Scatter& running, double* records, F before);
   void map_surface(Slot s, std::int32_t component);
   void map_reach(Slot s, std::int32_t component);
+  Weight weight_of(Slot s, std::int32_t component) const;
   template <NodeFields what>
-  void fold_at_walls(Slot s, int field, double* contributions);
+  void add_weight(Slot s, int field, const Vec3<double>& acceleration, double* contributions);
   template <NodeArray of>
   void sum_fields(Slot s, Scratch& at);
   void sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at);

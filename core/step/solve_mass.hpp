@@ -100,7 +100,7 @@ void PassesWith<S, T>::map_product([[maybe_unused]] Slot s, [[maybe_unused]] Scr
       cell.flush(frame, sums.records);
     }
     sums.finish(frame);
-    if constexpr (S::node_block != NodeBlockShape{}) fold_at_walls<what>(s, 0, contributions);
+    if constexpr (S::node_block != NodeBlockShape{}) faces(s).fold(what, contributions);
   } else if constexpr (solves) {
     map_increments(s, direction(s), at);
   }

@@ -19,6 +19,11 @@ inline constexpr bool affine_with = requires {
   &S::velocity_and_moments;
 };
 
+/// Whether the consistent mass matrix goes with these shape functions: with it, domains whose corners move
+/// apart from the particles tangle at the surface of a fluid.
+template <class S>
+inline constexpr bool consistent_mass_with = !std::is_same_v<S, Cpdi> && !std::is_same_v<S, Cpdi2>;
+
 /// f(std::type_identity<T>()) with the policy of the scene's transfer for the shape functions S.
 template <class S, class F>
 auto with_transfer(const SolutionInput& solution, F f) {
@@ -27,8 +32,9 @@ auto with_transfer(const SolutionInput& solution, F f) {
     throw std::logic_error("an affine transfer with shape functions that it does not go with");
   };
   const auto correction = [&]<class T>(std::type_identity<T> of) -> decltype(f(std::type_identity<Flip>())) {
-    if constexpr (built_corrections) return f(of);
-    throw std::logic_error("a transfer that this build does not have");
+    constexpr bool goes = !std::is_same_v<T, Consistent> || consistent_mass_with<S>;
+    if constexpr (built_corrections && goes) return f(of);
+    throw std::logic_error("a transfer that this build, or the shape functions, do not have");
   };
   switch (solution.transfer) {
     case Transfer::flip:

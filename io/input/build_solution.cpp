@@ -152,8 +152,7 @@ void check_mass(const Node& node, const core::Scene& scene, const BuildContext& 
                        node.word("transfer")));
   else if (solution.flip_fraction != 1)
     refuse("is available only with the whole of FLIP: expected lumped, or flip_fraction 1");
-  const core::ShapeFunction shape = scene.grid.shape;
-  if (shape == core::ShapeFunction::cpdi || shape == core::ShapeFunction::cpdi2)
+  if (!core::consistent_mass_goes_with(scene.grid.shape))
     refuse(
         "is not available with CPDI and CPDI2, whose domains tangle at the surface of a fluid: expected "
         "lumped, or another shape function");

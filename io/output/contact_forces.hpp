@@ -3,13 +3,12 @@
 // force of the last three columns (manual 3.9); the other pairs come before them.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/communication/reductions.hpp"
 #include "core/model.hpp"
+#include "io/output/interval_means.hpp"
 
 namespace mpm::io {
 
@@ -24,16 +23,13 @@ class ContactForces {
   std::vector<double> next(const core::Model& model, core::Reductions& ranks);
 
   /// State for restart files.
-  std::size_t memory_length() const { return columns_.empty() ? 0 : 1 + impulses_.size(); }
-  std::vector<std::uint64_t> memory() const;
-  /// `memory` has memory_length() entries.
-  void recall(std::span<const std::uint64_t> memory);
+  IntervalMeans& means() { return means_; }
+  const IntervalMeans& means() const { return means_; }
 
  private:
   std::vector<std::string> columns_;
   std::vector<std::size_t> order_;  ///< of the columns in the record
-  double time_ = 0;                 ///< of the last row
-  std::vector<double> impulses_;    ///< until then, in the order of the record
+  IntervalMeans means_;             ///< of the impulses, in the order of the columns
 };
 
 }  // namespace mpm::io

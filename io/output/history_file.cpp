@@ -109,8 +109,8 @@ HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
 bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
   std::size_t length = 0;
   for (const Target& t : targets_) length += t.particle ? 2 + t.values.size() : 0;
-  const std::size_t of_reactions = reactions_.memory_length();
-  if (tracked.size() != length + of_reactions + forces_.memory_length()) return false;
+  IntervalMeans &of_reactions = reactions_.means(), &of_forces = forces_.means();
+  if (tracked.size() != length + of_reactions.memory_length() + of_forces.memory_length()) return false;
   auto next = tracked.begin();
   for (Target& t : targets_) {
     if (!t.particle) continue;
@@ -118,8 +118,8 @@ bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
     t.present = *next++ != 0;
     for (double& value : t.values) value = std::bit_cast<double>(*next++);
   }
-  reactions_.recall(std::span(tracked).subspan(length, of_reactions));
-  forces_.recall(std::span(tracked).last(forces_.memory_length()));
+  of_reactions.recall(std::span(tracked).subspan(length, of_reactions.memory_length()));
+  of_forces.recall(std::span(tracked).last(of_forces.memory_length()));
   return true;
 }
 
@@ -310,9 +310,10 @@ std::vector<std::uint64_t> HistoryFile::tracked() const {
     memory.push_back(t.present ? 1 : 0);
     for (const double value : t.values) memory.push_back(std::bit_cast<std::uint64_t>(value));
   }
-  const std::vector<std::uint64_t> of_reactions = reactions_.memory(), of_forces = forces_.memory();
-  memory.insert(memory.end(), of_reactions.begin(), of_reactions.end());
-  memory.insert(memory.end(), of_forces.begin(), of_forces.end());
+  for (const IntervalMeans* means : {&reactions_.means(), &forces_.means()}) {
+    const std::vector<std::uint64_t> of_means = means->memory();
+    memory.insert(memory.end(), of_means.begin(), of_means.end());
+  }
   return memory;
 }
 

@@ -36,7 +36,7 @@ class HistoryFile {
               core::Reductions& ranks);
 
   /// With histories, every step has a row; otherwise the total energies are written on request.
-  bool each_step() const { return !targets_.empty() || reactions_.memory_length() > 0; }
+  bool each_step() const { return !targets_.empty() || reactions_.means().memory_length() > 0; }
   /// Adds the row of the present state to the buffer. Throws core::NumericalFailure if an energy is not
   /// finite. Collective.
   void add(const core::Model& model, core::Reductions& ranks);

@@ -1,7 +1,6 @@
 #include "io/output/reactions.hpp"
 
 #include <algorithm>
-#include <bit>
 
 #include <fmt/format.h>
 
@@ -9,18 +8,10 @@
 
 namespace mpm::io {
 
-namespace {
-
 using core::ReactionSums;
 
-core::Vec3<double> values_of(const ReactionSums& of, ReactionSums::Sum first) {
-  return {of.sums[first].value(), of.sums[first + 1].value(), of.sums[first + 2].value()};
-}
-
-}  // namespace
-
 Reactions::Reactions(std::vector<ReactionColumns> columns)
-    : columns_(std::move(columns)), last_(1 + 6 * columns_.size()), earlier_(last_) {}
+    : columns_(std::move(columns)), means_(6 * columns_.size()) {}
 
 std::vector<std::string> Reactions::names(const core::Model& model) const {
   std::vector<std::string> names;
@@ -51,43 +42,29 @@ std::vector<double> Reactions::next(const core::Model& model, core::Reductions& 
     sums.insert(sums.end(), mine.sums.begin(), mine.sums.end());
   }
   ranks.sum(std::span(sums));
-  if (model.clock.time > last_[0]) {
-    earlier_ = last_;
-    last_[0] = model.clock.time;
-  }
-  const double interval = last_[0] - earlier_[0];
+  const auto value = [&](std::size_t i, std::size_t sum) {
+    return sums[ReactionSums::count * i + sum].value();
+  };
+  const auto vector = [](auto component) {
+    return core::Vec3<double>{component(0), component(1), component(2)};
+  };
+  std::vector<double> impulses;
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    for (std::size_t k = 0; k < 6; ++k) impulses.push_back(value(i, ReactionSums::impulse + k));
+  const std::vector<double> means = means_.next(model.clock.time, impulses);
   std::vector<double> row;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    ReactionSums all;
-    std::copy_n(sums.begin() + static_cast<std::ptrdiff_t>(ReactionSums::count * i), ReactionSums::count,
-                all.sums.begin());
-    core::Vec3<double> mean[2];
-    for (std::size_t k = 0; k < 6; ++k) {
-      const std::size_t at = 1 + 6 * i + k;
-      last_[at] = all.sums[k].value();
-      if (interval > 0) mean[k / 3][static_cast<int>(k % 3)] = (last_[at] - earlier_[at]) / interval;
+    const auto force = vector([&](std::size_t a) { return means[6 * i + a]; });
+    auto moment = vector([&](std::size_t a) { return means[6 * i + 3 + a]; });
+    const double mass = value(i, ReactionSums::mass);
+    if (mass > 0) {
+      const auto centre = vector([&](std::size_t a) { return value(i, ReactionSums::place + a) / mass; });
+      moment = moment - cross(centre, force);
     }
-    const double mass = all.sums[ReactionSums::mass].value();
-    if (mass > 0) mean[1] = mean[1] - cross((1 / mass) * values_of(all, ReactionSums::place), mean[0]);
-    for (int a = 0; a < 3 && columns_[i].force; ++a) row.push_back(mean[0][a]);
-    for (int a = 0; a < 3 && columns_[i].moment; ++a) row.push_back(mean[1][a]);
+    for (int a = 0; a < 3 && columns_[i].force; ++a) row.push_back(force[a]);
+    for (int a = 0; a < 3 && columns_[i].moment; ++a) row.push_back(moment[a]);
   }
   return row;
-}
-
-std::vector<std::uint64_t> Reactions::memory() const {
-  if (columns_.empty()) return {};
-  std::vector<std::uint64_t> memory;
-  for (const std::vector<double>* row : {&last_, &earlier_})
-    for (const double value : *row) memory.push_back(std::bit_cast<std::uint64_t>(value));
-  return memory;
-}
-
-void Reactions::recall(std::span<const std::uint64_t> memory) {
-  if (memory.empty() || memory.size() != memory_length()) return;
-  auto next = memory.begin();
-  for (std::vector<double>* row : {&last_, &earlier_})
-    for (double& value : *row) value = std::bit_cast<double>(*next++);
 }
 
 }  // namespace mpm::io

@@ -5,13 +5,12 @@
 // tests/system/physics_reactions.py.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/communication/reductions.hpp"
 #include "core/model.hpp"
+#include "io/output/interval_means.hpp"
 
 namespace mpm::io {
 
@@ -30,16 +29,13 @@ class Reactions {
   /// The values of the present row; of the same state again they are the same. Collective.
   std::vector<double> next(const core::Model& model, core::Reductions& ranks);
 
-  /// State for restart files: the last row and the one before.
-  std::size_t memory_length() const { return columns_.empty() ? 0 : last_.size() + earlier_.size(); }
-  std::vector<std::uint64_t> memory() const;
-  /// Without memory_length() entries nothing is recalled, and the next means are since time zero.
-  void recall(std::span<const std::uint64_t> memory);
+  /// State for restart files.
+  IntervalMeans& means() { return means_; }
+  const IntervalMeans& means() const { return means_; }
 
  private:
   std::vector<ReactionColumns> columns_;
-  /// Of a row: its time, then impulse and moment since time zero by reaction.
-  std::vector<double> last_, earlier_;
+  IntervalMeans means_;  ///< of impulse and moment, by reaction
 };
 
 }  // namespace mpm::io

@@ -17,15 +17,13 @@ constexpr int width = 24;
 /// The quantities that .sta lists for a body or a material.
 constexpr const char* group_columns[] = {"px", "py", "pz", "kinetic", "internal", "vx", "vy", "vz"};
 
-/// Rigid bodies in contact have columns of the last step.
-std::vector<ReactionColumns> drives_of(const core::Model& model) {
+std::vector<ReactionColumns> all_reactions(const core::Model& model) {
   std::vector<ReactionColumns> columns;
-  for (std::size_t r = 0; r < model.reactions.size(); ++r)
-    if (!model.reactions[r].by_contact) columns.push_back({r});
+  for (std::size_t r = 0; r < model.reactions.size(); ++r) columns.push_back({r});
   return columns;
 }
 
-std::string head_of(const core::Model& model, const Reactions& drives) {
+std::string head_of(const core::Model& model, const Reactions& reactions) {
   std::string head = fmt::format("#{:>{}}", "step", width - 1);
   const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
   for (const char* name :
@@ -40,13 +38,8 @@ std::string head_of(const core::Model& model, const Reactions& drives) {
   if (model.scene->contact.enable) {
     add("contact_dissipation");
     add("friction_heat");
-    for (const core::Body& b : model.bodies) {
-      if (!b.rigid) continue;
-      for (const char* column : {"fx", "fy", "fz", "mx", "my", "mz"})
-        add(fmt::format("{}[contact:{}]", column, safe_name(b.name)));
-    }
   }
-  for (const std::string& column : drives.names(model)) add(column);
+  for (const std::string& column : reactions.names(model)) add(column);
   if (model.scene->output.statistics.memory) {
     add("memory_max");
     add("memory_sum");
@@ -77,9 +70,9 @@ double total_cells(const core::Model& model) {
 
 StatusFile::StatusFile(const std::string& path, const core::Model& model,
                        const std::optional<TableContinuation>& from, core::Reductions& ranks)
-    : drives_(drives_of(model)),
-      file_(path, to_text(provenance_of(*model.scene), "# ") + drives_.legend(), head_of(model, drives_),
-            from, ranks),
+    : reactions_(all_reactions(model)),
+      file_(path, to_text(provenance_of(*model.scene), "# ") + reactions_.legend(),
+            head_of(model, reactions_), from, ranks),
       memory_(model.scene->output.statistics.memory),
       occupancy_(model.scene->output.statistics.cell_occupancy) {}
 
@@ -104,14 +97,8 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
   if (model.scene->contact.enable) {
     add(totals.dissipated_by_contact);
     add(totals.friction_heat);
-    for (const core::Body& b : model.bodies) {
-      if (!b.rigid) continue;
-      const core::RigidState s = b.rigid_state.value_or(core::RigidState{});
-      for (int a = 0; a < 3; ++a) add(s.force[a]);
-      for (int a = 0; a < 3; ++a) add(s.moment[a]);
-    }
   }
-  for (const double value : drives_.next(model, ranks)) add(value);
+  for (const double value : reactions_.next(model, ranks)) add(value);
   if (memory_) {
     const MemoryUse use = peak_memory(ranks);
     add(static_cast<double>(use.largest));
@@ -125,17 +112,16 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
 
 std::string StatusFile::mark() const {
   std::string text = file_.mark().text();
-  for (const std::uint64_t word : drives_.memory()) text += fmt::format(" {}", word);
+  for (const std::uint64_t word : reactions_.means().memory()) text += fmt::format(" {}", word);
   return text;
 }
 
 void StatusFile::recall(const std::string& mark) {
   std::istringstream words(mark);
-  std::string of_table;
-  for (int i = 0; i < 3; ++i) words >> of_table;
+  if (TableMark of_table; !(words >> of_table)) return;
   std::vector<std::uint64_t> memory;
   for (std::uint64_t word = 0; words >> word;) memory.push_back(word);
-  drives_.recall(memory);
+  reactions_.means().recall(memory);
 }
 
 }  // namespace mpm::io

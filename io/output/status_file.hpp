@@ -25,13 +25,14 @@ class StatusFile {
   std::int64_t rows_added() const { return rows_; }
   /// Syncs the rows to disk. Throws FileError. Collective.
   void sync(core::Reductions& ranks) { file_.sync(ranks); }
-  /// For restart files: the table's mark, then the memory of the reactions' means.
+  /// For restart files: the table's mark, then the memory of the reactions' means. The constructor takes the
+  /// first, recall() the second.
   std::string mark() const;
   void recall(const std::string& mark);
   const std::string& notice() const { return file_.notice(); }
 
  private:
-  Reactions drives_;  ///< of prescribed motions
+  Reactions reactions_;
   TableFile file_;
   bool memory_;
   bool occupancy_;

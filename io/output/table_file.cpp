@@ -90,10 +90,14 @@ void TableMark::add(std::int64_t row_step, std::string_view row) {
 
 std::string TableMark::text() const { return fmt::format("{} {} {}", step, rows, checksum); }
 
+std::istream& operator>>(std::istream& in, TableMark& mark) {
+  return in >> mark.step >> mark.rows >> mark.checksum;
+}
+
 std::optional<TableMark> TableMark::from(const std::string& text) {
   TableMark mark;
   std::istringstream words(text);
-  return words >> mark.step >> mark.rows >> mark.checksum ? std::optional(mark) : std::nullopt;
+  return words >> mark ? std::optional(mark) : std::nullopt;
 }
 
 TableCut cut_table(const std::string& path, const std::string& head, const TableContinuation& from) {

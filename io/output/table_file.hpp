@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <istream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,8 @@ struct TableMark {
   std::string text() const;
   /// Nullopt if the text is not a mark.
   static std::optional<TableMark> from(const std::string& text);
+  /// Reads text().
+  friend std::istream& operator>>(std::istream& in, TableMark& mark);
   friend bool operator==(const TableMark&, const TableMark&) = default;
 };
 

@@ -303,7 +303,6 @@ class Refusals(unittest.TestCase):
         self.assertIn("study 'nothing' does not exist", self.refused("point", "riemann/nothing/linear/FLIP/MUSL/50/2/0.4"))
         self.assertIn("point 'riemann/sod/linear/FLIP/MUSL/51/2/0.4' does not exist; there is: riemann/sod/linear/FLIP/MUSL/50/2/0.4,",
                       self.refused("point", "riemann/sod/linear/FLIP/MUSL/51/2/0.4"))
-        self.assertIn("method 'linear APIC USL' does not exist; there is: ", self.refused("point", "riemann/sod/linear/APIC/USL/50/2/0.4"))
 
     def test_methods_that_a_case_leaves_out(self):
         said = self.refused("point", "standing_wave/cells/uGIMP/PIC/MUSL/4/2/0.4")
@@ -314,6 +313,14 @@ class Refusals(unittest.TestCase):
         for case in CASES.values():
             for point in case.points():
                 self.assertEqual(accuracy.find(point.key), (case, point))
+
+    def test_every_method(self):
+        """--every: all products of shapes, transfers and schemes, but those that the case leaves out."""
+        case, expected = CASES["sedov"], len(methods.shapes()) * len(methods.transfers()) * len(methods.schemes())
+        self.assertEqual(len({p.method for p in case.points(every=True)}), expected)
+        self.assertNotIn("PIC", {p.method.transfer for p in CASES["standing_wave"].points(every=True)})
+        self.assertEqual(accuracy.find("sedov/cells/DDMP/XPIC/USL/12/2/0.4")[1].method, methods.Method("DDMP", "XPIC", "USL"))
+        self.assertTrue(set(case.points()) <= set(case.points(every=True)))
 
 
 _mpm.main()

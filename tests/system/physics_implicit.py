@@ -555,4 +555,5 @@ class Refused(_mpm.Case):
                 self.assertEqual(_mpm.summary(self.folder / folder)["status"], "failed")
 
 
-_mpm.main()
+if __name__ == "__main__":
+    _mpm.main()

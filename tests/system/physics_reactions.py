@@ -7,6 +7,7 @@ import math
 import _cases
 import _mpm
 import numpy as np
+import physics_implicit
 import physics_rigid
 
 YOUNG, POISSON = 1000.0, 0.3
@@ -88,6 +89,46 @@ class Reactions(_mpm.Case):
                 every = impulse(history, drive(history, "ram"))
                 self.assertLess(np.abs(every - given.sum(axis=1)).max(), 1e-12 * np.abs(momentum).max())
                 self.assertGreater(len(history["time"]), 3 * len(status["time"]))
+
+    def test_implicit_equilibrium(self):
+        """The force of a rigid ram on a column is the stress in it times its area in every step, for every shape; the same on two
+        ranks and through a restart."""
+        for shape in physics_implicit.SHAPES:
+            with self.subTest(shape=shape):
+                text = physics_implicit.column(shape, output='<Console print_time="0.1"/><Restart time_interval="0.5"/>'
+                                               '<TimeHistory var="SigmaZ"><Point x="1" y="1" z="2"/></TimeHistory>')
+                _, status = self.go(text, shape)
+                inside = 4 * np.array(_mpm.table(self.folder / shape / "case_curv.dat")["SigmaZ[point1]"])[1:]
+                force = drive(status, "ram")[:, 1:]
+                off, across = np.abs(force[2] / inside - 1).max(), np.abs(force[:2]).max() / np.abs(force).max()
+                turning = np.abs(drive(status, "ram", "m")).max() / np.abs(force).max()
+                print(f"implicit steps, ram on a column, {shape}: force off by {off:.1e}, across {across:.1e}, moment {turning:.1e}")
+                self.assertEqual(len(inside), 10)
+                self.assertLess(off, 1e-3)
+                self.assertLess(max(across, turning), 1e-6)
+        forces = drive(status, "ram")
+        for name, how in (("ranks", {"ranks": 2}), ("restart", {})):
+            file = _mpm.restarts(self.folder / shape)[0] if name == "restart" else self.write(text)
+            self.run_in(name, [file], **how)
+            again = drive(_cases.status(self.folder / name), "ram")
+            np.testing.assert_allclose(again, forces[:, -again.shape[1]:], atol=1e-5 * np.abs(forces).max())
+
+    def test_implicit_momentum(self):
+        """What the drive gives is all that the momentum gains, to the solver's tolerance."""
+        bodies = [_mpm.block("ram", (2, 3, 3), (3, 3, 3), more=driven("3", "0.2*(x - 3)", "0.5*t")),
+                  _mpm.block("block", (5, 3.5, 3), (4, 3, 4))]
+        for rule in ('rule="newmark"', 'rule="backward_euler"'):
+            for shape in ("linear", "QuadraticBSpline"):
+                with self.subTest(rule=rule, shape=shape):
+                    grid = _mpm.grid((0, 0, 0), (20, 12, 12)).replace("<Grid>", f'<Grid shape="{shape}">')
+                    solution = physics_implicit.implicit(0.2, "dynamic", 0.01, rule)
+                    _, status = self.go(_mpm.scene(bodies, grid, solution, [physics_implicit.SOFT], '<Console print_time="0.02"/>'))
+                    momentum = np.array([status[f"p{axis}"] for axis in AXES])
+                    given, gained = drive(status, "ram")[:, 1:] * np.diff(status["time"]), np.diff(momentum)
+                    error = np.abs(given - gained).max() / np.abs(momentum).max()
+                    print(f"implicit steps, driven block hits a free one, {rule}, {shape}: momentum closed to {error:.1e}")
+                    self.assertGreater(np.abs(status["px[body:block]"][-1]), 1)
+                    self.assertLess(error, 1e-6)
 
     def test_moment(self):
         """A body that is driven to turn: the moment about its centre is its inertia times the angular acceleration. It hardly

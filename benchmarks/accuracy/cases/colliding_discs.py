@@ -18,7 +18,7 @@ the law `NeoHookean` and without artificial viscosity. They touch through the sh
 the first. *Rebound*: the relative velocity of the centres after and before, which converges to the share that is not left in
 vibrations."""
     errors = {"loss": Error("energy lost or gained, %", ".2f", 100, order=False), "rebound": Error("rebound", ".3f", order=False)}
-    studies = {"cells": Study("cells along the box of length 1, factor 0.5.", (10, 20, 40, 80), 0.5, quick=False)}
+    studies = {"cells": Study("cells along the box of length 1, factor 0.5.", (10, 20, 40, 80), 0.5)}
 
     def methods(self):
         return methods.short()

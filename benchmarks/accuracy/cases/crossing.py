@@ -38,7 +38,7 @@ and are 2, 10 and 30 % further apart at the end: there the boxes of uGIMP do not
 exact but for the files' single precision."""
     errors = {"noise": Error("noise", ".1e", order=False), "stress": Error("stress noise", ".1e", order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {f"force {name}": Study(f"16 blocks at random places, spacing 0.5 (1 + {s:g}), one step.", (1,), 0.5, quick=True,
+    studies = {f"force {name}": Study(f"16 blocks at random places, spacing 0.5 (1 + {s:g}), one step.", (1,), 0.5, quick=(1,),
                                       methods=methods.flip) for name, s in STRETCHES.items()}
     studies |= {f"carried {name}": Study(f"compressed, spacing 0.5 (1 + {s:g}), carried over five cells at an angle.", (1,), 0.5,
                                          methods=None if name == "10 %" else methods.flip) for name, s in STRETCHES.items()}

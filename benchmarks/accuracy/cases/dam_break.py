@@ -33,7 +33,7 @@ faster, and the error does not go to zero."""
               "last": Error("front at the end, over a (experiment 4.11)", ".2f", order=False),
               "scatter": Error("pressure noise at half time, % of rho g a", ".1f", 100, order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"cells": Study("cells along the column's width, factor 0.4.", (8, 16), 0.4, fine=(32,), fine_methods=tuple(methods.product(("linear", "SGMP", "QuadraticBSpline"))))}
+    studies = {"cells": Study("cells along the column's width, factor 0.4.", (4, 8, 12, 16), 0.4, fine=(32,), fine_methods=tuple(methods.product(("linear", "SGMP", "QuadraticBSpline"))))}
 
     def methods(self):
         return methods.short()

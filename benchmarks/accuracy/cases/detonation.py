@@ -22,7 +22,7 @@ cell), over the mean exact pressure."""
     errors = {"pressure": Error("L1 error of pressure, %", ".1f", 100), "velocity": Error("L1 error of velocity, %", ".1f", 100, order=False),
               "peak": Error("peak pressure, %", "+.1f", 100, order=False), "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {"two particles": Study("two particles along a cell, factor 0.4.", (50, 100, 200, 400), 0.4),
-               "four particles": Study("four particles along a cell, factor 0.4.", (50, 100, 200), 0.4, splits=(4,),
+               "four particles": Study("four particles along a cell, factor 0.4.", (25, 50, 100, 200), 0.4, splits=(4,),
                                        methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline",), ("APIC", "AFLIP"),
                                                                                           ("MUSL", "USF"))])}
     plotted = ("two particles",)

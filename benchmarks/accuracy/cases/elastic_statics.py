@@ -49,8 +49,8 @@ particles cuts the round edges into stairs, and the load on the surface is sprea
 expected. Error: root mean square of the stress over its largest value; *inside*: of the particles more than 0.25 from an
 edge."""
     errors = {"stress": Error("error of stress"), "inside": Error("inside", ".2e", order=False)}
-    studies = {"cylinder": Study("cells per unit of length, factor 0.4.", (4, 8, 16), 0.4),
-               "plate": Study("cells per unit of length, factor 0.4.", (4, 8), 0.4)}
+    studies = {"cylinder": Study("cells per unit of length, factor 0.4.", (4, 8, 12, 16), 0.4),
+               "plate": Study("cells per unit of length, factor 0.4.", (3, 4, 6, 8), 0.4)}
 
     def methods(self):
         return methods.short()

@@ -73,7 +73,8 @@ at first, and breathes for two periods. Reference: the radial equation of motion
 square over the particles and the pictures of the second half of the difference of radii, over the largest displacement."""
     errors = {"radius": Error("error of the radius"), "last": Error("at the end"),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {name: Study(f"{name}: cells per unit of length, factor 0.4.", (8, 16, 32), 0.4, quick=name == "large")
+    studies = {name: Study(f"{name}: cells per unit of length, factor 0.4.", (8, 16, 24, 32), 0.4,
+                           quick=(8, 16, 32) if name == "large" else ())
                for name in SPEEDS}
 
     def methods(self):

@@ -63,8 +63,8 @@ stiff. *Pressure noise*: standard deviation inside the cells, over the mean of t
               "noise": Error("pressure noise, %", ".0f", 100, order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {f"{body} {poisson:g} {averaging}":
-               Study(f"{body}, Poisson's ratio {poisson:g}, averaging {averaging}; cells along the length, factor 0.5.", (8, 16), 0.5,
-                     quick=body == "cook" and poisson == 0.49, methods=every_transfer if poisson == 0.4999 else None)
+               Study(f"{body}, Poisson's ratio {poisson:g}, averaging {averaging}; cells along the length, factor 0.5.", (4, 8, 12, 16), 0.5,
+                     quick=(8, 16) if body == "cook" and poisson == 0.49 else (), methods=every_transfer if poisson == 0.4999 else None)
                for body in SHAPES for poisson in (0.3, 0.49, 0.4999) for averaging in ("none", "cell")}
     plotted = ("cook 0.4999 none", "cook 0.4999 cell")
 

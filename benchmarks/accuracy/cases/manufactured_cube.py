@@ -51,12 +51,12 @@ methods in time."""
     errors = {"displacement": Error("error of displacement"), "stress": Error("error of stress"),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {
-        "cube, steps as cells": Study("time step proportional to the cells (factor 0.4), as a user would refine.", (4, 8, 16), 0.4,
+        "cube, steps as cells": Study("time step proportional to the cells (factor 0.4), as a user would refine.", (4, 8, 12, 16), 0.4,
                                       fine=(32,), fine_methods=tuple(methods.product(("cpGIMP", "QuadraticBSpline")))),
         "slab, fine steps": Study("time step proportional to the square of the cells (factor 3.2/cells), so that the error in time, of "
-                                  "first order, does not hide the order in space.", (4, 8, 16, 32), lambda n: 3.2 / n, quick=True,
+                                  "first order, does not hide the order in space.", (4, 8, 16, 32), lambda n: 3.2 / n, quick=(4, 8, 16),
                                   methods=lambda: [*methods.flip(), *methods.every_transfer(("QuadraticBSpline", "CubicBSpline"))]),
-        "slab, four particles": Study("the same with four particles along a cell.", (4, 8, 16), lambda n: 3.2 / n, splits=(4,),
+        "slab, four particles": Study("the same with four particles along a cell.", (4, 8, 12, 16), lambda n: 3.2 / n, splits=(4,),
                                       methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline",), ("APIC", "TPIC"))],
                                       fine=(32,), fine_methods=(*methods.product(("QuadraticBSpline", "CubicBSpline")),
                                                                 *methods.product(("QuadraticBSpline",), ("APIC", "TPIC")))),

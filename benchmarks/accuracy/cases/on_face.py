@@ -21,7 +21,7 @@ mean square of the stress error in the core, which no wave has reached, over the
 there: a particle on a face takes that of the cell that it counts to. Two particles per cell and axis, a quarter of a cell
 beside the faces, are the reference (*beside*)."""
     errors = {"stress": Error("error of stress", ".1e", order=False), "noise": Error("velocity noise", ".1e", order=False)}
-    studies = {name: Study(text, (1,), 0.4, splits=(1,), quick=name in ("corner", "beside")) for name, text in (
+    studies = {name: Study(text, (1,), 0.4, splits=(1,), quick=(1,) if name in ("corner", "beside") else ()) for name, text in (
         ("corner", "particles on the corners of cells."), ("edge", "on the middles of edges."),
         ("face", "on the middles of faces."), ("beside", "in the middles of cells."))}
     plotted = ("corner",)

@@ -43,10 +43,10 @@ largest velocity of a layer of particles exceeds that between the waves."""
               "velocity": Error("L1 error of velocity, %", ".2f", 100, order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {
-        "sod": Study(TUBES["sod"].about, (50, 100, 200, 400), 0.4, quick=True),
-        "ratio 10": Study(TUBES["ratio 10"].about, (100, 200, 400), 0.4),
-        "strong": Study(TUBES["strong"].about, (100, 200, 400), 0.4),
-        "particles": Study("Sod's tube with four particles along a cell.", (100, 200, 400), 0.4, splits=(4,), methods=methods.flip),
+        "sod": Study(TUBES["sod"].about, (50, 100, 200, 400), 0.4, quick=(50, 100, 200)),
+        "ratio 10": Study(TUBES["ratio 10"].about, (50, 100, 200, 400), 0.4),
+        "strong": Study(TUBES["strong"].about, (50, 100, 200, 400), 0.4),
+        "particles": Study("Sod's tube with four particles along a cell.", (50, 100, 200, 400), 0.4, splits=(4,), methods=methods.flip),
     }
     plotted = ("sod", "ratio 10", "strong")
 

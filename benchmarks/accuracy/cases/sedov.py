@@ -45,7 +45,7 @@ within 1.2 of the density's error over shells, over the density behind the shock
 shells a cell thick, is highest."""
     errors = {"density": Error("L1 error of density, %", ".2f", 100), "radius": Error("radius of the peak, %", "+.1f", 100, order=False),
               "peak": Error("peak density, %", "+.1f", 100, order=False), "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"cells": Study("cells along the edge of the octant, 1.2, factor 0.4.", (12, 24), 0.4)}
+    studies = {"cells": Study("cells along the edge of the octant, 1.2, factor 0.4.", (6, 12, 18, 24), 0.4)}
 
     def methods(self):
         return methods.short()

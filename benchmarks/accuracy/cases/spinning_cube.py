@@ -23,8 +23,8 @@ cent of it."""
     errors = {"momentum": Error("angular momentum lost, %", ".2e", 100, order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False),
               "kinetic": Error("kinetic energy left, %", ".1f", 100, order=False)}
-    studies = {"ten turns": Study("cells along an edge, factor 0.5.", (4, 8), 0.5),
-               "hundred turns": Study("four cells along an edge, factor 0.5.", (4,), 0.5)}
+    studies = {"ten turns": Study("cells along an edge, factor 0.5.", (3, 4, 6, 8), 0.5),
+               "hundred turns": Study("the same.", (2, 3, 4, 5), 0.5)}
     plotted = ("ten turns",)
 
     def methods(self):

@@ -22,9 +22,9 @@ the last passage of the momentum through zero. *Amplitude lost* and *energy drif
 over a period."""
     errors = {"phase": Error("phase error, periods", ".2e"), "amplitude": Error("amplitude lost, %", ".2f", 100, order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"cells": Study("cells along the bar, factor 0.4.", (4, 8, 16), 0.4, quick=True,
+    studies = {"cells": Study("cells along the bar, factor 0.4.", (4, 8, 12, 16), 0.4, quick=(4, 8, 16),
                               fine=(32,), fine_methods=tuple(methods.product(("linear", "QuadraticBSpline")))),
-               "time": Study("16 cells, time step falling.", (16,), (0.8, 0.4, 0.2), axis="factor",
+               "time": Study("16 cells, time step falling.", (16,), (0.8, 0.4, 0.2, 0.1), axis="factor",
                              methods=lambda: [*methods.product(("linear", "QuadraticBSpline"), some_schemes=methods.schemes()),
                                               methods.Method("QuadraticBSpline", "APIC")])}
 

@@ -24,7 +24,7 @@ error is not known; differences below half a per cent mean little."""
     errors = {"mean": Error("mean error of L, D and W, %", ".2f", 100, order=False), "L": Error("L mm", ".2f", order=False),
               "D": Error("D mm", ".2f", order=False), "W": Error("W mm", ".2f", order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"cells": Study("cells along the bar, factor 0.4.", (17, 23, 33), 0.4,
+    studies = {"cells": Study("cells along the bar, factor 0.4.", (12, 17, 23, 33), 0.4,
                               fine=(46,), fine_methods=tuple(methods.product(("linear", "SGMP", "cpGIMP", "QuadraticBSpline"))))}
 
     def methods(self):

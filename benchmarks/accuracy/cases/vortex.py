@@ -79,11 +79,11 @@ displacement. A lattice of particles cuts the ring's edges into stairs; particle
     errors = {"displacement": Error("error of displacement"), "stress": Error("error of stress"),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {
-        "steps as cells": Study("time step proportional to the cells (factor 0.4); cells across the ring's width.", (4, 8, 16),
-                                0.4),
-        "fine steps": Study("time step proportional to the cells squared (factor 3.2/cells).", (4, 8, 16), lambda n: 3.2 / n,
+        "steps as cells": Study("time step proportional to the cells (factor 0.4); cells across the ring's width.",
+                                (4, 8, 12, 16), 0.4),
+        "fine steps": Study("time step proportional to the cells squared (factor 3.2/cells).", (4, 8, 12, 16), lambda n: 3.2 / n,
                             methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline", "CubicBSpline"), ("APIC",))]),
-        RINGS: Study("the same with the particles in rings, which follow the edges.", (8, 16), lambda n: 3.2 / n,
+        RINGS: Study("the same with the particles in rings, which follow the edges.", (4, 8, 12, 16), lambda n: 3.2 / n,
                      methods=lambda: methods.product(("QuadraticBSpline", "CubicBSpline", "CPDI2", "SGMP"))),
     }
 

@@ -104,3 +104,19 @@ TEST_CASE("Keys tell bricks of different levels apart") {
   CHECK(keys.size() == n);
   CHECK(key_of({1, 2, 3}) == (BrickKey{3} << 42 | BrickKey{2} << 21 | 1));
 }
+
+TEST_CASE("The number of a node in a brick's block, and back") {
+  for (const NodeBlockShape shape : {NodeBlockShape{0, 0}, NodeBlockShape{1, 0}, NodeBlockShape{1, 1}}) {
+    std::set<int> numbers;
+    for (int k = shape.lowest(); k <= shape.highest(); ++k) {
+      for (int j = shape.lowest(); j <= shape.highest(); ++j) {
+        for (int i = shape.lowest(); i <= shape.highest(); ++i) {
+          numbers.insert(shape.index(i, j, k));
+          CHECK(shape.node(shape.index(i, j, k)) == std::array<int, 3>{i, j, k});
+        }
+      }
+    }
+    CHECK(static_cast<int>(numbers.size()) == shape.nodes());
+    CHECK(*numbers.rbegin() == shape.nodes() - 1);
+  }
+}

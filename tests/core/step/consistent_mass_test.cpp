@@ -69,6 +69,7 @@ TEST_CASE("The iteration is as near to the inverse as its tolerance, for every e
 
 TEST_CASE("Consistent mass keeps momentum to round-off, and uniform motion") {
   for (const ReferenceShape shape : reference_shapes) {
+    if (!core::consistent_mass_goes_with(shape_function_of(shape))) continue;
     for (const ReferenceScheme scheme : schemes) {
       INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
       ReferenceCase c = tumbling(shape, scheme);
@@ -112,6 +113,7 @@ TEST_CASE("A turning block keeps more of its energy and angular momentum than wi
 
 TEST_CASE("Fewer particles than nodes: the matrix is singular, the motion is finite") {
   for (const ReferenceShape shape : reference_shapes) {
+    if (!core::consistent_mass_goes_with(shape_function_of(shape))) continue;
     for (const ReferenceScheme scheme : schemes) {
       // Lone particles beside a node, on a face, just beside one and inside a cell; then one particle per
       // cell. (Exactly at a node others have no mass and no part in the motion, with lumped mass too.)

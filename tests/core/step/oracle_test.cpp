@@ -230,6 +230,7 @@ TEST_CASE("XPIC and FMPM: a small block flies, hits walls and leaves them as the
 TEST_CASE("Consistent mass: a small block flies, hits walls and leaves them as the naive stepper lets it",
           "[oracle]") {
   for (const ReferenceShape shape : reference_shapes) {
+    if (!mpm::core::consistent_mass_goes_with(shape_function_of(shape))) continue;
     for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::musl}) {
       for (const int boundary : {0, 1, 2, 4}) {
         INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", boundary "
