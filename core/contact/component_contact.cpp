@@ -16,7 +16,6 @@ double stiffness(const MaterialInput& material) {
 }  // namespace
 
 bool has_reaction(const Scene& scene, const BodyInput& body) {
-  if (scene.solution.integration != Integration::explicit_dynamics) return false;
   return body.prescribed_velocity || body.constrain_rigid_position ||
          (scene.contact.enable && is_rigid(scene.materials[body.material]));
 }

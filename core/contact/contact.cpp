@@ -38,13 +38,13 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
   }
   if (rigid != nullptr) {
     const std::vector<const BodyInput*> inputs = active_bodies(scene);
-    driven_mass_.assign(scene.components.size(), 0.0);
+    full_mass_.assign(scene.components.size(), 0.0);
     for (std::size_t b = 0; b < std::min(inputs.size(), model.bodies.size()); ++b)
-      if (const int number = rigid->of_body(static_cast<int>(b)); number >= 0 && !rigid->is_free(number))
-        driven_mass_[static_cast<std::size_t>(model.bodies[b].component)] =
+      if (rigid->of_body(static_cast<int>(b)) >= 0)
+        full_mass_[static_cast<std::size_t>(model.bodies[b].component)] =
             inputs[b]->density * model.grid->geometry().cell_volume();
-    if (std::ranges::count_if(driven_mass_, [](double m) { return m > 0; }) < 2) driven_mass_.clear();
-    if (!driven_mass_.empty() && has_failed_component(scene)) driven_mass_.push_back(0);
+    if (std::ranges::count_if(full_mass_, [](double m) { return m > 0; }) < 2) full_mass_.clear();
+    if (!full_mass_.empty() && has_failed_component(scene)) full_mass_.push_back(0);
   }
   if (has_failed_component(scene)) {
     material_.push_back(-1);  // no friction

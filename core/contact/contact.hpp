@@ -218,8 +218,8 @@ class Contact {
   std::vector<std::int32_t> seen_;
   ContactInput::Normal normal_;
   bool regresses_ = false;  ///< some pairs of components
-  /// Mass in a full cell, by component, of driven rigid bodies; 0: others. Empty with fewer than two of them.
-  std::vector<double> driven_mass_;
+  /// Mass in a full cell, by component, of rigid bodies; 0: others. Empty with fewer than two of them.
+  std::vector<double> full_mass_;
   ContactPoints points_;                ///< empty without regression
   std::vector<MeetingNodes> meetings_;  ///< by owned slot; those of slots that do not meet are not set
 };

@@ -55,7 +55,9 @@ bool Contact::find_pairs(std::span<const FieldNodes> fields, std::span<const Mee
     const bool any_rigid = at.rigid[a] >= 0 || at.rigid[b] >= 0;
     const double ratio = at.fields[a].mass / at.fields[b].mass;
     if (!any_rigid && (ratio > contact_mass_ratio || ratio * contact_mass_ratio < 1)) continue;
-    if (std::isinf(at.fields[a].mass) && std::isinf(at.fields[b].mass)) continue;  // both are driven
+    // Two that are driven, or two that move freely, do not act on each other.
+    if (at.rigid[a] >= 0 && at.rigid[b] >= 0 && rigid_->is_free(at.rigid[a]) == rigid_->is_free(at.rigid[b]))
+      continue;
     const std::int32_t first = fields[at.number[a]].component, second = fields[at.number[b]].component;
     at.pairs.push_back({static_cast<int>(a), static_cast<int>(b), pair.normal, friction(first, second)});
     at.recorded.push_back(pairs_.number(first, second));
@@ -221,16 +223,15 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
                         const MeetingNodes::Node& node, Node& at) const {
   at.clear();
   at.place = grid.geometry().node_place(grid.brick(s).coord, grid.shape().node(node.number));
-  int rigid_fields = 0;
+  int free_bodies = 0;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const Motion record{fields[f].motion.data() + node_doubles * node.number};
     if (!(record.mass() > 0)) continue;
     const double* v = which == Velocity::of_end ? record.velocity() : record.strain_velocity();
     const int number = rigid(fields[f].component);
     if (number >= 0) {
-      ++rigid_fields;
-      at.free_body = at.free_body || rigid_->is_free(number);
-      at.moves = static_cast<int>(at.fields.size());
+      if (at.moves < 0 || rigid_->is_free(number)) at.moves = static_cast<int>(at.fields.size());
+      free_bodies += rigid_->is_free(number);
       at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
     } else {
       at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
@@ -240,9 +241,13 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
     at.records.push_back(record);
     at.number.push_back(f);
   }
-  if (rigid_fields != 1 || !at.free_body || which == Velocity::of_strain) {
+  at.free_body = free_bodies > 0;
+  if (free_bodies != 1 || which == Velocity::of_strain) {
     at.moves = -1;
   } else {
+    const int free_body = at.rigid[static_cast<std::size_t>(at.moves)];
+    for (std::size_t f = 0; f < at.fields.size(); ++f)
+      if (at.rigid[f] >= 0 && at.rigid[f] != free_body) at.fields[f].mass = rigid_->stiff_mass(free_body);
     ContactField& moves = at.fields[static_cast<std::size_t>(at.moves)];
     const Vec3<double> end = rigid_->velocity_at_end(at.rigid[static_cast<std::size_t>(at.moves)], at.place);
     at.change = end - moves.velocity;

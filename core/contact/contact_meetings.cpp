@@ -9,6 +9,17 @@
 
 namespace mpm::core {
 
+namespace {
+
+/// The unit normal of a plane from its unit normal where lengths count in cells.
+Vec3<double> in_space(const Vec3<double>& n, const Vec3<double>& inverse_cell) {
+  if (inverse_cell.x == inverse_cell.y && inverse_cell.x == inverse_cell.z) return n;
+  const Vec3<double> g{n.x * inverse_cell.x, n.y * inverse_cell.y, n.z * inverse_cell.z};
+  return (1 / std::sqrt(dot(g, g))) * g;
+}
+
+}  // namespace
+
 double Contact::half_edge(double volume) const { return to_faces_ ? 0.5 * std::cbrt(volume) : 0.0; }
 
 void Contact::collect_points(NodeHalo& halo) {
@@ -90,7 +101,7 @@ void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot 
       return share.neighbour > self_index &&
              brick.neighbour[static_cast<std::size_t>(share.neighbour)] != no_slot;
     });
-    if (counts && !driven_mass_.empty()) find_overlap(grid, s, node, fields, present);
+    if (counts && !full_mass_.empty()) find_overlap(grid, s, node, fields, present);
     const std::size_t first = at.pairs.size();
     for (std::size_t a = 0; a < present.size(); ++a)
       for (std::size_t b = a + 1; b < present.size(); ++b) at.pairs.push_back({present[a], present[b], {}});
@@ -103,8 +114,9 @@ void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot 
   });
 }
 
-/// Contact cannot part driven rigid bodies. Those that touch fill a node's cell together, whatever surface
-/// they share, but for the particles' steps in it; those that have entered each other fill it more than once.
+/// Contact does not part two driven rigid bodies, nor two free ones. Those that touch fill a node's cell
+/// together, whatever surface they share, but for the particles' steps in it; those that have entered each
+/// other fill it more than once.
 void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<const FieldNodes> fields,
                            std::span<const int> present) {
   constexpr double least = 0.3;  // of a cell
@@ -113,7 +125,7 @@ void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<co
   const auto filled = [&](int f) {
     const FieldNodes& field = fields[static_cast<std::size_t>(f)];
     const double
-        full = driven_mass_[static_cast<std::size_t>(field.component)],
+        full = full_mass_[static_cast<std::size_t>(field.component)],
         mass = field.surface[static_cast<std::size_t>(node_doubles * node + node_field::surface_mass.first)];
     return full > 0 ? mass / full : 0.0;
   };
@@ -122,6 +134,9 @@ void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<co
   };
   for (std::size_t a = 0; a < present.size(); ++a) {
     for (std::size_t b = a + 1; b < present.size(); ++b) {
+      const int of_first = rigid(fields[static_cast<std::size_t>(present[a])].component),
+                of_second = rigid(fields[static_cast<std::size_t>(present[b])].component);
+      if (of_first < 0 || of_second < 0 || rigid_->is_free(of_first) != rigid_->is_free(of_second)) continue;
       const double first = filled(present[a]), second = filled(present[b]);
       if (first + second - 1 < least || std::min(first, second) < least) continue;
       if (velocity(present[a]) == velocity(present[b])) continue;  // they have been placed so
@@ -138,10 +153,12 @@ void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<co
           static_cast<double>((number[2] * (cells[1] + 1) + number[1]) * (cells[0] + 1) + number[0]);
       meetings_[static_cast<std::size_t>(s)].overlap.offer(order, [&] {
         return fmt::format(
-            "the rigid bodies '{}' and '{}', both of prescribed motion, have met and overlap near ({:.6g}, "
-            "{:.6g}, {:.6g}): contact cannot change their motion. Stop one of them before, or let it move "
-            "freely",
-            name(a), name(b), place.x, place.y, place.z);
+            "the rigid bodies '{}' and '{}', both {}, have met and overlap near ({:.6g}, {:.6g}, {:.6g}): "
+            "contact acts on a free one and a driven one, or a deformable one. {}",
+            name(a), name(b), rigid_->is_free(of_first) ? "moving freely" : "of prescribed motion", place.x,
+            place.y, place.z,
+            rigid_->is_free(of_first) ? "Give one of them a prescribed motion or a deformable material"
+                                      : "Stop one of them before, or let it move freely");
       });
     }
   }
@@ -149,7 +166,7 @@ void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<co
 
 OffendingParticle Contact::first_overlap() const {
   OffendingParticle first;
-  if (driven_mass_.empty()) return first;
+  if (full_mass_.empty()) return first;
   for (const MeetingNodes& at : meetings_)
     if (!at.overlap.empty()) first.offer(at.overlap.identity, [&] { return at.overlap.words; });
   return first;
@@ -202,6 +219,7 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
         scratch.by_cell.around(grid, s, shape.node(node.number), first.component, second.component,
                                scratch.points);
         normal = separating_normal(scratch.points, scratch.near);
+        if (normal) normal = in_space(*normal, grid.geometry().inverse_cell);
       }
       if (!normal) normal = contact_normal(surface(first, node.number), surface(second, node.number));
       pair.normal = normal.value_or(Vec3<double>{});

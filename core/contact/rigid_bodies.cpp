@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "core/particle_range.hpp"
+#include "core/step/stepper.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {
@@ -173,20 +175,28 @@ void RigidBodies::begin_step(const Loads& loads, const Vec3<double>& gravity, co
 void RigidBodies::move_without_contact(const Loads& loads, const Vec3<double>& gravity,
                                        const StepLength& length) {
   length_ = length;
-  const double dt = length.velocity_dt;
+  const double dt = length.velocity_dt, kept = 1 - dt * model_.scene->solution.damping;
   for (std::size_t r = 0; r < bodies_.size(); ++r) {
     Rigid& rigid = bodies_[r];
     RigidState& state = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
     const BodyMotion& motion = loads.motion(rigid.body);
     state.velocity = motion.kind == BodyMotion::Kind::prescribed
                          ? motion.velocity.common
-                         : rigid.velocity_before + dt * (gravity + loads.acceleration(rigid.body));
-    state.spin = rigid.spin_before + dt * loads.angular_acceleration(rigid.body);
+                         : kept * rigid.velocity_before + dt * (gravity + loads.acceleration(rigid.body));
+    state.spin =
+        (rigid.driven ? 1.0 : kept) * rigid.spin_before + dt * loads.angular_acceleration(rigid.body);
     if (!rigid.driven) keep_symmetry(state);
     rigid.end = {state.velocity, state.spin};
+    find_rotation(rigid);
     node_mass_[r] =
         rigid.driven ? std::numeric_limits<double>::infinity() : state.mass / std::max(state.contacts, 1.0);
   }
+}
+
+void RigidBodies::find_rotation(Rigid& rigid) {
+  const RigidState& s = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
+  rigid.turn =
+      rigid.driven ? rotation(length_.dt * rigid.end.spin) : turn_in_step(s, rigid.end.spin, length_.dt);
 }
 
 void RigidBodies::find_motion(const std::function<void(std::span<RigidResponse>)>& respond) {
@@ -212,19 +222,34 @@ void RigidBodies::find_motion(const std::function<void(std::span<RigidResponse>)
       rest = rest && same_motion(without, before, rigid.end);
     }
   }
+  for (Rigid& rigid : bodies_)
+    if (!rigid.driven) find_rotation(rigid);
 }
 
 void RigidBodies::move(int number, const ColumnLayout& layout, double* block) const {
   const RigidState& s = state(number);
-  const RigidVelocity& end = bodies_[static_cast<std::size_t>(number)].end;
-  const Mat3<double> turn = rotation(length_.dt * end.spin);
-  const Vec3<double> centre = s.centre + length_.dt * end.velocity;
+  const Rigid& rigid = bodies_[static_cast<std::size_t>(number)];
+  const Vec3<double> centre = s.centre + length_.dt * rigid.end.velocity;
   double* x = block + layout.offset(Column::position_x);
   for (int i = 0; i < block_lanes; ++i) {
     const Vec3<double> at =
-        centre + turn * (Vec3<double>{x[i], x[block_lanes + i], x[2 * block_lanes + i]} - s.centre);
+        centre + rigid.turn * (Vec3<double>{x[i], x[block_lanes + i], x[2 * block_lanes + i]} - s.centre);
     for (int a = 0; a < 3; ++a) x[block_lanes * a + i] = at[a];
   }
+}
+
+std::uint32_t RigidBodies::faces_reached(const RigidState& s, const Vec3<double>& x, double edge) const {
+  constexpr double near = 0.4;  // of a particle's edge: one that begins at a face is half an edge from it
+  const GridGeometry& grid = model_.grid->geometry();
+  std::uint32_t reached = 0;
+  for (std::size_t face = 0; face < 6; ++face) {
+    const auto axis = static_cast<int>(face / 2);
+    if (!is_constrained(grid.boundary[face]) || s.cut[axis] != 0) continue;
+    const double from_lower = x[axis] - grid.origin[axis],
+                 length = static_cast<double>(grid.cells[face / 2]) * grid.cell[axis];
+    if ((face % 2 == 0 ? from_lower : length - from_lower) < near * edge) reached |= 1u << face;
+  }
+  return reached;
 }
 
 void RigidBodies::set_velocities() {
@@ -234,20 +259,45 @@ void RigidBodies::set_velocities() {
       if (number < 0) continue;
       const RigidState& s = state(number);
       BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
-      for (const BlockIndex index : tile.blocks) {
-        double* const block = pool.block(index);
+      std::uint32_t reached = 0;
+      for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+        double* const block = pool.block(tile.blocks[b]);
         const double* x = block + pool.layout().offset(Column::position_x);
+        const double* volume = block + pool.layout().offset(Column::volume);
         double* v = block + pool.layout().offset(Column::velocity_x);
-        for (int i = 0; i < block_lanes; ++i) {
-          const Vec3<double> at = velocity_at(s, {x[i], x[block_lanes + i], x[2 * block_lanes + i]});
+        for (int i = 0; i < tile.used_lanes(b); ++i) {
+          const Vec3<double> place{x[i], x[block_lanes + i], x[2 * block_lanes + i]},
+              at = velocity_at(s, place);
           for (int a = 0; a < 3; ++a) v[block_lanes * a + i] = at[a];
+          if (is_free(number)) reached |= faces_reached(s, place, std::cbrt(volume[i]));
         }
       }
+      if (reached != 0) std::atomic_ref(bodies_[static_cast<std::size_t>(number)].reached).fetch_or(reached);
     }
   });
 }
 
+void RigidBodies::require_inside() {
+  constexpr std::size_t faces = 6;
+  std::vector<std::int64_t> reached(faces * bodies_.size());
+  for (std::size_t r = 0; r < bodies_.size(); ++r)
+    for (std::size_t face = 0; face < faces; ++face)
+      reached[faces * r + face] = bodies_[r].reached >> face & 1;
+  ranks_.sum(std::span<std::int64_t>(reached));
+  const auto first = std::ranges::find_if(reached, [](std::int64_t count) { return count > 0; });
+  if (first == reached.end()) return;
+  const auto at = static_cast<std::size_t>(first - reached.begin());
+  throw NumericalFailure(fmt::format(
+      "step {}, time {:.6g}: the rigid body '{}' has come to the grid's face {}{}, which holds other bodies "
+      "but "
+      "not those that are rigid and move freely. Place a fixed rigid body there, or leave it room",
+      model_.clock.step + 1, model_.clock.time,
+      model_.bodies[static_cast<std::size_t>(bodies_[at / faces].body)].name, "XYZ"[at % faces / 2],
+      at % 2 == 0 ? "Min" : "Max"));
+}
+
 void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, ContactRecord& contact) {
+  if (any_free()) require_inside();
   constexpr std::size_t sums_of_body = 7;
   std::vector<ExactSum> sums(sums_of_body * bodies_.size());
   std::vector<std::int64_t> contacts(bodies_.size());
@@ -269,7 +319,7 @@ void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, 
     const Vec3<double> impulse{s[0].value(), s[1].value(), s[2].value()},
         moment{s[3].value(), s[4].value(), s[5].value()};
     const double without_contact = kinetic_energy(state), given = s[6].value();
-    core::end_step(state, length_, rigid.end.velocity, rigid.end.spin, impulse, moment, rigid.driven);
+    core::end_step(state, length_, rigid.end.velocity, rigid.turn, impulse, moment, rigid.driven);
     state.contacts = static_cast<double>(contacts[r]);
     if (ranks_.rank() != 0) continue;
     if (rigid.reaction != nullptr) {

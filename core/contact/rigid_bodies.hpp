@@ -3,10 +3,12 @@
 // body (rigid_state.hpp), the same bits on every rank.
 //
 // At a node a driven body has infinite mass, and so has a free one with the motion that it has at the end of
-// the step: found once the nodes' velocities without contact are known (rigid_motion.hpp). Where that is not
-// yet so (USF's strain) or several rigid bodies meet at a node, a free one has its mass over the number of
-// nodes at which it touched others in the step before, so that the impulses of all of them stop it and no
-// more (mass splitting, as in node_contact.hpp).
+// the step: found once the nodes' velocities without contact are known (rigid_motion.hpp). A driven body
+// where a free one meets it answers as a deformable of a million times the free one's mass. Where the motion
+// is not yet known (USF's strain) a free one has its mass over the number of nodes at which it touched others
+// in the step before, so that the impulses of all of them stop it and no more (mass splitting, as in
+// node_contact.hpp). Two free bodies do not act on each other, nor do two driven ones: contact.hpp stops the
+// run where such two enter each other, and this class where a free one comes to a wall of the grid.
 #pragma once
 
 #include <algorithm>
@@ -51,6 +53,8 @@ class RigidBodies {
   bool any_free() const {
     return std::ranges::any_of(bodies_, [](const Rigid& r) { return !r.driven; });
   }
+  /// Mass of a driven body at a node where it meets this free one: so large that the latter stops with it.
+  double stiff_mass(int number) const { return 1e6 * state(number).mass; }
   /// Mass of a rigid body at a node where its motion at the end of the step is not known.
   double mass_at_node(int number) const { return node_mass_[static_cast<std::size_t>(number)]; }
   /// Velocity at a place at the end of the step: without contact until find_motion(), which tries several.
@@ -83,11 +87,19 @@ class RigidBodies {
     double energy_before = 0;          ///< kinetic, at the start of the step
     Vec3<double> velocity_before{}, spin_before{};
     RigidVelocity end{};  ///< with which it moves in this step
+    Mat3<double> turn{};  ///< its rotation in this step
+    /// Faces of the grid that hold others and that a free one had reached at the end of the last step, by the
+    /// particles of this rank, as bits.
+    std::uint32_t reached = 0;
   };
   void find_states(Reductions& ranks);
   void move_without_contact(const Loads& loads, const Vec3<double>& gravity, const StepLength& length);
   /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
   Vec3<double> symmetry_planes_at(int number);
+  void find_rotation(Rigid& rigid);
+  std::uint32_t faces_reached(const RigidState& s, const Vec3<double>& x, double edge) const;
+  /// Throws NumericalFailure where a free body has reached a face that holds others. Collective.
+  void require_inside();
 
   Model& model_;
   Reductions& ranks_;

@@ -2,9 +2,10 @@
 // drift.
 //
 // Within a step the body moves with the velocity V and spin w of its end (rigid_motion.hpp): every point x
-// has the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w. Impulses J and
-// their moment H about c at the start change momentum and angular momentum, which is then kept to round-off:
-// c moves along the momentum of the end.
+// has the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w, or of a free
+// body by dt times the spin that the same angular momentum has halfway. Impulses J and their moment H about c
+// at the start change momentum and angular momentum, which is then kept to round-off: c moves along the
+// momentum of the end.
 //
 // A body that symmetry planes cut is a part of the whole: the other parts cancel impulses along the planes'
 // normals and moments about axes in the planes. The whole has the part's inertia about the normal, over its
@@ -86,13 +87,28 @@ inline Vec3<double> spin_with(const RigidState& s, const Vec3<double>& l) {
   return spin_of(s.inertia, l);
 }
 
-/// The end of a step, in which the body has moved with `velocity` and `spin`, with contact's
+/// The rotation of a free body in a step of length dt, of which `spin` is the angular velocity with the
+/// inertia of its start: by that with the same angular momentum halfway, which keeps the energy to third
+/// order in the step. With that of the start a body that turns about no principal axis gains energy.
+inline Mat3<double> turn_in_step(const RigidState& s, const Vec3<double>& spin, double dt) {
+  constexpr int iterations = 3;
+  const Vec3<double> angular_momentum = s.inertia * spin;
+  RigidState halfway = s;
+  Vec3<double> w = spin;
+  for (int i = 0; i < iterations && spin != Vec3<double>{}; ++i) {
+    halfway.inertia = rotate(rotation(0.5 * dt * w), s.inertia);
+    w = spin_with(halfway, angular_momentum);
+  }
+  return rotation(dt * w);
+}
+
+/// The end of a step, in which the body has moved with `velocity` and turned by `turn`, with contact's
 /// impulse and its moment about the centre at its beginning; `driven`: contact does not change the motion.
 inline void end_step(RigidState& s, const StepLength& length, const Vec3<double>& velocity,
-                     const Vec3<double>& spin, const Vec3<double>& impulse, const Vec3<double>& moment,
+                     const Mat3<double>& turn, const Vec3<double>& impulse, const Vec3<double>& moment,
                      bool driven) {
   const Vec3<double> angular_momentum = s.inertia * s.spin + moment;
-  s.inertia = rotate(rotation(length.dt * spin), s.inertia);
+  s.inertia = rotate(turn, s.inertia);
   s.centre = s.centre + length.dt * velocity;
   if (driven) return;
   s.velocity = s.velocity + (1 / s.mass) * impulse;

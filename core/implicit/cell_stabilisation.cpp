@@ -139,9 +139,11 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
             const double* sum = sums.data() + node_doubles * node;
             // A node on a wall has the cells on one side alone.
             double sides = 1;
-            for (int a = 0; a < 3; ++a) {
+            for (std::size_t a = 0; a < 3; ++a) {
               const std::int64_t i = first[a] + at[a] + (n >> a & 1);
-              if (i == 0 || i == g.cells[static_cast<std::size_t>(a)]) sides *= 2;
+              if ((i == 0 && is_constrained(g.boundary[2 * a])) ||
+                  (i == g.cells[a] && is_constrained(g.boundary[2 * a + 1])))
+                sides *= 2;
             }
             fill += std::min(1.0, sides * sum[node_field::volume.first] / cell_volume) / 8;
             volume += sum[node_field::volume.first];

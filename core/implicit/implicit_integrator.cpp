@@ -87,8 +87,7 @@ std::vector<Phase> ImplicitIntegrator::phases() {
 
 double ImplicitIntegrator::next_step(const Clock& clock) const {
   const double length = length_of(input_, model_);
-  if (next_ > 0) return next_;
-  return clock.step > 0 ? std::min(clock.dt * growth, input_.max_step.value_or(length)) : length;
+  return clock.next_dt > 0 ? std::min(clock.next_dt, input_.max_step.value_or(length)) : length;
 }
 
 /// Components that may meet have fields of their own.
@@ -133,6 +132,14 @@ void ImplicitIntegrator::prepare() {
     state_[i].ground = ground * (1 - volume / hardly_any) * modulus * g.smallest_cell();
   });
   if (moves_bodies_) unknowns_.hold_moved(dt);
+  if (moves_bodies_ && rule_.dynamic()) {
+    passes_->map_drive();
+    unknowns_.exchange(mapped::implicit_lag);
+    unknowns_.for_each_own([&](std::size_t i, const double* sum) {
+      for (int a = 0; a < 3; ++a)
+        if (moved(i, a)) state_[i].drive[a] = sum[a] / unknowns_.moved_volume()[i];
+    });
+  }
   const double cutoff = model_.grid->geometry().mass_cutoff;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     NodeState& at = state_[i];
@@ -338,6 +345,7 @@ void ImplicitIntegrator::solve() {
   const double no_force = rounding * held_diagonal_ * model_.grid->geometry().smallest_cell();
   const NewtonOptions options{input_.relative_tolerance, input_.absolute_tolerance.value_or(no_force),
                               input_.max_newton, input_.matrix_free, input_.linearised()};
+  const double planned = next_step(model_.clock);  // but that EndTime may cut it
   std::string cuts;
   for (;;) {
     std::vector<double> u = first_guess();
@@ -352,10 +360,9 @@ void ImplicitIntegrator::solve() {
           fmt::format("step {}: time {:.6g}, length {:.4g}; {} unknowns; residual {}; {} linear iterations{}",
                       model_.clock.step + 1, model_.clock.time + dt, dt, 3 * unknowns_.all(), norms,
                       report.linear_iterations, cuts);
-      if (report.iterations <= easy)
-        next_ = std::min(dt * growth, input_.max_step.value_or(length));
-      else
-        next_ = dt;
+      double& next = model_.clock.next_dt;
+      next = report.iterations <= easy ? std::min(dt * growth, input_.max_step.value_or(length)) : dt;
+      if (cuts.empty() && dt < planned) next = planned;
       return;
     }
     cuts += fmt::format("; shortened from {:.4g}: {} (residual {})", dt, why, norms);
@@ -439,18 +446,18 @@ void ImplicitIntegrator::find_reactions() {
   const double dt = model_.clock.dt, damping = model_.scene->solution.damping;
   std::vector<double> impulses(solution_.size());
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
-    const NodeState& at = state_[i];
+    NodeState& at = state_[i];
     for (int a = 0; a < 3; ++a) {
-      if ((unknowns_.moved()[i] >> a & 1) == 0) continue;
+      if (!moved(i, a)) continue;
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
       const double at_end = at.external[a] + sum[4 + a];
-      double impulse = -dt * (at_end + at.contact[a]);
+      at.impulse[a] = -dt * (at_end + at.contact[a]);
       if (rule_.dynamic()) {
-        const double v = solution_[k] / dt,
-                     force = (rule_.carry * at.force[a] + at_end - damping * at.mass * v) / (1 + rule_.carry);
-        impulse = at.mass * (v - at.velocity[a]) - dt * (force + at.contact[a]);
+        const double drag = damping * at.mass * solution_[k] / dt,
+                     force = (rule_.carry * at.force[a] + at_end - drag) / (1 + rule_.carry);
+        at.impulse[a] = at.mass * at.drive[a] - dt * (force + at.contact[a]);
       }
-      impulses[k] = impulse / unknowns_.moved_volume()[i];
+      impulses[k] = at.impulse[a] / unknowns_.moved_volume()[i];
     }
   });
   AlignedDoubles records;
@@ -472,13 +479,17 @@ void ImplicitIntegrator::move() {
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
       const double u = solution_[k], force = at.mass > cutoff ? (at.force[a] + at.contact[a]) / at.mass : 0;
       work += at.external[a] * u;
-      if (held(i, a)) work += 0.5 * (at.reaction[a] - at.force[a]) * u;
+      if (moved(i, a) && rule_.dynamic())
+        work += at.impulse[a] * u / model_.clock.dt;
+      else if (held(i, a))
+        work += 0.5 * (at.reaction[a] - at.force[a]) * u;
       const double v = held(i, a)
                            ? u / model_.clock.dt
                            : rule_.gain * u + rule_.keep * at.velocity[a] + rule_.push * (force + at.lag[a]);
-      // As in explicit steps, a wall acts on the particles through their stress alone.
-      const bool on_wall = held(i, a) && unknowns_.held_displacements()[k] == 0;
-      gained[k] = at.mass > cutoff && !on_wall ? v - at.velocity[a] : 0;
+      // As in explicit steps, a wall acts on the particles through their stress alone; so does a body of
+      // prescribed motion, in whose frame it is a wall.
+      const bool on_wall = held(i, a) && !moved(i, a);
+      if (at.mass > cutoff && !on_wall) gained[k] = moved(i, a) ? at.drive[a] : v - at.velocity[a];
       if (lags_ && at.mass > cutoff && !on_wall) {
         const bool led = held(i, a) || at.contact[0] != 0 || at.contact[1] != 0 || at.contact[2] != 0;
         const double at_end = rule_.force_at_end(u, at.velocity[a], force, at.lag[a]);

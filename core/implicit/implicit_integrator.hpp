@@ -55,6 +55,8 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     double contact[3];   ///< force in the last evaluation
     double reaction[3];  ///< residual of the last evaluation, also of held components
     double ahead[3];     ///< what the rest of the way of held nodes adds to it
+    double drive[3];     ///< change of velocity in the step of the bodies of prescribed motion that hold it
+    double impulse[3];   ///< of these bodies on it
   };
 
   // NonlinearProblem.
@@ -103,6 +105,10 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     return rule_.dynamic() ? model_.clock.dt * at.velocity[axis] : 0;
   }
   bool held(std::size_t node, int axis) const { return (unknowns_.held()[node] >> axis & 1) != 0; }
+  /// By a body of prescribed motion.
+  bool moved(std::size_t node, int axis) const {
+    return moves_bodies_ && (unknowns_.moved()[node] >> axis & 1) != 0;
+  }
   void shorten(const std::string& why);
   [[noreturn]] void fail(const std::string& why);
   std::string bodies_around(const std::array<double, 3>& place);
@@ -123,7 +129,6 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   const bool lags_;            ///< particles carry a lag
   bool moves_bodies_ = false;  ///< some body has a prescribed motion
   double held_diagonal_ = 0;   ///< of the Jacobian's held components
-  double next_ = 0;            ///< length of the next step
   double force_scale_ = 0;
   std::vector<NodeState> state_;
   std::vector<double> solution_, ahead_;

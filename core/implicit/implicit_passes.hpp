@@ -31,6 +31,8 @@ class ImplicitPasses {
   virtual void map_surface() = 0;
   /// mapped::implicit_lag, of particles that carry one.
   virtual void map_lag() = 0;
+  /// The same fields: volume times the change of velocity in the step, of bodies of prescribed motion.
+  virtual void map_drive() = 0;
   /// mapped::implicit_force: internal forces at the end of the step, with the nodes' displacements in
   /// MotionRecords, and the sums of their absolute values.
   /// The particles do not change. False where one of them inverts or its stress is not finite.

@@ -49,6 +49,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   void map_motion() override;
   void map_surface() override;
   void map_lag() override;
+  void map_drive() override;
   bool map_forces(const AlignedDoubles& displacements) override;
   void add_tangent(const AlignedDoubles* displacements, const NodeUnknowns& unknowns,
                    BlockMatrix& matrix) override;

@@ -97,6 +97,30 @@ void ImplicitPassesWith<S>::map_surface() {
   });
 }
 
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::map_drive() {
+  const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
+  for_fields([&](const BrickField& field, Scratch&) {
+    const BrickFrame frame(*model_.grid, field.slot);
+    double* const contributions = clear_contributions(field);
+    for_each_block(
+        field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+          if (!prescribed(tile.body)) return;
+          const PrescribedMotion& motion = loads_.motion(tile.body).velocity;
+          const Place place(frame, layout, block);
+          for (int l = 0; l < used; ++l) {
+            const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
+            const Vec3<double> v{get(Column::velocity_x), get(Column::velocity_y), get(Column::velocity_z)};
+            const Vec3<double> change = get(Column::volume) * (motion.velocity(block + l) - v);
+            for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
+              for (int a = 0; a < 3; ++a) contributions[node_doubles * node + a] += shape * change[a];
+            });
+          }
+        });
+    fold(mapped::implicit_lag, field, contributions);
+  });
+}
+
 /// The impulse on a node acts on the bodies that hold it by their volumes there.
 template <ShapePolicy S>
 void ImplicitPassesWith<S>::add_reactions(const AlignedDoubles& impulses) {

@@ -253,7 +253,9 @@ template <ShapePolicy S, TransferPolicy T>
   if (falls || is_rigid) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   take_velocities(frame, place, layout, block, at);
   if (is_rigid) integrate_rigid_velocities(layout, weight, velocity_dt, block, used, at);
-  if (falls) correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
+  // Of a prescribed velocity the constraint supplies the change.
+  if (falls && motion.kind != BodyMotion::Kind::prescribed)
+    correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
   if (is_rigid) return;
   if (motion.kind == BodyMotion::Kind::prescribed)
     prescribe_velocities(layout, motion, block, used, at);
@@ -334,7 +336,7 @@ template <ShapePolicy S, TransferPolicy T>
                    update_domains(body, frame, layout, 0, block, used, at);
                    for (int l = 0; l < used; l += real_width)
                      fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
-                   find_departing(c, b, frame, erosion_volume_,
+                   find_departing(c, b, frame, erosion_volume(body),
                                   failed_.of(model_.grid->brick(s).tiles[static_cast<std::size_t>(c)]),
                                   layout, block, used, departing_[static_cast<std::size_t>(s)]);
                  });
@@ -456,8 +458,9 @@ template <bool moves, class F>
     if constexpr (moves) {
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
-        find_departing(static_cast<int>(c), at_block, frame, erosion_volume_, failed_.of(tile), *batch.layout,
-                       batch.block[b], tile.used_lanes(at_block), departing_[static_cast<std::size_t>(s)]);
+        find_departing(static_cast<int>(c), at_block, frame, erosion_volume(tile.body), failed_.of(tile),
+                       *batch.layout, batch.block[b], tile.used_lanes(at_block),
+                       departing_[static_cast<std::size_t>(s)]);
       }
     }
   };

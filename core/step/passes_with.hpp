@@ -178,6 +178,9 @@ class PassesWith final : public Passes {
   template <NodeFields what>
   void map_to_grid();
   void find_reached(Slot s);
+  double erosion_volume(int body) const {
+    return model_.bodies[static_cast<std::size_t>(body)].rigid ? 0.0 : erosion_volume_;
+  }
   bool has_few_particles(Slot s) const {
     if (!selects_) return false;
     std::size_t particles = 0;
@@ -343,9 +346,9 @@ class PassesWith final : public Passes {
   bool correcting_ = false;    ///< in this step
   bool follows_grid_ = false;  ///< follow_grid() in this step
   TransferStep transfer_step_;
-  double dt = 0, velocity_dt = 0, lag_ = 0;  ///< of the current step: StepLength
-  double velocity_limit_;                    ///< infinite without LimitVelocity
-  double erosion_volume_;
+  double dt = 0, velocity_dt = 0, lag_ = 0;                ///< of the current step: StepLength
+  double velocity_limit_;                                  ///< infinite without LimitVelocity
+  double erosion_volume_;                                  ///< of deformable bodies
   double wave_weight_;                                     ///< of wave speeds in the critical step
   std::vector<Scratch> scratch_;                           ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot

@@ -301,6 +301,7 @@ void write_run(hid_t file, const RestartContents& c) {
   hdf5::write_attribute(file, "first_lag", c.clock.first_lag);
   hdf5::write_attribute(file, "critical_dt", c.clock.critical_dt);
   hdf5::write_attribute(file, "first_critical_dt", c.clock.first_critical_dt);
+  hdf5::write_attribute(file, "next_dt", c.clock.next_dt);
   hdf5::write_attribute(file, "initial_energy", c.initial_energy);
   hdf5::write_attribute(file, "next_identity", static_cast<std::int64_t>(c.next_identity));
 }
@@ -315,6 +316,7 @@ void read_run(hid_t file, RestartContents& c) {
   c.clock.first_lag = lags ? hdf5::read_double(file, "first_lag") : c.clock.lag;
   c.clock.critical_dt = hdf5::read_double(file, "critical_dt");
   c.clock.first_critical_dt = hdf5::read_double(file, "first_critical_dt");
+  c.clock.next_dt = hdf5::has_attribute(file, "next_dt") ? hdf5::read_double(file, "next_dt") : 0.0;
   c.initial_energy = hdf5::read_double(file, "initial_energy");
   c.next_identity = static_cast<std::uint64_t>(hdf5::read_int64(file, "next_identity"));
 }

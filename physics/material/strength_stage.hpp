@@ -67,6 +67,7 @@ StrengthPoint<T> strength_point(const core::Batch& batch, const double* block, i
   point.s = rotate_deviator(core::mid_point_rotation(spin), load_deviator<T>(block, layout));
   point.pressure = get(Column::pressure);
   point.density = get(Column::mass) / get(Column::volume);
+  point.volume_ratio = get(Column::volume) / core::load<T>(batch.old_volume + row);
   return point;
 }
 

@@ -146,7 +146,7 @@ struct DruckerPrager : IsotropicElasticity {
     T mean = -point.pressure, closing = 0.0;
     if (closes != 0) {
       // The change of the volume's logarithm: rates would let a grain that opens and closes lose volume.
-      mean += bulk * (core::log(max(1.0 + point.volumetric_strain, 0.1)) - point.volumetric_strain);
+      mean += bulk * (core::log(max(point.volume_ratio, 0.1)) - point.volumetric_strain);
       closing = core::min(point.plastic_volumetric_strain, max((tension - mean) * (1 / bulk), 0.0));
       mean += bulk * closing;
     }

@@ -17,6 +17,7 @@ struct StrengthPoint {
   double cell_size = 0;  ///< 0: none, a point without a grid
   core::Sym3<T> strain;  ///< deviator of the strain increment
   T volumetric_strain;   ///< its trace
+  T volume_ratio = 1.0;  ///< of the volumes at the end and at the start of the step
   T density;             ///< at the end of the step
 
   // --- changed -----------------------------------------------------------------------------------------

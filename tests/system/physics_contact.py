@@ -407,6 +407,27 @@ class Contact(_mpm.Case):
 def rows(path):
     return [line for line in path.read_text().splitlines() if line and not line.startswith("#")]
 
+    def test_oblique_faces_in_flat_cells(self):
+        """Two blocks whose faces stand at an angle to the axes collide without friction: the impulse is normal to the faces, whatever
+        the cells' proportions."""
+        for cell, angle in (((0.5, 0.5, 1), 45), ((0.5, 1, 1), 45), ((1, 0.5, 1), 45), ((0.5, 1, 1), 30)):
+            with self.subTest(cell=cell, angle=angle):
+                normal = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle)), 0])
+                plane = (f'<WorkPlane name="turned" r0x="10" r0y="10" r0z="0" ex="0" ey="0" ez="1" a11="{normal[0]!r}" '
+                         f'a21="{normal[1]!r}" a31="0"/>')
+                bodies = [_mpm.block(name, (at, -2, 0), (3, 4, 2), tuple(speed * normal), dp=0.25, attributes='workPlane="turned"')
+                          for name, at, speed in (("left", -3.05, 1.0), ("right", 0.05, -1.0))]
+                grid = _mpm.grid((0, 0, 0), (20, 20, 2), "000022").replace(
+                    '<DCell dx="1" dy="1" dz="1"/>', '<DCell dx="{}" dy="{}" dz="{}"/>'.format(*cell))
+                text = scene([component(str(k), body) for k, body in enumerate(bodies)], grid, _mpm.solution(0.5),
+                             '<Console print_time="0.1"/>', normal="regression")
+                _, summary, _ = self.go(text.replace("<Component", plane + "<Component", 1))
+                left, right = summary["bodies"]
+                impulse = left["mass"] * (np.subtract(right["velocity"], left["velocity"]) / 2 + normal)
+                found = math.degrees(math.atan2(impulse[1], impulse[0]))
+                print(f"faces at {angle} degrees, cells {cell}: impulse at {found:.2f} degrees")
+                self.assertAlmostEqual(found, angle, delta=1.5)
+
 
 if __name__ == "__main__":
     _mpm.main()

@@ -64,6 +64,14 @@ class Loads(_mpm.Case):
         self.assertLess(np.abs(found.column("velocity_0") - 3).max(), 1e-12)  # 1 + 2 t
         self.assertLess(np.abs(found.column("x") - found.column("x", 0) - 2).max(), 0.02)
 
+    def test_held_under_gravity(self):
+        # What holds a body carries its weight: no work where it rests, and that of the constraint where it moves.
+        for velocity in (0, -1):
+            body = _mpm.block("plate", (2, 2, 5), (4, 4, 2), (0, 0, velocity), more=f'<PrescribedVelocity vx="0" vy="0" vz="{velocity}"/>')
+            text = _mpm.scene([body], _mpm.grid((0, 0, 0), (10, 10, 10)), _mpm.solution(1.0, more='<Gravity ax="0" ay="0" az="-10"/>'))
+            self.run_in("run", [self.write(text)])
+            self.assertLess(abs(_mpm.summary(self.folder / "run")["energy"]["external_work"]), 1e-10)
+
     def test_pressure_all_around(self):
         # Slowly put on and at rest in the end: the pressure inside is that outside, everywhere, and nothing moves.
         load = '<Traction pressure="5"><Coefficient time="0" c="0"/><Coefficient time="2" c="1"/><Coefficient time="9" c="1"/></Traction>'

@@ -130,6 +130,28 @@ class Reactions(_mpm.Case):
                     self.assertGreater(np.abs(status["px[body:block]"][-1]), 1)
                     self.assertLess(error, 1e-6)
 
+    def test_implicit_frames(self):
+        """A block meets a driven body: the same as seen from frames that move with it, books included, and whether the body moves or
+        is held still."""
+        for rule in ('rule="newmark"', 'rule="backward_euler"', 'rule="generalised_alpha" spectral_radius="0.8"'):
+            found = {}
+            for speed in (0, 1e-9, 1.0, -1.0):
+                bodies = [_mpm.block("body", (0, 0, 4), (2, 2, 2), (0, 0, speed), more=driven(vz=speed)),
+                          _mpm.block("block", (0, 0, 6), (2, 2, 3), (0, 0, speed - 0.5))]
+                solution = physics_implicit.implicit(0.4, "dynamic", 0.02, rule + ' rtol="1e-9"')
+                text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 14), "222200"), solution, [physics_implicit.SOFT],
+                                  '<Console print_time="0.1"/>')
+                _, status = self.go(text)
+                energy = _mpm.summary(self.folder / "run")["energy"]
+                momentum = status["pz[body:block]"] - 12 * speed
+                lost = energy["total"] - energy["initial_total"] - energy["external_work"]
+                found[speed] = momentum, lost
+                print(f"{rule}, frame {speed}: block's momentum {momentum[-1]:+.4f}, energy less work {lost:+.4f} of 1.5")
+                self.assertLess(abs(lost), 0.15)
+            for speed, (momentum, lost) in found.items():
+                np.testing.assert_allclose(momentum, found[0][0], atol=1e-5)
+                self.assertAlmostEqual(lost, found[0][1], delta=1e-4)
+
     def test_moment(self):
         """A body that is driven to turn: the moment about its centre is its inertia times the angular acceleration. It hardly
         has strength."""

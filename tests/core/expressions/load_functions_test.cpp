@@ -50,7 +50,8 @@ TEST_CASE("A body force accelerates a particle by its value there at the middle 
   CHECK(p.v[0] == Approx(dt * (x[0] * x[1] + 0.5 * dt)).epsilon(1e-13));
   CHECK(p.v[1] == Approx(dt * 3).epsilon(1e-13));
   CHECK(p.v[2] == Approx(dt * (2 - 4.5 * dt)).epsilon(1e-13));
-  // The work is the kinetic energy, to the rounding of places: that of uniform forces follows from displacements.
+  // The work is the kinetic energy, to the rounding of places: that of uniform forces follows from
+  // displacements.
   CHECK(run.model.ledger.external_work.value() ==
         Approx(0.5 * p.m * (p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2])).epsilon(1e-9));
 }
