@@ -403,10 +403,6 @@ class Contact(_mpm.Case):
                 self.assertGreater(np.count_nonzero(force[:, 0]), 20)
                 self.assertGreater(summary["energy"]["dissipated_by_contact"], 0)
 
-
-def rows(path):
-    return [line for line in path.read_text().splitlines() if line and not line.startswith("#")]
-
     def test_oblique_faces_in_flat_cells(self):
         """Two blocks whose faces stand at an angle to the axes collide without friction: the impulse is normal to the faces, whatever
         the cells' proportions."""
@@ -427,6 +423,10 @@ def rows(path):
                 found = math.degrees(math.atan2(impulse[1], impulse[0]))
                 print(f"faces at {angle} degrees, cells {cell}: impulse at {found:.2f} degrees")
                 self.assertAlmostEqual(found, angle, delta=1.5)
+
+
+def rows(path):
+    return [line for line in path.read_text().splitlines() if line and not line.startswith("#")]
 
 
 if __name__ == "__main__":
