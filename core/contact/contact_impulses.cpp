@@ -21,12 +21,13 @@ struct Contact::Node {
   std::vector<ContactPair> pairs;
   std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
   // At the end of the step: velocities at its start, as the particles have them and with Pan's first
-  // impulses; those before the impulses that the particles get; and of each pair the share of Pan's first
-  // impulse that the particles get, and that part.
+  // impulses; those before the impulses that the particles get; and of each pair the share of the normal part
+  // of Pan's first impulse that the particles get, and what they get of that impulse.
   std::vector<Vec3<double>> start, nodal_start, taken;
-  std::vector<double> share;
+  std::vector<double> share, friction;
   std::vector<Vec3<double>> first_impulse;
-  std::vector<Vec3<double>> stops;  ///< of each pair the impulse that stops the approach at the start
+  /// Of each pair the impulse that stops the approach at the start, as far as the particles may get it.
+  std::vector<Vec3<double>> stops;
 
   void clear() {
     fields.clear(), rigid.clear(), wave.clear(), records.clear(), number.clear(), pairs.clear(),
@@ -85,6 +86,10 @@ void Contact::hold_pairs(Node& at) const {
 
 void Contact::resolve_strain(Node& at, Velocity which) const {
   if (which == Velocity::of_strain_after_end) hold_pairs(at);
+  // With Pan's method the particles still approach. Friction in proportion to that would shear the bodies,
+  // and the particles would not get its impulse: energy without a source. What slides strains as it slides.
+  if (method_ == ContactInput::Method::pan && !at.free_body)
+    for (ContactPair& pair : at.pairs) pair.friction = 0;
   resolve_contacts(at.fields, at.pairs);
   for (std::size_t f = 0; f < at.records.size(); ++f)
     for (int a = 0; at.rigid[f] < 0 && a < 3; ++a)
@@ -98,10 +103,10 @@ Vec3<double> Contact::increment(const Node& at, std::size_t f) {
   return static_cast<int>(f) == at.moves ? at.change : Vec3<double>{};
 }
 
-/// Of Pan's first impulse of a pair, the share that the particles get. What the nodes stop is stopped in the
-/// particles by the stress of a strain u/c, with the approach u and the larger wave speed c of the two. Above
-/// half of c that strain is no small one, from c on there is none: mass that is swept up has no momentum but
-/// from the impulse itself (a shell of 200 m/s in soil with waves of 50 m/s).
+/// Of the normal part of Pan's first impulse of a pair, the share that the particles get. What the nodes stop
+/// is stopped in the particles by the stress of a strain u/c, with the approach u and the larger wave speed c
+/// of the two. Above half of c that strain is no small one, from c on there is none: mass that is swept up
+/// has no momentum but from the impulse itself (a shell of 200 m/s in soil with waves of 50 m/s).
 double Contact::share_of_particles(const Node& at, const ContactPair& pair) const {
   const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
   const double approach = dot(at.start[a] - at.start[b], pair.normal),
@@ -109,35 +114,46 @@ double Contact::share_of_particles(const Node& at, const ContactPair& pair) cons
   return approach > 0 ? std::clamp(2 * approach / wave - 1, 0.0, 1.0) : 0.0;
 }
 
-/// The first impulses of Pan's method, and the velocities that they and the forces lead to.
+/// Stops the approach of the velocities at the start, and finds of what stops it the part that the particles
+/// may get: their share along the normal, and all of the friction, which is that of this share (4-48). With
+/// that of the rest the nodes would slide more slowly than their particles, and contact would book heat that
+/// these do not lose.
+void Contact::find_first_impulses(Node& at) const {
+  for (std::size_t f = 0; f < at.fields.size(); ++f) at.fields[f].velocity = at.start[f];
+  at.friction.clear();
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    at.friction.push_back(at.pairs[p].friction);
+    at.pairs[p].friction *= at.share[p];
+  }
+  resolve_contacts(at.fields, at.pairs);
+  at.stops.clear();
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    ContactPair& pair = at.pairs[p];
+    const double share = at.share[p];
+    Vec3<double> stops = share * pair.impulse;
+    if (pair.friction > 0 && share < 1)
+      stops = stops + (1 - share) * (pair.impulse - dot(pair.impulse, pair.normal) * pair.normal);
+    at.stops.push_back(stops);
+    pair.friction = at.friction[p];
+  }
+}
+
+/// From the first impulses, those of Pan's method and the velocities that they and the forces lead to.
 void Contact::correct_start(Node& at, ContactInput::Method method) const {
   const std::size_t count = at.fields.size();
-  for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.start[f];
-  resolve_contacts(at.fields, at.pairs);
   for (std::size_t f = 0; f < count; ++f) {
     at.nodal_start[f] = at.fields[f].velocity;
     at.fields[f].velocity = at.fields[f].velocity + increment(at, f);
   }
-  const bool pan = method == ContactInput::Method::pan;
-  if (pan)
-    for (std::size_t f = 0; f < count; ++f) at.taken[f] = at.fields[f].velocity;
+  at.first_impulse = at.stops;
+  if (method != ContactInput::Method::pan) return;
+  for (std::size_t f = 0; f < count; ++f) at.taken[f] = at.fields[f].velocity;
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
-    at.share[p] = pan ? share_of_particles(at, pair) : 1.0;
-    at.first_impulse[p] = at.share[p] * pair.impulse;
-    if (!pan) continue;
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
     at.taken[a] = at.taken[a] + (1 / at.fields[a].mass) * at.first_impulse[p];
     at.taken[b] = at.taken[b] - (1 / at.fields[b].mass) * at.first_impulse[p];
   }
-}
-
-/// What would stop the approach of the velocities at the start.
-void Contact::find_first_impulses(Node& at) const {
-  for (std::size_t f = 0; f < at.fields.size(); ++f) at.fields[f].velocity = at.start[f];
-  resolve_contacts(at.fields, at.pairs);
-  at.stops.clear();
-  for (const ContactPair& pair : at.pairs) at.stops.push_back(pair.impulse);
 }
 
 /// An impulse consists of a blow, which stops the approach at the start of the step, and of the part that
@@ -146,7 +162,7 @@ void Contact::find_blows(const Node& at, std::span<Vec3<double>> by_field) const
   std::ranges::fill(by_field, Vec3<double>{});
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
-    const Vec3<double> first = at.share[p] * at.stops[p], all = pair.impulse + at.first_impulse[p];
+    const Vec3<double> first = at.stops[p], all = pair.impulse + at.first_impulse[p];
     const double size = dot(first, first);
     if (!(size > 0)) continue;
     const Vec3<double> blow = std::clamp(dot(all, first) / size, 0.0, 1.0) * first;
@@ -167,9 +183,13 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   for (std::size_t f = 0; f < count; ++f)
     at.taken[f] = at.fields[f].velocity, at.start[f] = at.taken[f] - increment(at, f);
   at.nodal_start = at.start;
+  if (method == ContactInput::Method::pan)
+    for (std::size_t p = 0; p < at.pairs.size(); ++p) at.share[p] = share_of_particles(at, at.pairs[p]);
   find_first_impulses(at);
-  for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.taken[f];
-  if (method != ContactInput::Method::bardenhagen) correct_start(at, method);
+  if (method == ContactInput::Method::bardenhagen)
+    for (std::size_t f = 0; f < count; ++f) at.fields[f].velocity = at.taken[f];
+  else
+    correct_start(at, method);
   for (const ContactPair& pair : at.pairs) {
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
     sums.fastest = std::max(sums.fastest, dot(at.taken[a] - at.taken[b], pair.normal));

@@ -90,6 +90,21 @@ def dust(shape, kind, algorithm, walls, rigid):
     return text
 
 
+def struck(friction, kind, velocity, factor, algorithm="MUSL"):
+    """A plastic block that lies on a larger one, which is held from below, strikes it at a twentieth of its wave speed."""
+    plastic = 'type="JohnsonCook" Young="1000" Poisson="0.3" Yield0="5" B="10" n="0.5" C="0.02" m="1" melt="400" SpecHeat="1" epso="1"'
+    hard = _mpm.material("hard", 2.0, 'type="NeoHookean" Young="2000" Poisson="0.2"')
+    text = scene([component("base", _mpm.block("base", (0.9, 0.85, 0), (4, 5, 2), of="hard")),
+                  component("top", _mpm.block("top", (1.7, 1.6, 2), (2, 3, 2), velocity))],
+                 _mpm.grid((0, 0, 0), (6, 7, 8), "000010"), _mpm.solution(0.15, algorithm, factor), '<Console print_time="0.15"/>',
+                 kind=kind, distance=SHARED_NODE, friction=friction, normal="automatic")
+    for old, new in ((_mpm.material(strength=f'type="IsoElastic" Young="{YOUNG}" Poisson="0.3" bq1="0" bq2="0"'),
+                      _mpm.material(strength=plastic) + hard), ('mat2="soft"', 'mat2="hard"')):
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    return text
+
+
 CORNER = {"left": _mpm.block("left", (1.4, 2, 1.2), (3, 3, 3), (0.6, 0.1, 0)),
           "right": _mpm.block("right", (4.5, 2.2, 1.4), (3, 3, 3), (-0.5, 0, 0.2)),
           "above": _mpm.block("above", (2.6, 1.8, 4.5), (4, 3, 2), (0, 0.2, -0.8))}
@@ -149,7 +164,7 @@ class Contact(_mpm.Case):
                 self.assertAlmostEqual(acceleration, 1, delta=0.002)
                 self.assertAlmostEqual(heat, 1, delta=0.005)
                 self.assertLess(abs(across), 1e-3)
-                self.assertLess(abs(drift), 0.02 if kind == 0 else 0.002)
+                self.assertLess(abs(drift), 0.002)
 
     def test_sliding_with_equal_weights(self):
         """By regression, the default then, the normals of the block's edges do not tilt: the same accelerations, within 1 %. The means of
@@ -169,7 +184,7 @@ class Contact(_mpm.Case):
                 self.assertAlmostEqual(acceleration, 1, delta=0.01)
                 self.assertAlmostEqual(heat, 1 if friction else 0, delta=0.01)
                 self.assertLess(abs(across), 5e-3)
-                self.assertLess(abs(drift), 0.02 if kind == 0 else 0.002)
+                self.assertLess(abs(drift), 0.002)
 
     def test_automatic_weights(self):
         """The stiffer body's normals decide: those of the base, with which the block slides as with a weight."""
@@ -289,6 +304,30 @@ class Contact(_mpm.Case):
                 # The impulse on a free rigid body is not quite that which its velocity at the start would have.
                 self.assertLess(abs(drift), 1e-3 if rigid else 1e-10)
 
+    def test_friction_in_a_blow(self):
+        """What is struck loses the heat of friction that contact books. With type 0 the particles still approach when the nodes do not, and
+        friction by that approach gained energy: of the books 10 % were missing with mu 0.3, 25 % with 1, and these at all steps."""
+        for factor, most in ((0.5, 0.3), (0.1, 1.0)):
+            for kind, velocity, friction in itertools.product((0, 1, 2), ((0, 0, -2), (0.8, 0.5, -2)), (0, 0.1, 0.3, 1.0)):
+                if friction > most:
+                    continue  # 13 steps are too few for nodes that stick: 3 to 6 % with mu 1, whatever the type
+                with self.subTest(factor=factor, kind=kind, velocity=velocity, friction=friction):
+                    self.check_blow(friction, kind, velocity, factor)
+        for friction in (0.3, 1.0):
+            with self.subTest("USF", friction=friction):
+                self.check_blow(friction, 0, (0.8, 0.5, -2), 0.1, "USF")
+
+    def check_blow(self, friction, kind, velocity, factor, algorithm="MUSL"):
+        _, summary, status = self.go(struck(friction, kind, velocity, factor, algorithm))
+        energy = summary["energy"]
+        total, heat = energy["total"] / energy["initial_total"], status["friction_heat"][-1] / energy["initial_total"]
+        print(f"struck {algorithm} factor {factor} type {kind} velocity {velocity} mu {friction} left {total:.3f} heat {heat:.3f} "
+              f"drift {energy['relative_drift']:+.4f}")
+        self.assertLess(abs(energy["relative_drift"]), 0.02)
+        self.assertLess(total, 1.01)
+        if friction > 0:
+            self.assertGreater(heat, 0.02)
+
     def test_gap_between_faces(self):
         """The first force comes in the step in which the faces, or centres, come as near as min_distance; with type 0, whose forces are
         those that the bodies' stresses exert, in the step after: until they touch they have none."""
@@ -401,7 +440,7 @@ class Contact(_mpm.Case):
                 print(f"forces {name}: impulse {impulse}, relative error {error:.1e}, {len(table)} rows, {len(rest)} after the restart")
                 self.assertLess(error, 1e-10)
                 self.assertGreater(np.count_nonzero(force[:, 0]), 20)
-                self.assertGreater(summary["energy"]["dissipated_by_contact"], 0)
+                self.assertGreater(status["friction_heat"][-1], 0)
 
     def test_oblique_faces_in_flat_cells(self):
         """Two blocks whose faces stand at an angle to the axes collide without friction: the impulse is normal to the faces, whatever
