@@ -310,8 +310,8 @@ TEST_CASE("a bound of the plastic strain without one") {
                                note});
   CHECK(notes_of(replaced(bounded, "<FailureModel",
                           "<RandomFailure enable='1' FailDistribution='1'/><FailureModel")) ==
-        std::vector<std::string>{"line 8: <RandomFailure enable=\"1\">: no effect: this material cannot fail",
-                                 note});
+        std::vector<std::string>{
+            note, "line 8: <RandomFailure enable=\"1\">: no effect: this material cannot fail"});
 }
 
 TEST_CASE("quasi-static steps read no velocities") {
