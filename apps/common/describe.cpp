@@ -65,6 +65,17 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Redu
           model.scene->solution.end_time);
 }
 
+void warn_of_long_step(const core::Model& model, io::Log& log) {
+  const core::SolutionInput& solution = model.scene->solution;
+  const double specified = solution.time_step.specified, critical = model.clock.critical_dt;
+  constexpr double rounded = 1 + 1e-4;  // the critical step as this log prints it is accepted
+  if (solution.integration == core::Integration::implicit || !(specified > rounded * critical)) return;
+  log.warn(
+      "the specified time step {:.6g} is {:.3g} times the critical step {:.6g}: the run may be unstable; "
+      "specify less, or remove specified",
+      specified, specified / critical, critical);
+}
+
 void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log) {
   const std::vector<const core::BodyInput*> inputs = core::active_bodies(*model.scene);
   if (std::ranges::none_of(inputs, [](const auto* input) { return input->initial_temperature.has_value(); }))

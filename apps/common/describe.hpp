@@ -13,6 +13,9 @@ namespace mpm::apps {
 void describe(const core::Model& model, const core::Stepper& stepper, core::Reductions& ranks, int threads,
               io::Log& log);
 
+/// Warns of a specified time step above the critical one.
+void warn_of_long_step(const core::Model& model, io::Log& log);
+
 /// A body with an initial temperature, at the density of a cold one, starts under thermal pressure: a note
 /// gives the density (to first order) that avoids it. Collective.
 void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log);

@@ -84,6 +84,7 @@ class Run {
                 model_.clock.time);
     stepper_.emplace(model_, communication_);
     describe(model_, *stepper_, communication_.reductions, threads_, *log_);
+    warn_of_long_step(model_, *log_);
     for (const std::string& law : registry.added()) log_->note("law        {}, added by this program", law);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
     if (!case_.restart) say_thermal_pressures(model_, communication_, *log_);
@@ -331,6 +332,21 @@ class Run {
   double particle_steps_ = 0;
 };
 
+/// Options of a run have no effect where -h5pt only converts a file. Throws InputErrors.
+void refuse_with_conversion(const RunOptions& options) {
+  std::vector<core::Diagnostic> faults;
+  const auto refuse = [&](bool given, const char* option, const char* why) {
+    if (given) faults.push_back({options.job, 0, option, {}, {}, why});
+  };
+  refuse(options.dry_run, "--dry-run",
+         "does not go with -h5pt, which converts a file and runs nothing: omit one");
+  refuse(options.status_rows.has_value(), "-nsteps",
+         "has no effect with -h5pt, which runs no steps: omit it");
+  refuse(options.max_wall_time.has_value(), "--max-wall-time",
+         "has no effect with -h5pt, which runs no steps: omit it");
+  if (!faults.empty()) throw core::InputErrors(faults);
+}
+
 }  // namespace
 
 ExitCode run(const RunOptions& options, const parallel::Communicator& world,
@@ -340,7 +356,10 @@ ExitCode run(const RunOptions& options, const parallel::Communicator& world,
         core::SourceLocation{options.job, 0}, "-lsdyna",
         "known, but not implemented yet: omit the option; .h5part and .vtu files hold the particles");
   }
-  if (options.to_h5part) return convert_restart(options, world, registry.catalogue());
+  if (options.to_h5part) {
+    refuse_with_conversion(options);
+    return convert_restart(options, world, registry.catalogue());
+  }
   if (!options.dry_run) watch_signals();
   return Run(options, world, registry).go();
 }

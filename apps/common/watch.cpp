@@ -1,5 +1,6 @@
 #include "apps/common/watch.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -79,6 +80,8 @@ double Watch::mean_drift() const {
 }
 
 void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log) {
+  last_step_ = clock.step;
+  last_drift_ = balance.relative_drift;
   if (clock.step < first_judged_step) return;
   drifts_.push_back(balance.relative_drift);
   if (drifts_.size() > judged_rows) drifts_.pop_front();
@@ -93,7 +96,19 @@ void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& ba
   largest_mean_drift_ = mean;
 }
 
+/// Whether the run had fewer steps than the others are judged by, and a notable drift.
+bool Watch::drifted_early() const {
+  return last_step_ > 0 && last_step_ < first_judged_step &&
+         std::abs(last_drift_) >
+             std::max(notable_drift_of_short_run, notable_steps_of_drift / static_cast<double>(last_step_));
+}
+
 std::string Watch::words_of_drift() const {
+  if (drifted_early())
+    return fmt::format(
+        "the error of the energy balance was {:.3g} % at step {}, the last: the results may be wrong; "
+        "docs/stability.md lists remedies",
+        100 * last_drift_, last_step_);
   const double last = mean_drift();
   const double worst = std::abs(last) > std::abs(largest_mean_drift_) ? last : largest_mean_drift_;
   if (!(std::abs(worst) > notable_drift)) return {};

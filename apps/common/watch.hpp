@@ -23,6 +23,10 @@ inline constexpr std::size_t judged_rows = 10;
 /// The first step that is checked: earlier the total energy may be so small (a body that starts to fall) that
 /// the error of one step is a notable fraction of it.
 inline constexpr std::int64_t first_judged_step = 50;
+/// A run with fewer steps is judged by its last row, above these: a body that falls from rest for n steps has
+/// an error of up to 1/n.
+inline constexpr double notable_drift_of_short_run = 0.1;
+inline constexpr double notable_steps_of_drift = 2;
 
 class Watch {
  public:
@@ -60,6 +64,9 @@ class Watch {
                     {"whose volume would have vanished", {}, 0},
                     {"left the grid", {}, 0}};
   double mean_drift() const;
+  bool drifted_early() const;
+  std::int64_t last_step_ = 0;  ///< of the rows
+  double last_drift_ = 0;
   std::deque<double> drifts_;  ///< of the last judged_rows
   double largest_mean_drift_ = 0;
   std::multimap<double, std::string> load_ends_;  ///< end time of each load table, and its owner

@@ -34,6 +34,14 @@ bool is_name(std::string_view token) {
   return !token.empty() && letter(token.front());
 }
 
+void define_functions(mu::Parser& parser) { parser.DefineFun("if", choose); }
+
+bool is_function(const std::string& name) {
+  mu::Parser parser;
+  define_functions(parser);
+  return parser.GetFunDef().contains(name);
+}
+
 /// The parser's error as a message to the user.
 Formula::Check refusal(const mu::ParserError& fault) {
   Formula::Check check;
@@ -48,6 +56,11 @@ Formula::Check refusal(const mu::ParserError& fault) {
   const auto at = [&] { return fmt::format("at character {}", fault.GetPos() + 1); };
   switch (fault.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN:
+      if (is_function(token)) {
+        check.error =
+            fmt::format("function '{0}' {1} needs its arguments in parentheses: {0}(...)", token, at());
+        break;
+      }
       if (is_name(token)) check.unknown_name = token;
       check.error = fmt::format("unknown name '{}' {}", token, at());
       break;
@@ -96,7 +109,7 @@ struct Formula::Parser {
     for (std::size_t i = 0; i < values.size(); ++i)
       parser.DefineVar(std::string(1, variable_names[i]), &values[i]);
     parser.DefineConst("pi", std::numbers::pi);
-    parser.DefineFun("if", choose);
+    define_functions(parser);
     parser.SetExpr(std::string(text));
   }
 };

@@ -103,6 +103,10 @@ void refuse_implicit(const Scene& scene, const BodyInput& input, const Constitut
     refuse(
         "without stiffness in shear nothing decides where it is at rest; use Implicit@type \"dynamic\" "
         "or \"semi\"");
+  if (material.conductivity() > 0)
+    refuse(
+        "heat is conducted in explicit steps alone; set CoefficientOfThermalConductivity to 0, or remove "
+        "Solution@Integration");
   if (implicit && implicit->difference_tangent) return;
   const std::string fault = material.tangent_fault();
   if (!fault.empty())

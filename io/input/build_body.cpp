@@ -269,6 +269,21 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
   }
 }
 
+/// The bounds of the volume must contain the one at the start, or the first step would change it.
+void check_volume_bounds(const core::BodyInput& body, const Node& node, const core::Scene& scene,
+                         const BuildContext& context) {
+  const core::MaterialInput& material = scene.materials[body.material];
+  const core::VolumeInput& bounds = scene.solution.volume;
+  const double start = material.reference_density / body.density;
+  if (bounds.min.value_or(1) > 1 || bounds.max.value_or(1) < 1) return;  // reported already
+  if (core::is_rigid(material) || body.deactivated || body.for_bool) return;
+  if (start < bounds.min.value_or(start) || start > bounds.max.value_or(start))
+    node.report(context.diagnostics, "density",
+                fmt::format("body '{}' starts with {:.6g} of its volume at reference density, outside of "
+                            "Volume {}: change density, or min and max",
+                            body.name, start, start < bounds.min.value_or(0) ? "min" : "max"));
+}
+
 core::BodyInput build_body(const Node& node, const core::Scene& scene, const BuildContext& context) {
   core::BodyInput body;
   body.name = node.word("name");
@@ -287,6 +302,7 @@ core::BodyInput build_body(const Node& node, const core::Scene& scene, const Bui
     body.geometry = build_geometry(*geometry, context);
   build_loads(body, node, context);
   check_held(body, node, context);
+  if (material) check_volume_bounds(body, node, scene, context);
   return body;
 }
 

@@ -68,6 +68,10 @@ core::VolumeInput build_volume(const Node& node, const BuildContext& context) {
   volume.erode = node.given_real("erode");
   volume.min = node.given_real("min");
   volume.max = node.given_real("max");
+  if (volume.min && *volume.min > 1)
+    node.report(context.diagnostics, "min", "expected at most 1, the volume at reference density");
+  if (volume.max && *volume.max < 1)
+    node.report(context.diagnostics, "max", "expected at least 1, the volume at reference density");
   if (volume.min && volume.max && *volume.max <= *volume.min)
     node.report(context.diagnostics, "max", fmt::format("expected more than min, {}", *volume.min));
   return volume;
@@ -268,6 +272,10 @@ void build_body_history(core::TimeHistoryInput& history, const Node& node, const
   for (const core::BodyInput* body : bodies) names.emplace_back(body->name);
   for (const Node& of : node.children("Body")) {
     const std::optional<std::size_t> body = resolve(of, "name", "body", names, context);
+    if (body && std::ranges::find(history.bodies, names[*body]) != history.bodies.end()) {
+      of.report(context.diagnostics, "name", "this TimeHistory has this body already: remove one of the two");
+      continue;
+    }
     if (!body || bodies[*body]->material >= scene.materials.size()) continue;
     if (!core::has_reaction(scene, *bodies[*body]))
       of.report(context.diagnostics, "name",

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/contact/component_contact.hpp"
+#include "core/contact/contact_record.hpp"
 #include "core/discretise/solid_box.hpp"
 
 namespace mpm::io {
@@ -162,6 +163,19 @@ void note_tied_weights(const Node& root, const core::Scene& scene, std::vector<c
                            : "")});
 }
 
+/// core/contact/contact_record.hpp
+void note_pairs(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const std::optional<Node> contact = root.child("Contact");
+  const std::size_t components = core::component_count(scene);
+  if (!contact || !scene.contact.record_force || components <= core::ContactPairs::most_components) return;
+  notes.push_back(
+      {scene.provenance.path, contact->line(), "Contact", "record_contact_force", "1",
+       fmt::format("the scene has {} components{}: with more than {} only the force between the "
+                   "first two is recorded",
+                   components, core::has_failed_component(scene) ? " with that of failed particles" : "",
+                   core::ContactPairs::most_components)});
+}
+
 /// Measured in tests/system/physics_contact.py: USF strains before it knows the step's impulses.
 void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   const std::optional<Node> contact = root.child("Contact"), solution = root.child("Solution");
@@ -209,6 +223,7 @@ void note_contact(const Node& root, const core::Scene& scene, std::vector<core::
   note_free(root, scene, notes);
   note_scheme(root, scene, notes);
   note_tied_weights(root, scene, notes);
+  note_pairs(root, scene, notes);
 }
 
 void note_no_contact(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {

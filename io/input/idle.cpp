@@ -9,6 +9,7 @@
 
 #include "io/input/contact_notes.hpp"
 #include "io/input/idle_rules.hpp"
+#include "io/input/shape_notes.hpp"
 #include "io/input/text.hpp"
 
 namespace mpm::io {
@@ -120,6 +121,7 @@ std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene
     note_contact(root, scene, notes);
   else
     note_no_contact(scene, notes);
+  note_blocks(scene, notes);
   std::ranges::stable_sort(notes, {}, &core::Diagnostic::line);
   return notes;
 }

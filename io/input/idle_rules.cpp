@@ -48,16 +48,18 @@ bool unused_plane(const Place& at) {
 }
 
 /// Whether the law itself has damage.
-bool has_damage(const Place& at) {
-  const std::string& type = at.strength().type;
-  return type == "HolmquistJohnsonCook" || type == "RHT" || type == "JH2" ||
-         (type == "JohnsonCook" && at.strength().has("D1"));
+bool has_damage(const core::LawInput& law) {
+  return law.type == "HolmquistJohnsonCook" || law.type == "RHT" || law.type == "JH2" ||
+         (law.type == "JohnsonCook" && law.has("D1"));
 }
+bool has_damage(const Place& at) { return has_damage(at.strength()); }
 
-bool can_fail(const Place& at) {
-  const std::string& type = at.strength().type;
-  return !at.material->failures.empty() || has_damage(at) || type == "DruckerPrager" || type == "DFFoam" ||
-         type == "Gurson";
+bool can_fail(const Place& at) { return io::can_fail(*at.material); }
+
+bool nothing_fails(const Place& at) {
+  return at.scene.contact.enable && !any_body(at.scene, [&](const core::BodyInput& body) {
+           return io::can_fail(material_of(at.scene, body));
+         });
 }
 
 bool failed_type_is_not(const Place& at, int type) { return at.strength().value_or("FailedType", 0) != type; }
@@ -105,11 +107,39 @@ bool steps_are_implicit(const Place& at) {
   return at.scene.solution.integration == core::Integration::implicit;
 }
 bool steps_are_explicit(const Place& at) { return !steps_are_implicit(at); }
+bool is_quasistatic(const Place& at) {
+  return steps_are_implicit(at) && at.scene.solution.implicit && at.scene.solution.implicit->quasistatic();
+}
+/// A velocity given at the start, which quasi-static steps do not read.
+bool velocity_is_lost(const Place& at) {
+  return is_quasistatic(at) && !operand(at) && !at.body->prescribed_velocity &&
+         !at.body->constrain_rigid_position;
+}
+bool step_is_given(const Place& at) {
+  const core::TimeStepInput& step = at.scene.solution.time_step;
+  return at.scene.contact.enable && !steps_are_implicit(at) && (step.specified > 0 || step.constant);
+}
 
 using Random = core::RandomFailureInput;
 const Random& random(const Place& at) { return at.material->random_failure; }
 
 }  // namespace
+
+bool has_plastic_strain(std::string_view strength_type) {
+  constexpr std::string_view without[] = {"IsoElastic", "CauchyElastic", "Elastic_1D",
+                                          "Null",       "HighExpBurn",   "MooneyRivlin",
+                                          "NeoHookean", "Corotated",     "Rigid"};
+  return std::ranges::find(without, strength_type) == std::end(without);
+}
+
+bool can_fail(const core::MaterialInput& material) {
+  const std::string& type = material.strength.type;
+  return std::ranges::any_of(material.failures,
+                             [&](const core::FailureInput& failure) {
+                               return failure.type != "PlaStrain" || has_plastic_strain(type);
+                             }) ||
+         has_damage(material.strength) || type == "DruckerPrager" || type == "DFFoam" || type == "Gurson";
+}
 
 const std::vector<IdleRule>& idle_rules() {
   static constexpr std::string_view no_contact = "used only by Contact, which is off";
@@ -194,6 +224,10 @@ const std::vector<IdleRule>& idle_rules() {
        {"limiter"},
        [](const Place& at) { return !core::is_rigid(*at.material) && steps_are_implicit(at); },
        "implicit steps have no artificial viscosity"},
+      {"Material/StrengthModel",
+       {"bq1", "bq2"},
+       [](const Place& at) { return !core::is_rigid(*at.material) && steps_are_implicit(at); },
+       "implicit steps have no artificial viscosity"},
       {"Material/EquationOfState",
        {"c0", "c1", "c2", "c3", "c4", "c5", "c6"},
        [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 1; },
@@ -211,6 +245,12 @@ const std::vector<IdleRule>& idle_rules() {
        [](const Place& at) { return at.node.type() == "none"; },
        "type none has no criterion"},
       {"Material/FailureModel", {}, all_zero, "all its bounds are 0, which switches it off"},
+      {"Material/FailureModel",
+       {},
+       [](const Place& at) {
+         return at.node.type() == "PlaStrain" && !has_plastic_strain(at.strength().type);
+       },
+       "this StrengthModel has no plastic strain"},
       {"Material/RandomFailure",
        {"*"},
        [](const Place& at) { return !random(at).enable; },
@@ -254,6 +294,11 @@ const std::vector<IdleRule>& idle_rules() {
        gaps_without_limit,
        "without min_distance bodies touch at all nodes that both reach, up to two cells apart; give "
        "min_distance=\"0.5\" with distance_type 1, 0.05 with 2"},
+      {"Contact",
+       {"failure_to_component"},
+       nothing_fails,
+       "no body has a material that can fail; give it a FailureModel"},
+      {"Contact", {"contact_time_step"}, step_is_given, "TimeStep specified or const decides the step"},
       {"Contact", {"min_distance"}, gaps_at_nodes, "used only with distance_type=\"1\" or \"2\""},
       {"Component/Body",
        {"ForBoolBody"},
@@ -274,6 +319,10 @@ const std::vector<IdleRule>& idle_rules() {
        {"vx", "vy", "vz"},
        [](const Place& at) { return at.body->prescribed_velocity.has_value(); },
        "PrescribedVelocity replaces it from the start"},
+      {"Component/Body/InitialVelocity",
+       {"vx", "vy", "vz"},
+       velocity_is_lost,
+       "quasi-static steps have no inertia"},
       {"Component/Body/PrescribedAcceleration/Coefficient",
        {"crx", "cry", "crz"},
        [](const Place& at) {
@@ -321,6 +370,10 @@ const std::vector<IdleRule>& idle_rules() {
        [](const Place& at) { return at.scene.solution.averaging == core::VolumeAveraging::none; },
        "used only with averaging=\"cell\""},
       {"Solution/DynamicRelax", {}, all_rigid, "it does not apply to rigid bodies"},
+      {"Solution/DynamicRelax",
+       {},
+       [](const Place& at) { return is_quasistatic(at) && !all_rigid(at); },
+       "quasi-static steps have no velocities to damp"},
       {"Solution/OpenMPSetting",
        {"directionofdecomposition"},
        [](const Place&) { return true; },

@@ -35,4 +35,9 @@ struct IdleRule {
 
 const std::vector<IdleRule>& idle_rules();
 
+/// Whether particles of this strength model have an effective plastic strain; true for a user's model.
+bool has_plastic_strain(std::string_view strength_type);
+/// Whether particles of the material can fail.
+bool can_fail(const core::MaterialInput& material);
+
 }  // namespace mpm::io

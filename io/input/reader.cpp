@@ -16,6 +16,7 @@
 #include "io/input/specification.hpp"
 #include "io/input/text.hpp"
 #include "io/input/user_specification.hpp"
+#include "io/output/provenance.hpp"
 
 namespace mpm::io {
 
@@ -118,6 +119,11 @@ core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& fil
   const std::filesystem::path name = file.extension() == ".xmp" ? file.stem() : file.filename();
   if (name.empty() || name == ".xmp")
     diagnostics.add(0, {}, "the file name is empty before .xmp, so the job has no name: rename the file");
+  if (name.native().size() > most_bytes_of_job)
+    diagnostics.add(0, {},
+                    fmt::format("the job's name has {} bytes, which is too long for the names of its files: "
+                                "rename the file, to at most {}",
+                                name.native().size(), most_bytes_of_job));
   diagnostics.raise_if_any();
   scene.provenance = {file.string(), name.string(), fnv1a_hex(bytes)};
   if (options.foreign) *options.foreign = foreign_names(Node(document, 0, root, {}), file.string());

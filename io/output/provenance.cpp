@@ -1,6 +1,8 @@
 #include "io/output/provenance.hpp"
 
+#include <algorithm>
 #include <ctime>
+#include <map>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -16,6 +18,13 @@ std::string one_line(std::string text) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   }
   return text;
+}
+
+/// The start of a text of UTF-8, of whole characters.
+std::string first_bytes(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;
+  return text.substr(0, most);
 }
 
 }  // namespace
@@ -82,6 +91,26 @@ std::string safe_name(const std::string& name) {
   }
   if (out.empty() || out.find_first_not_of('.') == std::string::npos) out = "_" + out;
   return out;
+}
+
+std::vector<std::string> distinct_names(const std::vector<std::string>& names, const std::string& kind,
+                                        std::size_t most) {
+  std::vector<std::string> distinct;
+  std::map<std::string, int> times;
+  for (const std::string& name : names) {
+    distinct.push_back(safe_name(name));
+    ++times[distinct.back()];
+  }
+  for (std::size_t i = 0; i < distinct.size(); ++i) {
+    std::string& name = distinct[i];
+    if (times.at(name) == 1 && name.size() <= most) continue;
+    std::string ending = fmt::format("_{}{}", kind, i);
+    std::string stem = name;
+    if (most != std::string::npos) stem = first_bytes(stem, most - std::min(most, ending.size()));
+    while (!times.emplace(stem + ending, 1).second) ending += '_';
+    name = stem + ending;
+  }
+  return distinct;
 }
 
 }  // namespace mpm::io

@@ -28,7 +28,15 @@ std::string to_xml_comment(const ProvenanceLines& lines);
 /// As text or as the value of an attribute; a control character becomes a space.
 std::string xml_escaped(std::string_view text);
 
+/// With it, the longest name of a file has less than a file system's 255 bytes.
+inline constexpr std::size_t most_bytes_of_job = 200;
+
 /// `name` with characters invalid in file names or column headings replaced by '_'; never empty.
 std::string safe_name(const std::string& name);
+
+/// The safe names of the bodies or materials, `kind`, of a model: where two are equal, or one is longer than
+/// `most` bytes (at least 20), with the kind and the number: a_b_body0, a_b_body1.
+std::vector<std::string> distinct_names(const std::vector<std::string>& names, const std::string& kind,
+                                        std::size_t most = std::string::npos);
 
 }  // namespace mpm::io

@@ -30,11 +30,15 @@ std::string head_of(const core::Model& model, const Reactions& reactions) {
        {"time", "dt", "kinetic", "internal", "external_work", "total", "relative_drift", "px", "py", "pz"}) {
     add(name);
   }
-  const auto add_group = [&](const std::string& kind, const std::string& name) {
-    for (const char* column : group_columns) add(fmt::format("{}[{}:{}]", column, kind, safe_name(name)));
+  const auto add_groups = [&](const std::string& kind, const std::vector<std::string>& names) {
+    for (const std::string& name : distinct_names(names, kind))
+      for (const char* column : group_columns) add(fmt::format("{}[{}:{}]", column, kind, name));
   };
-  for (const core::Body& b : model.bodies) add_group("body", b.name);
-  for (const auto& m : model.materials) add_group("material", m->name());
+  std::vector<std::string> bodies, materials;
+  for (const core::Body& b : model.bodies) bodies.push_back(b.name);
+  for (const auto& m : model.materials) materials.push_back(m->name());
+  add_groups("body", bodies);
+  add_groups("material", materials);
   if (model.scene->contact.enable) {
     add("contact_dissipation");
     add("friction_heat");

@@ -190,13 +190,13 @@ std::string index_of_pieces(const std::string& stem, const std::vector<int>& ran
   return text + "</PUnstructuredGrid>\n</VTKFile>\n";
 }
 
-/// Name of a body in file names: its own name where that is valid and unique.
-std::string file_name_of(const core::Model& model, std::size_t body) {
-  const std::string name = safe_name(model.bodies[body].name);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (b != body && safe_name(model.bodies[b].name) == name) return fmt::format("{}_body{}", name, body);
-  }
-  return name;
+/// Names of the bodies in file names: their own where these are valid, unique, and short enough for a file
+/// system's 255 bytes with the job, the step, the rank and the ending.
+std::vector<std::string> file_names_of(const core::Model& model, const std::string& job) {
+  constexpr std::size_t most = 255 - 35;
+  std::vector<std::string> names;
+  for (const core::Body& body : model.bodies) names.push_back(body.name);
+  return distinct_names(names, "body", most - std::min(job.size(), most_bytes_of_job));
 }
 
 /// Inverse of xml_escaped().
@@ -325,9 +325,9 @@ void VtuWriter::write(const core::Model& model, core::Reductions& ranks) {
   if (!settings_.per_body) {
     write_set(fmt::format("{}_{}", settings_.job, model.clock.step), "all bodies", written, model, ranks, 0);
   } else {
+    const std::vector<std::string> bodies = file_names_of(model, settings_.job);
     for (const std::size_t b : written) {
-      const std::string stem =
-          fmt::format("{}_{}_{}", settings_.job, file_name_of(model, b), model.clock.step);
+      const std::string stem = fmt::format("{}_{}_{}", settings_.job, bodies[b], model.clock.step);
       write_set(stem, model.bodies[b].name, {b}, model, ranks, static_cast<int>(b));
     }
   }

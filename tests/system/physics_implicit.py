@@ -504,6 +504,11 @@ class Refused(_mpm.Case):
         for more in ("", 'jacobian="differences"'):
             self.refused(column(material=fluid, more=more), "case.xmp:6:", "'soft'", "stiffness in shear", "dynamic")
             self.refused(column(material=explosive, more=more), "case.xmp:6:", "'soft'", "explosives", "remove Solution@Integration")
+        warm = _mpm.material("soft", 1.0, 'type="IsoHarden" Young="1000" Poisson="0.3" Yield0="20" TangMod="100" '
+                             'SpecHeat="1" CoefficientOfThermalConductivity="0.1"')
+        for more in ("", 'jacobian="differences"'):
+            self.refused(column(material=warm, more=more), "case.xmp:6:", "'soft'", "heat is conducted in explicit steps alone")
+            self.assertNotIn("differences", _mpm.run([self.folder / "case.xmp"], program="mpm_check").err)
         self.refused(column(more='newmark_beta="0.1"').replace("quasistatic", "dynamic"), "newmark_beta")
         self.refused(column(more='min_step="1"'), "time_step")
 

@@ -116,6 +116,8 @@ LINES = [
     ("no wall time", ["{}/good.xmp", "--max-wall-time", "-1"], INPUT_ERROR, ["max-wall-time", "-1"]),
     ("-rt with an input", ["{}/good.xmp", "-rt", "{}/good.xmp"], INPUT_ERROR, ["-rt", ".pe"]),
     ("-h5pt of an input", ["{}/good.xmp", "-h5pt"], INPUT_ERROR, ["-h5pt", ".pe"]),
+    ("-h5pt without a run", ["{}/case_1.pe", "-h5pt", "--dry-run", "-nsteps", "1", "--max-wall-time", "1"], INPUT_ERROR,
+     ["--dry-run", "-nsteps", "--max-wall-time", "runs no steps"]),
     ("-lsdyna", ["{}/good.xmp", "-lsdyna"], INPUT_ERROR, ["-lsdyna", "not implemented"]),
     ("output folder is a file", ["{}/good.xmp", "--output-dir", "{}/file"], FILE_ERROR, ["{}/file"]),
     ("output folder below a file", ["{}/good.xmp", "--output-dir", "{}/file/out"], FILE_ERROR, ["{}/file"]),

@@ -52,6 +52,8 @@ TEST_CASE("The check of a formula names its variables, its constant value or its
 
   CHECK(error_of("1d3") == "unknown name 'd3' at character 2");
   CHECK(Formula::check("sine(x)").unknown_name == "sine");
+  CHECK(error_of("2*sin") == "function 'sin' at character 3 needs its arguments in parentheses: sin(...)");
+  CHECK(error_of("if + 1") == "function 'if' at character 1 needs its arguments in parentheses: if(...)");
   CHECK(error_of("5 GPa") == "unknown name 'GPa' at character 3");
   CHECK(error_of("3x") == "unexpected 'x' at character 2");
   CHECK(error_of("x^^2") == "unexpected '^' at character 3");

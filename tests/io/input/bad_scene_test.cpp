@@ -273,11 +273,54 @@ TEST_CASE("the grid") {
   });
 }
 
+TEST_CASE("a body whose volume at the start is outside the bounds of the volume") {
+  const auto found = [](const std::string& bounds, const std::string& density) {
+    return faults(replaced(replaced(bar, "<EndTime", "<Volume " + bounds + "/><EndTime"), "name=\"rod\"",
+                           "name=\"rod\" density=\"" + density + "\""));
+  };
+  CHECK(found("min=\"0.5\" max=\"2\"", "16e-3") == std::vector<std::string>{"ok"});
+  CHECK(found("min=\"0.5\" max=\"2\"", "20e-3") ==
+        std::vector<std::string>{
+            "line 12: <Body density=\"20e-3\">: body 'rod' starts with 0.4465 of its "
+            "volume at reference density, outside of Volume min: change density, or min and max"});
+  CHECK(found("max=\"2\"", "4e-3") ==
+        std::vector<std::string>{
+            "line 12: <Body density=\"4e-3\">: body 'rod' starts with 2.2325 of its "
+            "volume at reference density, outside of Volume max: change density, or min and max"});
+}
+
+TEST_CASE("a body named twice in a history, and a job's name that is too long") {
+  const std::string driven = replaced(bar, "<InitialVelocity vx=\"0\" vy=\"0\" vz=\"-190\"/>",
+                                      "<PrescribedVelocity vx=\"0\" vy=\"0\" vz=\"-190\"/>");
+  const auto history = [&](const std::string& bodies) {
+    return faults(
+        replaced(driven, "</PeneBlast>",
+                 "<Output><TimeHistory var='force'>" + bodies + "</TimeHistory></Output></PeneBlast>"));
+  };
+  CHECK(history("<Body name='rod'/>") == std::vector<std::string>{"ok"});
+  CHECK(
+      history("<Body name='rod'/><Body name='rod'/>") ==
+      std::vector<std::string>{"line 26: <Body name=\"rod\">: this TimeHistory has this body already: remove "
+                               "one of the two"});
+  const auto named = [](std::size_t bytes) {
+    return io::parse_scene(bar, std::string(bytes, 'j') + ".xmp", test::small_catalogue());
+  };
+  CHECK_NOTHROW(named(200));
+  CHECK_THROWS_WITH(named(201), Catch::Contains("the job's name has 201 bytes, which is too long for the "
+                                                "names of its files: rename the file, to at most 200"));
+}
+
 TEST_CASE("solution and output") {
   check_faults({
       {"<EndTime",
-       "<Volume min=\"2\" max=\"1\"/><EndTime",
-       {"line 25: <Volume max=\"1\">: expected more than min, 2"}},
+       "<Volume min=\"1\" max=\"1\"/><EndTime",
+       {"line 25: <Volume max=\"1\">: expected more than min, 1"}},
+      {"<EndTime",
+       "<Volume min=\"1.1\"/><EndTime",
+       {"line 25: <Volume min=\"1.1\">: expected at most 1, the volume at reference density"}},
+      {"<EndTime",
+       "<Volume max=\"0.9\"/><EndTime",
+       {"line 25: <Volume max=\"0.9\">: expected at least 1, the volume at reference density"}},
       {"<EndTime",
        "<Volumetric averaging=\"brick\"/><EndTime",
        {"line 25: <Volumetric averaging=\"brick\">: expected one of none, cell"}},

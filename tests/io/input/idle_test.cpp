@@ -5,8 +5,10 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "io/input/idle_rules.hpp"
 #include "io/input/specification.hpp"
 #include "physics/catalogue.hpp"
+#include "physics/strength/list.hpp"
 #include "tests/io/input/support.hpp"
 
 namespace {
@@ -105,6 +107,7 @@ TEST_CASE("settings of materials without effect") {
       {"<FailureModel type=\"none\"/>",
        "<FailureModel type='PriStress' PriStressMax='0' PriStressMin='0' ShearStressMax='0'/>",
        "line 8: <FailureModel>: no effect: all its bounds are 0, which switches it off"},
+      {"<FailureModel type=\"none\"/>", "<FailureModel type='PlaStrain' epmax='1'/>", ""},
       {"<FailureModel type=\"none\"/>", "<RandomFailure FailDistribution='2' WeibMed='2'/>",
        "line 8: <RandomFailure>: FailDistribution, WeibMed have no effect: RandomFailure is off"},
       {"<FailureModel type=\"none\"/>",
@@ -284,10 +287,66 @@ TEST_CASE("the limiter of the viscosity with implicit steps") {
                            "artificial viscosity") == 1);
 }
 
+TEST_CASE("laws without plastic strain are known") {
+  physics::for_each_law<physics::StrengthModels>([]<class Law>(std::type_identity<Law>) {
+    INFO(Law::name);
+    CHECK(io::has_plastic_strain(Law::name) ==
+          (std::ranges::count(Law::state, core::Column::effective_plastic_strain) == 1));
+  });
+  CHECK(io::has_plastic_strain("a user's law"));
+}
+
+TEST_CASE("a bound of the plastic strain without one") {
+  const std::string elastic =
+      replaced(bar, law, "<StrengthModel type='IsoElastic' Young='117e3' Poisson='.35'");
+  const std::string bounded =
+      replaced(elastic, "<FailureModel type=\"none\"/>", "<FailureModel type='PlaStrain' epmax='1'/>");
+  const std::string note = "line 8: <FailureModel>: no effect: this StrengthModel has no plastic strain";
+  CHECK(notes_of(bounded) == std::vector{note});
+  CHECK(
+      notes_of(replaced(bounded, "type='IsoElastic'", "type='IsoElastic' FailedType='1'")) ==
+      std::vector<std::string>{"line 6: <StrengthModel FailedType=\"1\">: no effect: applies only to failed "
+                               "particles, and this material cannot fail",
+                               note});
+  CHECK(notes_of(replaced(bounded, "<FailureModel",
+                          "<RandomFailure enable='1' FailDistribution='1'/><FailureModel")) ==
+        std::vector<std::string>{
+            note, "line 8: <RandomFailure enable=\"1\">: no effect: this material cannot fail"});
+}
+
+TEST_CASE("quasi-static steps read no velocities") {
+  std::string text = replaced(bar, "<Solution>", "<Solution Integration='impl'>");
+  text = replaced(text, "<EndTime", "<DynamicRelax damping='1'/><Implicit type='quasistatic'/><EndTime");
+  const std::vector<std::string> both{
+      "line 14: <InitialVelocity vz=\"-190\">: no effect: quasi-static steps have no inertia",
+      "line 25: <DynamicRelax>: no effect: quasi-static steps have no velocities to damp"};
+  CHECK(notes_of(text) == both);
+  CHECK(notes_of(replaced(text, "vz=\"-190\"", "vz=\"0\"")) == std::vector{both[1]});
+  CHECK(notes_of(replaced(text, "quasistatic", "dynamic")).empty());
+  CHECK(notes_of(
+            replaced(replaced(text, "quasistatic", "dynamic"), law, std::string(law) + " bq1='0' bq2='0'")) ==
+        std::vector<std::string>{"line 6: <StrengthModel>: bq1, bq2 have no effect: implicit steps have no "
+                                 "artificial viscosity"});
+}
+
+TEST_CASE("a block whose spacing does not divide its edges") {
+  const auto notes = [](const std::string& dp) {
+    return notes_of(replaced(bar, "dp=\"0.38\" x0=\"0\" y0=\"0\" z0=\"0\" lx=\"3.8\" ly=\"3.8\" lz=\"19\"",
+                             "dp=\"" + dp + "\" x0=\"0\" y0=\"0\" z0=\"0\" lx=\"2\" ly=\"2\" lz=\"2\""));
+  };
+  CHECK(notes("0.5").empty());
+  CHECK(notes("0.501").empty());  // 0.6 % more mass
+  CHECK(notes("0.7") ==
+        std::vector<std::string>{
+            "line 12: <Body>: body 'rod': dp 0.7 does not divide its edges 2 x 2 x 2: its particles "
+            "fill 2.1 x 2.1 x 2.1, with the mass 0.0827007 instead of 0.07144"});
+  CHECK(notes("3").size() == 1);
+}
+
 /// A second body beside the rod, of the rod's component or of one of its own.
 std::string two_bodies(std::string_view text, double x, bool own_component) {
   const std::string second = fmt::format(
-      "<Body name='second' material='cu' type='Block'><Geometry dp='0.38' x0='{}' y0='0' z0='1' lx='1' "
+      "<Body name='second' material='cu' type='Block'><Geometry dp='0.25' x0='{}' y0='0' z0='1' lx='1' "
       "ly='1' "
       "lz='1'/></Body></Component>",
       x);
@@ -380,6 +439,42 @@ TEST_CASE("contact cannot part driven rigid bodies") {
   CHECK(passing(still, falls) == 1);
   CHECK(passing(falls, "") == 0);     // the second is free
   CHECK(passing(still, still) == 0);  // they never meet
+}
+
+TEST_CASE("contact without failure, with a given step, and of many components") {
+  const auto notes = [](const std::string& contact, const std::string& step, std::string text) {
+    text = replaced(text, "<Solution>",
+                    "<Contact enable='1' contact_normal='regression' " + contact + "/><Solution>");
+    return notes_of(replaced(text, "<EndTime", step + "<EndTime"), true);
+  };
+  const std::string two = two_bodies(bar, 6, true);
+  CHECK(notes("failure_to_component='1'", "", two) ==
+        std::vector<std::string>{"line 25: <Contact failure_to_component=\"1\">: no effect: no body has a "
+                                 "material that can fail; give it a FailureModel"});
+  CHECK(notes("failure_to_component='1'", "",
+              replaced(two, "<FailureModel type=\"none\"/>", "<FailureModel type='PlaStrain' epmax='1'/>"))
+            .empty());
+  CHECK(notes("contact_time_step='1'", "<TimeStep factor='0.5'/>", two).empty());
+  for (const std::string step : {"specified='1e-4'", "const='1'"})
+    CHECK(notes("contact_time_step='1'", "<TimeStep " + step + "/>", two) ==
+          std::vector<std::string>{
+              "line 25: <Contact contact_time_step=\"1\">: no effect: TimeStep specified or "
+              "const decides the step"});
+  std::string many = two;
+  for (int i = 3; i <= 16; ++i)
+    many = replaced(many, "<Grid>",
+                    fmt::format("<Component name='c{0}'><Body name='b{0}' material='cu' "
+                                "type='Block'><Geometry dp='0.25' x0='9' y0='9' z0='{0}' lx='1' "
+                                "ly='1' lz='0.5'/></Body></Component><Grid>",
+                                i));
+  CHECK(notes("record_contact_force='1'", "", many).empty());
+  many = replaced(many, "<Grid>",
+                  "<Component name='last'><Body name='last' material='cu' type='Block'><Geometry "
+                  "dp='0.25' x0='9' y0='9' z0='20' lx='1' ly='1' lz='1'/></Body></Component><Grid>");
+  CHECK(notes("record_contact_force='1'", "", many) ==
+        std::vector<std::string>{
+            "line 25: <Contact record_contact_force=\"1\">: the scene has 17 components: with "
+            "more than 16 only the force between the first two is recorded"});
 }
 
 TEST_CASE("gaps that contact does not measure") {

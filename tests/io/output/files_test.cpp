@@ -126,4 +126,14 @@ TEST_CASE("Facts for XML cannot break it") {
   CHECK(io::xml_escaped("a<b>&\"c\n") == "a&lt;b&gt;&amp;&quot;c ");
   CHECK(io::safe_name("a/b c") == "a_b_c");
   CHECK(io::safe_name("..") == "_..");
+  using Names = std::vector<std::string>;
+  CHECK(io::distinct_names({"a b", "c", "a_b", "a/b"}, "body") ==
+        Names{"a_b_body0", "c", "a_b_body2", "a_b_body3"});
+  CHECK(io::distinct_names({"a b", "a_b", "a_b_body0"}, "body") ==
+        Names{"a_b_body0_", "a_b_body1", "a_b_body0"});
+  const std::string wide = "\u6e29";  // three bytes
+  std::string word;
+  for (int i = 0; i < 100; ++i) word += wide;
+  const Names cut = io::distinct_names({word, "short"}, "body", 20);
+  CHECK(cut == Names{wide + wide + wide + wide + "_body0", "short"});
 }

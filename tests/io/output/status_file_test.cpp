@@ -75,6 +75,19 @@ TEST_CASE("The columns of .sta are named, and its numbers are exact") {
   CHECK(table.at(0, "cell_occupancy") <= 601.0 / (12 * 12 * 12));
 }
 
+TEST_CASE("Bodies whose names differ by characters alone that no name of a column has") {
+  const Folder folder("sta_names");
+  core::SoloCommunication solo;
+  core::Model model = small_model(solo);
+  model.bodies[0].name = "a b";
+  model.bodies[1].name = "a_b";
+  model.bodies[2].name = "a/b";
+  io::StatusFile file(folder / "a.sta", model, {}, solo);
+  const std::vector<std::string> columns = Table(folder / "a.sta").columns;
+  for (const char* column : {"px[body:a_b_body0]", "px[body:a_b_body1]", "px[body:a_b_body2]"})
+    CHECK(std::count(columns.begin(), columns.end(), column) == 1);
+}
+
 TEST_CASE(".sta of a run that goes on keeps the rows up to its start") {
   const Folder folder("sta_continue");
   core::SoloCommunication solo;

@@ -165,6 +165,18 @@ TEST_CASE("One set of grids per time: well-formed, complete, listed") {
   CHECK(Vtu::attribute(list.find("DataSet"), "timestep") == "0.25");
 }
 
+TEST_CASE("Files of bodies with long names") {
+  const Folder folder("vtu_long");
+  core::SoloCommunication solo;
+  core::Model model = small_model(solo);
+  const std::string job(180, 'j');
+  model.bodies[0].name = std::string(400, 'b');
+  io::VtuWriter writer({folder.path(), job, true, io::variables_of({"seqv"}), false, {}}, model, solo);
+  writer.write(model, solo);
+  const std::string short_name = std::string(34, 'b') + "_body0";
+  CHECK(std::filesystem::exists(folder / (job + "_vtu/" + job + "_" + short_name + "_120_0.vtu")));
+}
+
 TEST_CASE("One set of grids per body, but for those without output") {
   const Folder folder("vtu_bodies");
   core::SoloCommunication solo;

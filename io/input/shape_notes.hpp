@@ -1,0 +1,13 @@
+// What a body's shape becomes that the input does not say.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.hpp"
+
+namespace mpm::io {
+
+/// The blocks whose particles, of whole number along each edge, have another volume than the input says.
+void note_blocks(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
+}  // namespace mpm::io
