@@ -10,10 +10,10 @@
 // includes this bound.
 //
 // The grid does not resolve variations of T within a cell, such as the jump at a contact of hot and cold, and
-// increments alone never smooth them. Therefore the part of T that two passes over the grid do not reproduce,
-// T'' = (1 - P)^2 T with P T = sum S_i T_i, decays at the rate 1/dt_c. On resolved waves this term is only
-// (k h)^4, so the method stays second order; P conserves heat, so the decay does too.
-// The first and second node arrays, idle between steps, hold (Q, C T') and (C, C T), T' = (1 - P) T.
+// increments alone never smooth them. Therefore T also changes by -(1 - P) R T', T' = (1 - P) T, P T = sum S_i
+// T_i, with R = dt/dt_c of each particle, (k h)^4 on resolved waves. The sum of m c (1 - P) is zero, so this
+// conserves heat whatever R; it is symmetric with the weights m c, and with R <= 1 both terms are stable up to
+// dt_c: T.(2 P + (1 - P)^2) T <= 2 T.T. The arrays, idle between steps, hold (Q, C R T') and (C, C T).
 // Shown by tests/system/physics_heat.py.
 #pragma once
 
