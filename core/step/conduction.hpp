@@ -10,10 +10,10 @@
 // includes this bound.
 //
 // The grid does not resolve variations of T within a cell, such as the jump at a contact of hot and cold, and
-// increments alone never smooth them. Therefore T also changes by -(1 - P) R T', T' = (1 - P) T, P T = sum S_i
-// T_i, with R = dt/dt_c of each particle, (k h)^4 on resolved waves. The sum of m c (1 - P) is zero, so this
-// conserves heat whatever R; it is symmetric with the weights m c, and with R <= 1 both terms are stable up to
-// dt_c: T.(2 P + (1 - P)^2) T <= 2 T.T. The arrays, idle between steps, hold (Q, C R T') and (C, C T).
+// increments alone never smooth them. Therefore T also changes by -(1 - P) R T', T' = (1 - P) T, with
+// P T = sum S_i T_i and each particle's R = dt/dt_c, by (k h)^4 on resolved waves. P conserves heat, so this
+// does for any R. In the product with the weights m c it is symmetric and, as R <= 1, at most (1 - P)^2; with
+// the increments' 2 P that is at most 2: stable. The arrays, idle between steps, hold (Q, C R T'), (C, C T).
 // Shown by tests/system/physics_heat.py.
 #pragma once
 
