@@ -27,6 +27,11 @@ double diffusivity(const Body& body, const double* block, int lane) {
 /// 1/dt_c for unit diffusivity.
 double sharpest_curvature(const GridGeometry& g) { return 2 * dot(g.inverse_cell, g.inverse_cell); }
 
+/// R, dt/dt_c of one particle. Above 1, in a step longer than the critical one, the decay would overshoot.
+double decay(const Body& body, const double* block, int lane, const GridGeometry& g, double dt) {
+  return std::min(diffusivity(body, block, lane) * sharpest_curvature(g) * dt, 1.0);
+}
+
 template <ShapePolicy S>
 class ConductionWith final : public Conduction {
  public:
@@ -132,13 +137,14 @@ void ConductionWith<S>::map_flux() {
                            gradient = gradient + nodes[node_doubles * node + 1] * g;
                            unseen -= nodes[node_doubles * node + 1] * shape;
                          });
-        const double heat = body.model->specific_heat() * block[layout.offset(Column::mass) + l] * unseen;
+        const double decaying = body.model->specific_heat() * block[layout.offset(Column::mass) + l] *
+                                decay(body, block, l, grid.geometry(), model_.clock.dt) * unseen;
         const Vec3<double> flow =
             (-body.model->conductivity() * block[layout.offset(Column::volume) + l]) * gradient;
         S::for_each_node(place, l, grid.geometry().inverse_cell,
                          [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
                            to[flow_doubles * node] += dot(flow, g);
-                           to[flow_doubles * node + 1] += shape * heat;
+                           to[flow_doubles * node + 1] += shape * decaying;
                          });
       }
     });
@@ -158,24 +164,23 @@ void ConductionWith<S>::update_temperatures(double dt) {
     double *nodes = heat_[thread].data(), *flux = flow_[thread].data();
     temperatures(s, nodes);
     sum_contributions<mapped::heat_flow.array>(grid, shared_, s, flux);
-    for (int n = 0; n < shared_.nodes(); ++n) {  // increments dT_i, and P T'
+    for (int n = 0; n < shared_.nodes(); ++n) {  // increments dT_i, and P R T'
       const double capacity = nodes[node_doubles * n];
       double* at = flux + node_doubles * n;
       at[0] = capacity > 0 ? dt * at[0] / capacity : 0;
       at[1] = capacity > 0 ? at[1] / capacity : 0;
     }
     for (const int component : {0, 1}) faces(s).mirror(component, flux);
-    const double curvature = sharpest_curvature(grid.geometry());
     for_each_block(s, [&](const ColumnLayout& layout, const Body& body, double* block,
                           const typename S::Place& place, int used) {
       const double per_volume = body.model->reference_density() * body.model->specific_heat();
       for (int l = 0; l < used; ++l) {
         double rise = 0, unseen = block[layout.offset(Column::temperature) + l];
         for_each_weight<S>(place, l, grid.geometry().inverse_cell, [&](int node, double shape) {
-          rise += shape * flux[node_doubles * node];
-          unseen -= shape * (nodes[node_doubles * node + 1] + flux[node_doubles * node + 1]);
+          rise += shape * (flux[node_doubles * node] + flux[node_doubles * node + 1]);
+          unseen -= shape * nodes[node_doubles * node + 1];
         });
-        rise -= std::min(diffusivity(body, block, l) * curvature * dt, 1.0) * unseen;
+        rise -= decay(body, block, l, grid.geometry(), dt) * unseen;
         block[layout.offset(Column::temperature) + l] += rise;
         block[layout.offset(Column::internal_energy) + l] += per_volume * rise;
       }

@@ -10,10 +10,10 @@
 // includes this bound.
 //
 // The grid does not resolve variations of T within a cell, such as the jump at a contact of hot and cold, and
-// increments alone never smooth them. Therefore the part of T that two passes over the grid do not reproduce,
-// T'' = (1 - P)^2 T with P T = sum S_i T_i, decays at the rate 1/dt_c. On resolved waves this term is only
-// (k h)^4, so the method stays second order; P conserves heat, so the decay does too.
-// The first and second node arrays, idle between steps, hold (Q, C T') and (C, C T), T' = (1 - P) T.
+// increments alone never smooth them. Therefore T also changes by -(1 - P) R T', T' = (1 - P) T, with
+// P T = sum S_i T_i and each particle's R = dt/dt_c, by (k h)^4 on resolved waves. P conserves heat, so this
+// does for any R. In the product with the weights m c it is symmetric and, as R <= 1, at most (1 - P)^2; with
+// the increments' 2 P that is at most 2: stable. The arrays, idle between steps, hold (Q, C R T'), (C, C T).
 // Shown by tests/system/physics_heat.py.
 #pragma once
 
