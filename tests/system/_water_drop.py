@@ -25,7 +25,7 @@ def measure(folder, cell):
     force = sum(np.column_stack([table[f"contact_{a}[1,{step}]"] for a in "xyz"]) for step in (2, 3))  # on the step's parts
     mass = summary["bodies"][0]["mass"]
     change = np.array([status[f"p{a}[body:drop]"][-1] - status[f"p{a}[body:drop]"][0] for a in "xyz"])
-    impulse = -(force[1:] * np.diff(time)[:, None]).sum(axis=0)
+    impulse = -(force[1:] * np.diff(_cases.impulse_time(time))[:, None]).sum(axis=0)
     drop = states.column("body", 0) == states.column("body", 0)[0]
     place, velocity = (np.column_stack([states.column(name)[drop] for name in names])
                        for names in ("xyz", ("velocity_0", "velocity_1", "velocity_2")))
