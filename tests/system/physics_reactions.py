@@ -128,7 +128,8 @@ class Reactions(_mpm.Case):
                 self.assertEqual(found["step"], expected["step"][-n:])
                 for axis in AXES:
                     forces = [np.array(table[f"f{axis}[drive:right]"])[-n:] for table in (found, expected)]
-                    np.testing.assert_allclose(*forces, rtol=1e-11, atol=1e-11)
+                    # Round-off of sums in another order, over the last step, which is short.
+                    np.testing.assert_allclose(*forces, rtol=1e-9, atol=1e-9)
 
     def test_implicit_equilibrium(self):
         """The force of a rigid ram on a column is the stress in it times its area in every step, for every shape; the same on two
