@@ -93,7 +93,7 @@ class Reactions(_mpm.Case):
                 self.assertGreater(len(history["time"]), 3 * len(status["time"]))
 
     def test_short_last_step(self):
-        """Its velocities advance over another time than its positions, here 2 % of it: the force goes on as before."""
+        """Its velocities advance over another time than its positions, here 1/64 of it: the force goes on as before."""
         bodies = [_mpm.block("ram", (2, 2, 4), (2, 2, 2), of="iron", more=driven(vz="-3")), _mpm.block("block", (2, 2, 2), (2, 2, 2))]
         text = _mpm.scene(bodies, _mpm.grid((0, 0, 2), (8, 8, 8), "000010"), _mpm.solution(0.0907, factor=0.9),
                           [_mpm.material(), _mpm.material("iron", strength='type="Rigid"')],
