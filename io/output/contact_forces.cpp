@@ -22,7 +22,7 @@ ContactForces::ContactForces(const core::Scene& scene) {
   for (std::int32_t b = 2; b < components; ++b)
     for (std::int32_t a = 0; a < b; ++a) add(a, b);
   add(0, 1);
-  means_ = IntervalMeans(order_.size());
+  means_ = IntervalMeans(order_.size(), columns_);
 }
 
 std::string ContactForces::legend() const {
@@ -30,14 +30,22 @@ std::string ContactForces::legend() const {
   return "# contact_x[a,b] ...: force of component a on component b, mean since the row before\n";
 }
 
-std::vector<double> ContactForces::next(const core::Model& model, core::Reductions& ranks) {
-  if (columns_.empty()) return {};
+std::vector<double> ContactForces::impulses(const core::Model& model, core::Reductions& ranks) const {
   std::vector<core::ExactSum> sums = model.ledger.contact.impulses;
   sums.resize(order_.size());
   ranks.sum(std::span<core::ExactSum>(sums));
   std::vector<double> impulses;
   for (const std::size_t k : order_) impulses.push_back(sums[k].value());
-  return means_.next(model.clock.time, impulses);
+  return impulses;
+}
+
+void ContactForces::begin(const core::Model& model, core::Reductions& ranks) {
+  if (!columns_.empty()) means_.begin(impulse_time(model.clock), impulses(model, ranks));
+}
+
+std::vector<double> ContactForces::next(const core::Model& model, core::Reductions& ranks) {
+  if (columns_.empty()) return {};
+  return means_.next(impulse_time(model.clock), impulses(model, ranks));
 }
 
 }  // namespace mpm::io

@@ -10,6 +10,7 @@
 
 #include "core/particle_range.hpp"
 #include "core/step/finite.hpp"
+#include "io/output/hash.hpp"
 #include "io/output/narrowing.hpp"
 #include "io/output/provenance.hpp"
 
@@ -84,6 +85,50 @@ std::vector<ReactionColumns> reactions_of(const core::Model& model) {
   return columns;
 }
 
+using Words = std::span<const std::uint64_t>;
+
+/// Of HistoryFile::tracked(). Files of earlier versions begin with an identity or with the bits of a time.
+constexpr std::uint64_t format_mark = 0xfff0'6869'7374'0001u;
+
+std::uint64_t hash_of(const std::vector<Variable>& variables) {
+  Hash hash;
+  for (const Variable v : variables) hash.add(info_of(v).name);
+  return hash.value();
+}
+
+/// A particle in tracked().
+struct Memory {
+  core::Vec3<double> place{};
+  std::uint64_t variables = 0, identity = no_identity;
+  bool present = false;
+  std::vector<double> values;
+};
+
+/// Removes up to `n` words from the front.
+Words take(Words& words, std::uint64_t n) {
+  const Words taken = words.first(std::min<std::uint64_t>(n, words.size()));
+  words = words.subspan(taken.size());
+  return taken;
+}
+std::uint64_t take_one(Words& words) {
+  const Words taken = take(words, 1);
+  return taken.empty() ? 0 : taken[0];
+}
+
+std::vector<Memory> take_memories(Words& words) {
+  std::vector<Memory> memories;
+  for (std::uint64_t n = take_one(words); n > 0 && !words.empty(); --n) {
+    Memory& m = memories.emplace_back();
+    for (int a = 0; a < 3; ++a) m.place[a] = std::bit_cast<double>(take_one(words));
+    m.variables = take_one(words);
+    m.identity = take_one(words);
+    m.present = take_one(words) != 0;
+    for (const std::uint64_t value : take(words, take_one(words)))
+      m.values.push_back(std::bit_cast<double>(value));
+  }
+  return memories;
+}
+
 double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b) {
   const core::Vec3<double> d = a - b;
   return dot(d, d);
@@ -93,34 +138,43 @@ double squared_distance(const core::Vec3<double>& a, const core::Vec3<double>& b
 
 HistoryFile::HistoryFile(const std::string& path, const core::Model& model,
                          std::optional<Continuation> continuation, core::Reductions& ranks)
-    : targets_(targets_of(*model.scene)), reactions_(reactions_of(model)), forces_(*model.scene) {
+    : targets_(targets_of(*model.scene)), reactions_(reactions_of(model), model), forces_(*model.scene) {
   for (Target& t : targets_) {
     t.first = record_;
     record_ += first_value + t.variables.size();
     t.values.resize(t.variables.size());
   }
-  if (!continuation || !recall(continuation->tracked)) choose_particles(model, ranks);
+  reactions_.begin(model, ranks);
+  forces_.begin(model, ranks);
+  if (continuation) recall(continuation->tracked);
+  choose_particles(model, ranks);
   std::optional<TableContinuation> rows;
   if (continuation) rows = continuation->rows;
-  file_.emplace(path, to_text(provenance_of(*model.scene), "# ") + legend(), head(model), rows, ranks);
+  const std::string comments =
+      to_text(provenance_of(*model.scene), "# ") + reactions_.legend() + forces_.legend();
+  file_.emplace(path, comments, legend(), head(), rows, ranks);
 }
 
-/// False if it is not one of these targets.
-bool HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
-  std::size_t length = 0;
-  for (const Target& t : targets_) length += t.particle ? 2 + t.values.size() : 0;
-  IntervalMeans &of_reactions = reactions_.means(), &of_forces = forces_.means();
-  if (tracked.size() != length + of_reactions.memory_length() + of_forces.memory_length()) return false;
-  auto next = tracked.begin();
+/// A target is recalled by its place: the input of a restart may have others, or in another order.
+void HistoryFile::recall(const std::vector<std::uint64_t>& tracked) {
+  Words words(tracked);
+  if (take_one(words) != format_mark) return;
+  const std::vector<Memory> memories = take_memories(words);
   for (Target& t : targets_) {
     if (!t.particle) continue;
-    t.identity = *next++;
-    t.present = *next++ != 0;
-    for (double& value : t.values) value = std::bit_cast<double>(*next++);
+    for (const Memory& m : memories) {
+      if (m.place != t.point) continue;
+      const bool same_variables = m.variables == hash_of(t.variables) && m.values.size() == t.values.size();
+      if (t.recalled && !same_variables) continue;
+      t.recalled = true;
+      t.identity = m.identity;
+      t.present = m.present;
+      if (same_variables) t.values = m.values;
+      if (same_variables) break;
+    }
   }
-  of_reactions.recall(std::span(tracked).subspan(length, of_reactions.memory_length()));
-  of_forces.recall(std::span(tracked).last(of_forces.memory_length()));
-  return true;
+  for (IntervalMeans* means : {&reactions_.means(), &forces_.means()})
+    means->recall(take(words, take_one(words)));
 }
 
 std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scene) {
@@ -128,9 +182,9 @@ std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scen
   for (const core::TimeHistoryInput& history : scene.output.histories) {
     const std::vector<Variable> variables = variables_of(history.variables);
     for (const auto& p : history.particles)
-      targets.push_back({p, true, variables, 0, no_identity, false, {}, {}});
+      targets.push_back({p, true, variables, 0, no_identity, false, false, {}, {}});
     for (const auto& p : history.points)
-      targets.push_back({p, false, variables, 0, no_identity, false, {}, {}});
+      targets.push_back({p, false, variables, 0, no_identity, false, false, {}, {}});
   }
   return targets;
 }
@@ -154,14 +208,22 @@ void HistoryFile::choose_particles(const core::Model& model, core::Reductions& r
     if (mine[i] != nearest[i]) identity[i] = infinity;
   }
   ranks.minimum(identity);
+  int particles = 0;
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (!targets_[i].particle || identity[i] == infinity) continue;
-    targets_[i].identity = static_cast<std::uint64_t>(identity[i]);
-    targets_[i].present = true;
+    Target& t = targets_[i];
+    if (t.particle) ++particles;
+    if (!t.particle || t.recalled || identity[i] == infinity) continue;
+    t.identity = static_cast<std::uint64_t>(identity[i]);
+    t.present = true;
+    if (model.clock.step > 0)
+      chosen_late_.push_back(fmt::format(
+          "particle{} of the time histories is the one nearest to ({:.9g}, {:.9g}, {:.9g}) at the "
+          "restart, identity {}",
+          particles, t.point.x, t.point.y, t.point.z, t.identity));
   }
 }
 
-std::string HistoryFile::head(const core::Model& model) const {
+std::string HistoryFile::head() const {
   std::string head = fmt::format("#{:>{}}", "step", width - 1);
   const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
   for (const char* name : {"time", "kinetic", "internal"}) add(name);
@@ -173,7 +235,7 @@ std::string HistoryFile::head(const core::Model& model) const {
     }
     if (t.particle) add(fmt::format("present[particle{}]", n));
   }
-  for (const std::string& column : reactions_.names(model)) add(column);
+  for (const std::string& column : reactions_.names()) add(column);
   for (const std::string& column : forces_.columns()) add(column);
   return head;
 }
@@ -195,7 +257,7 @@ std::string HistoryFile::legend() const {
     text +=
         "# present[particle]: 1; 0 once it is eroded or has left the grid; its other columns then keep their "
         "last values\n";
-  return text + reactions_.legend() + forces_.legend();
+  return text;
 }
 
 void HistoryFile::look_up(const core::Model& model, int reach, std::vector<double>& values) const {
@@ -303,15 +365,18 @@ void HistoryFile::add(const core::Model& model, const core::Energies& energies, 
 }
 
 std::vector<std::uint64_t> HistoryFile::tracked() const {
-  std::vector<std::uint64_t> memory;
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  std::vector<std::uint64_t> memory{format_mark, 0};
   for (const Target& t : targets_) {
     if (!t.particle) continue;
-    memory.push_back(t.identity);
-    memory.push_back(t.present ? 1 : 0);
-    for (const double value : t.values) memory.push_back(std::bit_cast<std::uint64_t>(value));
+    ++memory[1];
+    memory.insert(memory.end(), {bits(t.point.x), bits(t.point.y), bits(t.point.z), hash_of(t.variables),
+                                 t.identity, std::uint64_t{t.present}, t.values.size()});
+    for (const double value : t.values) memory.push_back(bits(value));
   }
   for (const IntervalMeans* means : {&reactions_.means(), &forces_.means()}) {
     const std::vector<std::uint64_t> of_means = means->memory();
+    memory.push_back(of_means.size());
     memory.insert(memory.end(), of_means.begin(), of_means.end());
   }
   return memory;

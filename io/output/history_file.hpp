@@ -1,11 +1,11 @@
 // Job_curv.dat: rows of the total energies and of the histories that the scene requests.
 //
 // A `Particle` history follows the particle that is nearest to its point when the history starts (of several,
-// the one with the lowest identity) wherever it goes. Its last column, `present[particleN]`, is 1; once the
-// particle is eroded or has left the grid it is 0, and the others keep their last values. A `Point` history
-// is the average over the particles in the cell around the point, weighted by mass and by the cell's
-// trilinear function of their distance from the point; 0 while the cell is empty. Bitwise identical on any
-// ranks. Tested by tests/io/output/history_file_test.cpp.
+// the one with the lowest identity) wherever it goes; one that the input of a restart adds starts there. Its
+// last column, `present[particleN]`, is 1; once the particle is eroded or has left the grid it is 0, and the
+// others keep their last values. A `Point` history is the average over the particles in the cell around the
+// point, weighted by mass and by the cell's trilinear function of their distance from the point; 0 while the
+// cell is empty. Bitwise identical on any ranks. Tested by tests/io/output/history_file_test.cpp.
 #pragma once
 
 #include <optional>
@@ -35,8 +35,10 @@ class HistoryFile {
   HistoryFile(const std::string& path, const core::Model& model, std::optional<Continuation> continuation,
               core::Reductions& ranks);
 
+  /// Particles that this run has chosen although it began at a restart, one line each, for the log.
+  const std::vector<std::string>& chosen_late() const { return chosen_late_; }
   /// With histories, every step has a row; otherwise the total energies are written on request.
-  bool each_step() const { return !targets_.empty() || reactions_.means().memory_length() > 0; }
+  bool each_step() const { return !targets_.empty() || !reactions_.means().empty(); }
   /// Adds the row of the present state to the buffer. Throws core::NumericalFailure if an energy is not
   /// finite. Collective.
   void add(const core::Model& model, core::Reductions& ranks);
@@ -51,8 +53,10 @@ class HistoryFile {
   const TableMark& mark() const { return file_->mark(); }
   const std::string& notice() const { return file_->notice(); }
 
-  /// State of the histories for restart files: for each particle its identity, whether it is present (0, 1)
-  /// and the bits of its last values; then the means' memory. The same on all ranks.
+  /// State of the histories for restart files, the same on all ranks: a mark of the format and the number of
+  /// particles; of each its place, variables (a hash), identity, presence (0, 1) and last values, with their
+  /// number before them; then the memories of both means, each with its length before it. Floating-point
+  /// numbers as bits.
   std::vector<std::uint64_t> tracked() const;
 
  private:
@@ -63,14 +67,15 @@ class HistoryFile {
     std::size_t first = 0;  ///< of its record in the values exchanged
     // For a particle: its identity and last position.
     std::uint64_t identity = no_identity;
+    bool recalled = false;  ///< from a restart file; otherwise chosen by this run
     bool present = false;
     std::optional<core::BrickCoord> last;
     std::vector<double> values;  ///< of its last row
   };
   static std::vector<Target> targets_of(const core::Scene& scene);
-  bool recall(const std::vector<std::uint64_t>& tracked);
+  void recall(const std::vector<std::uint64_t>& tracked);
   void choose_particles(const core::Model& model, core::Reductions& ranks);
-  std::string head(const core::Model& model) const;
+  std::string head() const;
   std::string legend() const;
   void look_up(const core::Model& model, int reach, std::vector<double>& values) const;
   void average(const core::Model& model, const Target& target, std::vector<double>& values) const;
@@ -80,7 +85,7 @@ class HistoryFile {
   ContactForces forces_;
   std::size_t record_ = 0;  ///< doubles exchanged per row
   std::optional<TableFile> file_;
-  std::vector<std::string> gone_;
+  std::vector<std::string> gone_, chosen_late_;
 };
 
 }  // namespace mpm::io

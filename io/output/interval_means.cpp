@@ -3,9 +3,23 @@
 #include <algorithm>
 #include <bit>
 
+#include "io/output/hash.hpp"
+
 namespace mpm::io {
 
-IntervalMeans::IntervalMeans(std::size_t sums) : last_(sums > 0 ? 1 + sums : 0), earlier_(last_) {}
+IntervalMeans::IntervalMeans(std::size_t sums, const std::vector<std::string>& names)
+    : last_(sums > 0 ? 1 + sums : 0), earlier_(last_) {
+  Hash hash;
+  for (const std::string& name : names) hash.add(name);
+  key_ = hash.value();
+}
+
+void IntervalMeans::begin(double time, std::span<const double> sums) {
+  if (sums.empty()) return;
+  last_[0] = time;
+  std::ranges::copy(sums, last_.begin() + 1);
+  earlier_ = last_;
+}
 
 std::vector<double> IntervalMeans::next(double time, std::span<const double> sums) {
   if (sums.empty()) return {};
@@ -22,15 +36,16 @@ std::vector<double> IntervalMeans::next(double time, std::span<const double> sum
 }
 
 std::vector<std::uint64_t> IntervalMeans::memory() const {
-  std::vector<std::uint64_t> memory;
+  if (empty()) return {};
+  std::vector<std::uint64_t> memory{key_};
   for (const std::vector<double>* row : {&last_, &earlier_})
     for (const double value : *row) memory.push_back(std::bit_cast<std::uint64_t>(value));
   return memory;
 }
 
 void IntervalMeans::recall(std::span<const std::uint64_t> memory) {
-  if (memory.size() != memory_length()) return;
-  auto next = memory.begin();
+  if (empty() || memory.size() != 1 + last_.size() + earlier_.size() || memory[0] != key_) return;
+  auto next = memory.begin() + 1;
   for (std::vector<double>* row : {&last_, &earlier_})
     for (double& value : *row) value = std::bit_cast<double>(*next++);
 }

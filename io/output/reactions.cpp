@@ -10,12 +10,11 @@ namespace mpm::io {
 
 using core::ReactionSums;
 
-Reactions::Reactions(std::vector<ReactionColumns> columns)
-    : columns_(std::move(columns)), means_(6 * columns_.size()) {}
+namespace {
 
-std::vector<std::string> Reactions::names(const core::Model& model) const {
+std::vector<std::string> names_of(const std::vector<ReactionColumns>& columns, const core::Model& model) {
   std::vector<std::string> names;
-  for (const ReactionColumns& c : columns_) {
+  for (const ReactionColumns& c : columns) {
     const core::Reaction& reaction = model.reactions[c.reaction];
     const std::string of = fmt::format("[{}:{}]", reaction.by_contact ? "contact" : "drive",
                                        safe_name(model.bodies[static_cast<std::size_t>(reaction.body)].name));
@@ -27,6 +26,19 @@ std::vector<std::string> Reactions::names(const core::Model& model) const {
   return names;
 }
 
+/// Of the values of all sums.
+std::vector<double> impulses_of(const std::vector<double>& sums) {
+  std::vector<double> impulses;
+  for (std::size_t i = 0; i < sums.size(); i += ReactionSums::count)
+    for (std::size_t k = 0; k < 6; ++k) impulses.push_back(sums[i + ReactionSums::impulse + k]);
+  return impulses;
+}
+
+}  // namespace
+
+Reactions::Reactions(std::vector<ReactionColumns> columns, const core::Model& model)
+    : columns_(std::move(columns)), names_(names_of(columns_, model)), means_(6 * columns_.size(), names_) {}
+
 std::string Reactions::legend() const {
   if (columns_.empty()) return {};
   return "# fx[contact:body] ...: force and moment of contact on a rigid body, fx[drive:body] ... those that "
@@ -34,24 +46,30 @@ std::string Reactions::legend() const {
          "mass\n";
 }
 
-std::vector<double> Reactions::next(const core::Model& model, core::Reductions& ranks) {
-  if (columns_.empty()) return {};
+std::vector<double> Reactions::sums(const core::Model& model, core::Reductions& ranks) const {
   std::vector<core::ExactSum> sums;
   for (const ReactionColumns& c : columns_) {
     const ReactionSums& mine = model.reactions[c.reaction].since_start;
     sums.insert(sums.end(), mine.sums.begin(), mine.sums.end());
   }
   ranks.sum(std::span(sums));
-  const auto value = [&](std::size_t i, std::size_t sum) {
-    return sums[ReactionSums::count * i + sum].value();
-  };
+  std::vector<double> values;
+  for (const core::ExactSum& sum : sums) values.push_back(sum.value());
+  return values;
+}
+
+void Reactions::begin(const core::Model& model, core::Reductions& ranks) {
+  if (!columns_.empty()) means_.begin(impulse_time(model.clock), impulses_of(sums(model, ranks)));
+}
+
+std::vector<double> Reactions::next(const core::Model& model, core::Reductions& ranks) {
+  if (columns_.empty()) return {};
+  const std::vector<double> values = sums(model, ranks);
+  const auto value = [&](std::size_t i, std::size_t sum) { return values[ReactionSums::count * i + sum]; };
   const auto vector = [](auto component) {
     return core::Vec3<double>{component(0), component(1), component(2)};
   };
-  std::vector<double> impulses;
-  for (std::size_t i = 0; i < columns_.size(); ++i)
-    for (std::size_t k = 0; k < 6; ++k) impulses.push_back(value(i, ReactionSums::impulse + k));
-  const std::vector<double> means = means_.next(model.clock.time, impulses);
+  const std::vector<double> means = means_.next(impulse_time(model.clock), impulses_of(values));
   std::vector<double> row;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const auto force = vector([&](std::size_t a) { return means[6 * i + a]; });

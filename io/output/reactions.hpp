@@ -1,7 +1,8 @@
 // Columns with the reactions of bodies: forces, and moments about the centre of mass at the start of the last
 // step (of a rigid body in contact: at the start of each), as means since the row before, so that a sum of
-// force times interval over the rows is the impulse exactly. Of contact, the force on the rigid body; of a
-// prescribed velocity, the force that keeps the body in its motion. Tested by
+// force times interval over the rows is the impulse exactly; where steps change, the interval is that of the
+// velocities (impulse_time()), not that of the rows. Of contact, the force on the rigid body; of a prescribed
+// velocity, the force that keeps the body in its motion. Tested by
 // tests/system/physics_reactions.py.
 #pragma once
 
@@ -22,10 +23,12 @@ struct ReactionColumns {
 
 class Reactions {
  public:
-  explicit Reactions(std::vector<ReactionColumns> columns);
+  Reactions(std::vector<ReactionColumns> columns, const core::Model& model);
 
-  std::vector<std::string> names(const core::Model& model) const;
+  const std::vector<std::string>& names() const { return names_; }
   std::string legend() const;
+  /// Without memory, the first means are since this state. Collective.
+  void begin(const core::Model& model, core::Reductions& ranks);
   /// The values of the present row; of the same state again they are the same. Collective.
   std::vector<double> next(const core::Model& model, core::Reductions& ranks);
 
@@ -34,7 +37,11 @@ class Reactions {
   const IntervalMeans& means() const { return means_; }
 
  private:
+  /// By reaction, those of ReactionSums.
+  std::vector<double> sums(const core::Model& model, core::Reductions& ranks) const;
+
   std::vector<ReactionColumns> columns_;
+  std::vector<std::string> names_;
   IntervalMeans means_;  ///< of impulse and moment, by reaction
 };
 

@@ -43,7 +43,7 @@ std::string head_of(const core::Model& model, const Reactions& reactions) {
     add("contact_dissipation");
     add("friction_heat");
   }
-  for (const std::string& column : reactions.names(model)) add(column);
+  for (const std::string& column : reactions.names()) add(column);
   if (model.scene->output.statistics.memory) {
     add("memory_max");
     add("memory_sum");
@@ -74,11 +74,13 @@ double total_cells(const core::Model& model) {
 
 StatusFile::StatusFile(const std::string& path, const core::Model& model,
                        const std::optional<TableContinuation>& from, core::Reductions& ranks)
-    : reactions_(all_reactions(model)),
-      file_(path, to_text(provenance_of(*model.scene), "# ") + reactions_.legend(),
+    : reactions_(all_reactions(model), model),
+      file_(path, to_text(provenance_of(*model.scene), "# ") + reactions_.legend(), {},
             head_of(model, reactions_), from, ranks),
       memory_(model.scene->output.statistics.memory),
-      occupancy_(model.scene->output.statistics.cell_occupancy) {}
+      occupancy_(model.scene->output.statistics.cell_occupancy) {
+  reactions_.begin(model, ranks);
+}
 
 void StatusFile::add(const core::Model& model, const core::Totals& totals, core::Reductions& ranks) {
   const core::Clock& clock = model.clock;

@@ -26,7 +26,7 @@ class StatusFile {
   /// Syncs the rows to disk. Throws FileError. Collective.
   void sync(core::Reductions& ranks) { file_.sync(ranks); }
   /// For restart files: the table's mark, then the memory of the reactions' means. The constructor takes the
-  /// first, recall() the second.
+  /// first, recall() the second; without it, means begin at the state that the constructor had.
   std::string mark() const;
   void recall(const std::string& mark);
   const std::string& notice() const { return file_.notice(); }

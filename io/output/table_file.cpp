@@ -27,16 +27,18 @@ std::optional<std::int64_t> step_of(std::string_view row) {
 /// Contents of a table up to the point of continuation.
 struct Found {
   bool head = false;
+  bool legend = false;
   bool empty = true;
   TableMark all;  ///< of the rows that were read
   TableMark kept;
   std::uint64_t bytes = 0;  ///< up to the end of the last row kept
 };
 
-Found look_at(const std::string& path, const std::string& head, const TableContinuation& from) {
+Found look_at(const std::string& path, const std::string& legend, const std::string& head,
+              const TableContinuation& from) {
   Found found;
   std::ifstream in(path, std::ios::binary);
-  std::string line;
+  std::string line, comments;
   std::uint64_t end = 0;
   while (std::getline(in, line) &&
          !in.eof()) {  // a line without a newline at the end of the file is incomplete
@@ -44,6 +46,9 @@ Found look_at(const std::string& path, const std::string& head, const TableConti
     end += line.size() + 1;
     if (!found.head) {
       found.head = line == head;
+      found.legend = found.head && comments.find(legend) != std::string::npos;
+      if (found.head && !found.legend) break;
+      if (line.starts_with('#')) comments += line + '\n';
       found.bytes = end;
       continue;
     }
@@ -100,7 +105,8 @@ std::optional<TableMark> TableMark::from(const std::string& text) {
   return words >> mark ? std::optional(mark) : std::nullopt;
 }
 
-TableCut cut_table(const std::string& path, const std::string& head, const TableContinuation& from) {
+TableCut cut_table(const std::string& path, const std::string& legend, const std::string& head,
+                   const TableContinuation& from) {
   TableCut cut;
   const std::string lost =
       from.mark && from.mark->rows > 0 ? "; it had " + rows_in_words(*from.mark) : std::string();
@@ -108,16 +114,16 @@ TableCut cut_table(const std::string& path, const std::string& head, const Table
     if (!lost.empty()) cut.notice = fmt::format("'{}' is missing{}: a new file is started", path, lost);
     return cut;
   }
-  const Found found = look_at(path, head, from);
-  if (!found.head) {
+  const Found found = look_at(path, legend, head, from);
+  if (!found.legend) {
     if (found.empty) {
       if (!lost.empty()) cut.notice = fmt::format("'{}' is empty{}: a new file is started", path, lost);
       return cut;
     }
     rename_file(path, path + ".old");
     cut.notice = fmt::format(
-        "'{0}' does not have this run's columns: it has been renamed to '{0}.old', and a new file is started",
-        path);
+        "'{0}' does not have this run's {1}: it has been renamed to '{0}.old', and a new file is started",
+        path, found.head ? "points and particles" : "columns");
     return cut;
   }
   cut.append = true;
@@ -127,16 +133,17 @@ TableCut cut_table(const std::string& path, const std::string& head, const Table
   return cut;
 }
 
-TableFile::TableFile(const std::string& path, const std::string& comments, const std::string& head,
-                     const std::optional<TableContinuation>& from, core::Reductions& ranks) {
+TableFile::TableFile(const std::string& path, const std::string& comments, const std::string& legend,
+                     const std::string& head, const std::optional<TableContinuation>& from,
+                     core::Reductions& ranks) {
   TableCut cut;
   together(ranks, [&] {
-    if (ranks.rank() == 0 && from) cut = cut_table(path, head, *from);
+    if (ranks.rank() == 0 && from) cut = cut_table(path, legend, head, *from);
   });
   mark_ = cut.kept;
   notice_ = cut.notice;
   file_.emplace(path, cut.append, ranks);
-  if (!cut.append) file_->add(comments + head + '\n');
+  if (!cut.append) file_->add(comments + legend + head + '\n');
   file_->flush(ranks);
 }
 

@@ -42,16 +42,17 @@ struct TableCut {
   std::string notice;  ///< notice for the user; usually empty
 };
 /// Truncates the table after the last row with a step up to `from.step` among those that the mark counts. A
-/// table without the line `head` belongs to another run and is renamed to `<path>.old`. On one rank. Throws
-/// FileError.
-TableCut cut_table(const std::string& path, const std::string& head, const TableContinuation& from);
+/// table without the line `head`, or without the comments `legend` before it, belongs to another run and is
+/// renamed to `<path>.old`. On one rank. Throws FileError.
+TableCut cut_table(const std::string& path, const std::string& legend, const std::string& head,
+                   const TableContinuation& from);
 
 class TableFile {
  public:
-  /// Continues the table if possible, else starts it with `comments` and `head`. Throws FileError.
+  /// Continues the table if possible, else starts it with `comments`, `legend` and `head`. Throws FileError.
   /// Collective.
-  TableFile(const std::string& path, const std::string& comments, const std::string& head,
-            const std::optional<TableContinuation>& from, core::Reductions& ranks);
+  TableFile(const std::string& path, const std::string& comments, const std::string& legend,
+            const std::string& head, const std::optional<TableContinuation>& from, core::Reductions& ranks);
 
   /// As TextFile::add().
   void add(std::int64_t step, const std::string& row) noexcept;

@@ -248,8 +248,10 @@ BodyRecord read_body(hid_t group) {
   b.eroded = hdf5::read_int64(group, "eroded");
   b.left = hdf5::read_int64(group, "left");
   if (hdf5::has_link(group, rigid_motion)) {
-    const std::vector<double> values = hdf5::read_all_double(group, rigid_motion);
+    std::vector<double> values = hdf5::read_all_double(group, rigid_motion);
     std::array<double, core::RigidState::size> state{};
+    // Files of earlier versions have force and moment of the last step after the inertia.
+    if (values.size() == state.size() + 6) values.erase(values.begin() + 16, values.begin() + 22);
     if (values.size() != state.size()) throw FileError("the motion of a rigid body has the wrong length");
     std::ranges::copy(values, state.begin());
     b.rigid = std::bit_cast<core::RigidState>(state);

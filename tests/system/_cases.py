@@ -195,3 +195,14 @@ class ElasticBar:
         start = np.arange(int(t[-1] / period)) * period
         energy = np.array([np.interp(s + even, t, rows["total"]).mean() for s in start])
         return {"period": period / self.period - 1, "drift": np.diff(energy) / energy[:-1]}
+
+
+def impulse_time(time, algorithm="MUSL"):
+    """The times up to which the impulses act, from the times of all explicit steps (core/step/step_length.hpp)."""
+    time = np.array(time)
+    if algorithm == "USF":
+        return time
+    steps = np.diff(time)
+    lag = np.concatenate([steps[:1], steps]) / 2
+    lag[-1] = np.clip(lag[0], lag[-2] - steps[-1], lag[-2] + (1 - 1 / 64) * steps[-1])
+    return time + (lag[0] - lag)

@@ -434,7 +434,7 @@ class Contact(_mpm.Case):
                 self.assertLess(len(rest), len(table))
                 self.assertEqual(rest, table[len(table) - len(rest):])
                 time, force = self.forces("whole")
-                impulse = (force[1:] * np.diff(time)[:, None]).sum(axis=0)
+                impulse = (force[1:] * np.diff(_cases.impulse_time(time))[:, None]).sum(axis=0)
                 change = np.array([status[f"p{a}[body:{second}]"][-1] - status[f"p{a}[body:{second}]"][0] for a in "xyz"])
                 error = np.abs(impulse - change).max() / np.abs(change).max()
                 print(f"forces {name}: impulse {impulse}, relative error {error:.1e}, {len(table)} rows, {len(rest)} after the restart")

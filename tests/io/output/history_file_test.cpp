@@ -28,14 +28,19 @@ std::vector<std::vector<double>> rows_of(const std::string& path) {
   return rows;
 }
 
-/// Two particles in one cell and one in another, with the pressures 1, 2 and 3.
-core::Model three_particles(core::SoloCommunication& solo,
-                            const std::array<core::Vec3<double>, 3>& positions) {
-  auto scene = small_scene();
-  core::TimeHistoryInput& history = scene->output.histories.emplace_back();
+core::TimeHistoryInput two_and_three() {
+  core::TimeHistoryInput history;
   history.variables = {"pres", "posx"};
   history.particles = {{0.5, 0.5, 0.5}, {11, 11, 11}};
   history.points = {{0.25, 0.5, 0.5}, {6.5, 6.5, 6.5}, {-1, 0, 0}};
+  return history;
+}
+
+/// Two particles in one cell and one in another, with the pressures 1, 2 and 3.
+core::Model three_particles(core::SoloCommunication& solo, const std::array<core::Vec3<double>, 3>& positions,
+                            const core::TimeHistoryInput& history = two_and_three()) {
+  auto scene = small_scene();
+  scene->output.histories.push_back(history);
   core::Model model = prepared_model(scene);
   std::vector<core::BrickCount> counts;
   for (const auto& x : positions) counts.push_back({model.grid->geometry().brick_at(x), 1});
@@ -73,8 +78,7 @@ TEST_CASE("Histories follow the nearest particles, and points average their cell
   core::Model model = three_particles(solo, at_start);
   io::HistoryFile file(folder / "a_curv.dat", model, {}, solo);
   // Both particles of the first cell are as near to the first point: the lower identity wins.
-  const auto memory = file.tracked();  // identity, present, two values
-  CHECK(memory == std::vector<std::uint64_t>{9, 1, 0, 0, 8, 1, 0, 0});
+  CHECK(file.chosen_late().empty());
   file.add(model, solo);
   file.flush(solo);
 
@@ -200,4 +204,50 @@ TEST_CASE("Histories of a run that goes on follow the same particles") {
   REQUIRE(rows.size() == 4);
   CHECK(rows[3][0] == 3);
   CHECK(rows[3][4] == 2);
+}
+
+TEST_CASE("A run that goes on with another input follows the particles that it knows by their places") {
+  const Folder folder("curv_other");
+  core::SoloCommunication solo;
+  const std::string path = folder / "a_curv.dat";
+  core::Model before = three_particles(solo, at_start);
+  io::HistoryFile first(path, before, {}, solo);
+  first.add(before, solo);
+  first.flush(solo);
+  const io::HistoryFile::Continuation from{{0, {}}, first.tracked()};
+
+  // Nearest to the first place is identity 10 now.
+  const std::array<core::Vec3<double>, 3> later{{{0.4, 0.5, 0.5}, {3, 0.5, 0.5}, {10, 10, 10}}};
+  core::TimeHistoryInput history = two_and_three();
+  std::vector<std::string> legend;
+  std::size_t chosen = 0;
+  SECTION("in another order, and with a new one") {
+    history.particles = {{11, 11, 11}, {0.5, 0.5, 0.5}, {0.25, 0.5, 0.5}};
+    legend = {"particle1: identity 8,", "particle2: identity 9,", "particle3: identity 10,"};
+    chosen = 1;
+  }
+  SECTION("a moved one is another") {
+    history.particles[1] = {0.25, 0.5, 0.5};
+    legend = {"particle1: identity 9,", "particle2: identity 10, nearest to (0.25, 0.5, 0.5)"};
+    chosen = 1;
+  }
+  SECTION("a moved point") {
+    history.points[0] = {0.75, 0.5, 0.5};
+    legend = {"particle1: identity 9,", "point1: the cell around (0.75, 0.5, 0.5)"};
+  }
+  SECTION("with more variables") {
+    history.variables.push_back("posy");
+    legend = {"particle1: identity 9,", "particle2: identity 8,"};
+  }
+  core::Model model = three_particles(solo, later, history);
+  model.clock.step = 1;
+  io::HistoryFile file(path, model, from, solo);
+  CHECK(file.chosen_late().size() == chosen);
+  file.add(model, solo);
+  file.flush(solo);
+  // The columns mean other places: a new file.
+  CHECK(rows_of(path).size() == 1);
+  CHECK(rows_of(path + ".old").size() == 1);
+  CHECK_THAT(file.notice(), Catch::Contains("does not have this run's"));
+  for (const std::string& line : legend) CHECK_THAT(io::read_file(path), Catch::Contains(line));
 }

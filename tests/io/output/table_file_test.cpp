@@ -17,7 +17,7 @@ constexpr const char* head = "#    step value";
 /// Ten rows of steps 0, 2, ... 18; `mark`: as after step 12.
 struct Written {
   explicit Written(const std::string& file) : path(file) {
-    io::TableFile table(file, "# comment\n", head, {}, solo);
+    io::TableFile table(file, "# comment\n", {}, head, {}, solo);
     for (int step = 0; step < 20; step += 2) {
       table.add(step, std::string("    ") + std::to_string(step) + " 1.5");
       if (step == 12) mark = table.mark();
@@ -26,7 +26,7 @@ struct Written {
     good = io::read_file(path);
   }
   io::TableCut cut(std::int64_t last, bool with_mark = true) const {
-    return io::cut_table(path, head, {last, with_mark ? std::optional(mark) : std::nullopt});
+    return io::cut_table(path, {}, head, {last, with_mark ? std::optional(mark) : std::nullopt});
   }
   void put(const std::string& text) const { std::ofstream(path, std::ios::binary) << text; }
   /// The table after the row of this step.

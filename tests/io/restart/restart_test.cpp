@@ -1,6 +1,7 @@
 #include "io/restart/restart.hpp"
 
 #include <array>
+#include <bit>
 #include <filesystem>
 #include <fstream>
 
@@ -10,6 +11,7 @@
 #include "io/output/file.hpp"
 #include "io/output/hdf5.hpp"
 #include "io/output/particle_order.hpp"
+#include "io/restart/contents.hpp"
 #include "tests/io/output/small_disk.hpp"
 #include "tests/io/output/small_model.hpp"
 
@@ -118,6 +120,32 @@ TEST_CASE("The tiles of failed particles return, and follow the scene that is re
   CHECK(io::state_hash(same, solo) == io::state_hash(parted, solo));
   CHECK(tiles(resumed(whole, with)) == tiles(parted));
   CHECK(tiles(resumed(parted, without)) == tiles(whole));
+}
+
+TEST_CASE("The motion of a rigid body, also with the forces that earlier versions stored") {
+  const Folder folder("restart_rigid");
+  core::SoloCommunication solo;
+  core::Model model = small_model(solo);
+  std::array<double, core::RigidState::size> state{};
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] = static_cast<double>(i + 1);
+  model.bodies[1].rigid_state = std::bit_cast<core::RigidState>(state);
+  const std::string path = io::write_restart(folder.path(), "small", model, an_extra, solo);
+  const auto motion = [&] {
+    return std::bit_cast<std::array<double, core::RigidState::size>>(
+        io::read_contents(path).bodies.at(1).rigid.value());
+  };
+  CHECK(motion() == state);
+
+  // 1 + 3 * 3 numbers, the inertia's 6, force and moment, contacts, and the symmetry.
+  std::vector<double> earlier(state.begin(), state.end());
+  earlier.insert(earlier.begin() + 16, 6, -1.0);
+  {
+    const io::hdf5::Handle file = io::hdf5::open_file(path, io::hdf5::Access::change);
+    const io::hdf5::Handle body = io::hdf5::open_group(file, "bodies/1");
+    io::hdf5::check(H5Ldelete(body, "rigid_motion", H5P_DEFAULT), "remove the motion");
+    io::hdf5::write_all(body, "rigid_motion", std::span<const double>(earlier));
+  }
+  CHECK(motion() == state);
 }
 
 TEST_CASE("A state without particles can be stored too") {
