@@ -10,6 +10,7 @@ import tables
 
 BASE = methods.Method("linear")
 MOST_ROWS = 10
+SIGNIFICANT = 1.3  # ratio of run times that other programs on the machine do not explain
 
 # {use: [(case, study, error)]}: what a user of that kind looks at.
 USES = {
@@ -31,12 +32,12 @@ def finest(rows, error):
 
 
 def error_within(rows, error, seconds):
-    """Error of a method at this run time: between two of its runs by powers of the time, else that of its longest run;
-    None where none is short enough."""
+    """Error of a method at this run time: between two of its runs by powers of the time, else that of its longest run, or of its
+    shortest one where that is not significantly longer; None where none is short enough."""
     done = sorted((r["seconds"], tables.value(r, error)) for r in rows if tables.value(r, error) is not None)
     shorter, longer = [d for d in done if d[0] <= seconds], [d for d in done if d[0] > seconds]
     if not shorter:
-        return None
+        return next((error for time, error in done if time <= SIGNIFICANT * seconds), None)
     (t, e), (u, f) = shorter[-1], (longer or [shorter[-1]])[0]
     if u == t or e <= 0 or f <= 0:
         return e
