@@ -52,11 +52,11 @@ def text(layers, shape="linear", normal="regression", kind=0, end=0.2):
 
 def measure(folder):
     """L, D and W in mm, mean errors of L and D and of all three in percent, the bar's velocity at the end, its height above
-    the plate, and when the last force acted."""
+    the plate, and the row before the last mean force."""
     bar, status = Bar(folder), _cases.status(folder, JOB)
     relative, mean = taylor.errors(bar.sizes)
     forces = np.flatnonzero(status["fz[contact:plate]"])
     return {"particles": len(bar.now), "steps": bar.summary["steps"], **{name: float(size) for name, size in bar.sizes.items()},
             "error_LD": 50 * float(abs(relative["L"]) + abs(relative["D"])), "mean_error": 100 * float(mean),
-            "parted": 1e3 * float(status["time"][forces[-1]]), "speed": float(status["vz[body:bar]"][-1]),
+            "parted": 1e3 * float(status["time"][forces[-1] - 1]), "speed": float(status["vz[body:bar]"][-1]),
             "height": float(bar.height), "drift": 100 * bar.summary["energy"]["relative_drift"]}
