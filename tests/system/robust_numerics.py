@@ -72,7 +72,7 @@ class Failures(Case):
                     self.assertEqual(said, [])
                     continue
                 self.assertEqual(len(said), 2, outcome)
-                self.assertIn("the specified time step 0.1 is 3.7 times the critical step 0.027", said[0])
+                self.assertIn("the specified time step 0.1 is 3.69 times the critical step 0.0271", said[0])
                 self.assertRegex(said[1], r"the error of the energy balance was \d+.* % at step 8, the last")
 
     def test_energy_fraction(self):
