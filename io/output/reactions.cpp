@@ -13,11 +13,13 @@ using core::ReactionSums;
 namespace {
 
 std::vector<std::string> names_of(const std::vector<ReactionColumns>& columns, const core::Model& model) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, bodies;
+  for (const core::Body& body : model.bodies) bodies.push_back(body.name);
+  bodies = distinct_names(bodies, "body");
   for (const ReactionColumns& c : columns) {
     const core::Reaction& reaction = model.reactions[c.reaction];
     const std::string of = fmt::format("[{}:{}]", reaction.by_contact ? "contact" : "drive",
-                                       safe_name(model.bodies[static_cast<std::size_t>(reaction.body)].name));
+                                       bodies[static_cast<std::size_t>(reaction.body)]);
     for (const char* name : {"fx", "fy", "fz"})
       if (c.force) names.push_back(name + of);
     for (const char* name : {"mx", "my", "mz"})
