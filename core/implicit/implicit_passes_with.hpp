@@ -138,6 +138,8 @@ class ImplicitPassesWith final : public ImplicitPasses {
   void touch_site_nodes(Scratch& at) const;
   template <class F>
   static void add_site_stiffness(Scratch& at, bool structure_alone, F flush);
+  template <class Has, class F>
+  void map_vectors(Has has, F vector);
   double* clear_contributions(const BrickField& field) const {
     double* contributions = model_.grid->contributions(NodeArray::first, field.slot, field.number);
     std::fill_n(contributions, node_doubles * model_.grid->shape().nodes(), 0.0);

@@ -97,27 +97,51 @@ void ImplicitPassesWith<S>::map_surface() {
   });
 }
 
+/// Vectors of particles, by vector(tile, layout, lane), in the place of the momentum; of the tiles that have
+/// any, by has(tile, layout). Column c of a particle is lane[layout.offset(c)].
 template <ShapePolicy S>
-void ImplicitPassesWith<S>::map_drive() {
+template <class Has, class F>
+void ImplicitPassesWith<S>::map_vectors(Has has, F vector) {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   for_fields([&](const BrickField& field, Scratch&) {
     const BrickFrame frame(*model_.grid, field.slot);
     double* const contributions = clear_contributions(field);
-    for_each_block(
-        field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
-          if (!prescribed(tile.body)) return;
-          const PrescribedMotion& motion = loads_.motion(tile.body).velocity;
-          const Place place(frame, layout, block);
-          for (int l = 0; l < used; ++l) {
-            const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
-            const Vec3<double> v{get(Column::velocity_x), get(Column::velocity_y), get(Column::velocity_z)};
-            const Vec3<double> change = get(Column::volume) * (motion.velocity(block + l) - v);
-            for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
-              for (int a = 0; a < 3; ++a) contributions[node_doubles * node + a] += shape * change[a];
-            });
-          }
-        });
+    for_each_block(field, false,
+                   [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+                     if (!has(tile, layout)) return;
+                     const Place place(frame, layout, block);
+                     for (int l = 0; l < used; ++l) {
+                       const Vec3<double> mine = vector(tile, layout, block + l);
+                       for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
+                         for (int a = 0; a < 3; ++a)
+                           contributions[node_doubles * node + a] += shape * mine[a];
+                       });
+                     }
+                   });
     fold(mapped::implicit_lag, field, contributions);
+  });
+}
+
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::map_lag() {
+  const auto has = [](const ParticleTile&, const ColumnLayout& layout) {
+    return layout.has(Column::acceleration_lag_x);
+  };
+  map_vectors(has, [&](const ParticleTile&, const ColumnLayout& layout, const double* lane) {
+    const double m = lane[layout.offset(Column::mass)];
+    Vec3<double> lag;
+    for (int a = 0; a < 3; ++a) lag[a] = m * dt_ * lane[layout.offset(next(Column::acceleration_lag_x, a))];
+    return lag;
+  });
+}
+
+template <ShapePolicy S>
+void ImplicitPassesWith<S>::map_drive() {
+  const auto has = [&](const ParticleTile& tile, const ColumnLayout&) { return prescribed(tile.body); };
+  map_vectors(has, [&](const ParticleTile& tile, const ColumnLayout& layout, const double* lane) {
+    const auto get = [&](Column c) { return lane[layout.offset(c)]; };
+    const Vec3<double> v{get(Column::velocity_x), get(Column::velocity_y), get(Column::velocity_z)};
+    return get(Column::volume) * (loads_.motion(tile.body).velocity.velocity(lane) - v);
   });
 }
 
@@ -154,30 +178,6 @@ void ImplicitPassesWith<S>::add_reactions(const AlignedDoubles& impulses) {
           sums.add(ReactionSums::impulse, impulse);
           sums.add(ReactionSums::moment, moment);
         });
-  });
-}
-
-template <ShapePolicy S>
-void ImplicitPassesWith<S>::map_lag() {
-  const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
-  for_fields([&](const BrickField& field, Scratch&) {
-    const BrickFrame frame(*model_.grid, field.slot);
-    double* const contributions = clear_contributions(field);
-    for_each_block(field, false,
-                   [&](const ParticleTile&, const ColumnLayout& layout, double* block, int used) {
-                     if (!layout.has(Column::acceleration_lag_x)) return;
-                     const Place place(frame, layout, block);
-                     for (int l = 0; l < used; ++l) {
-                       const double m = block[layout.offset(Column::mass) + l];
-                       double lag[3];
-                       for (int a = 0; a < 3; ++a)
-                         lag[a] = m * dt_ * block[layout.offset(next(Column::acceleration_lag_x, a)) + l];
-                       for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
-                         for (int a = 0; a < 3; ++a) contributions[node_doubles * node + a] += shape * lag[a];
-                       });
-                     }
-                   });
-    fold(mapped::implicit_lag, field, contributions);
   });
 }
 

@@ -1,7 +1,5 @@
 #include "io/output/reactions.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "io/output/provenance.hpp"
