@@ -190,6 +190,8 @@ std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scen
 }
 
 void HistoryFile::choose_particles(const core::Model& model, core::Reductions& ranks) {
+  const auto needs_one = [](const Target& t) { return t.particle && !t.recalled; };
+  if (std::ranges::none_of(targets_, needs_one)) return;
   std::vector<double> nearest(targets_.size(), infinity), identity(targets_.size(), infinity);
   for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
     for (const core::ConstParticle p : block) {
@@ -212,7 +214,7 @@ void HistoryFile::choose_particles(const core::Model& model, core::Reductions& r
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     Target& t = targets_[i];
     if (t.particle) ++particles;
-    if (!t.particle || t.recalled || identity[i] == infinity) continue;
+    if (!needs_one(t) || identity[i] == infinity) continue;
     t.identity = static_cast<std::uint64_t>(identity[i]);
     t.present = true;
     if (model.clock.step > 0)
