@@ -56,9 +56,7 @@ void ImplicitPassesWith<S>::add_to_nodes(Scratch& at, int i, F f) const {
   SiteDilatation::Site& site = site_of(at, i);
   std::size_t place = 0;
   S::for_each_node(at.places[i / block_lanes], i % block_lanes, model_.grid->geometry().inverse_cell,
-                   [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
-                     f(site.of(node, place++), slope);
-                   });
+                   [&](int node, double, const Vec3<double>& slope) { f(site.of(node, place++), slope); });
 }
 
 /// The updated batch: the particles' own part of the forces; the mean stress acts once that of all is known.

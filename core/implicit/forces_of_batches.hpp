@@ -33,7 +33,7 @@ bool ImplicitPassesWith<S>::map_forces(const AlignedDoubles& displacements) {
           double p[9];
           for (int c = 0; c < 9; ++c) p[c] = at.stress[c][i];
           S::for_each_node(at.places[i / block_lanes], i % block_lanes, inverse_cell,
-                           [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
+                           [&](int node, double, const Vec3<double>& slope) {
                              double* to = contributions + node_doubles * node;
                              for (int a = 0; a < 3; ++a) {
                                const double force =
@@ -96,10 +96,9 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
             site = here;
           }
           stiffness.begin_particle();
-          S::for_each_node(place, i % block_lanes, inverse_cell,
-                           [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
-                             stiffness.add_node(node, slope);
-                           });
+          S::for_each_node(
+              place, i % block_lanes, inverse_cell,
+              [&](int node, double, const Vec3<double>& slope) { stiffness.add_node(node, slope); });
           if (displacements != nullptr)
             stiffness.add_particle([&](int component) { return at.tangent.d[component][i]; });
         }

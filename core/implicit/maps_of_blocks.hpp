@@ -26,13 +26,11 @@ void ImplicitPassesWith<S>::map_start() {
             double per_shape[8] = {0, 0, 0, m, m * weight.x, m * weight.y, m * weight.z, 1};
             for (int a = 0; a < 3; ++a)
               per_shape[a] = m * block[layout.offset(next(Column::velocity_x, a)) + l];
-            S::for_each_node(place, l, inverse_cell,
-                             [&](int node, const NodeOffset&, double shape, const Vec3<double>& slope) {
-                               double* to = contributions + node_doubles * node;
-                               for (int i = 0; i < node_doubles; ++i) to[i] += shape * per_shape[i];
-                               to[7] += std::abs(slope.x) * cell.x + std::abs(slope.y) * cell.y +
-                                        std::abs(slope.z) * cell.z;
-                             });
+            S::for_each_node(place, l, inverse_cell, [&](int node, double shape, const Vec3<double>& slope) {
+              double* to = contributions + node_doubles * node;
+              for (int i = 0; i < node_doubles; ++i) to[i] += shape * per_shape[i];
+              to[7] += std::abs(slope.x) * cell.x + std::abs(slope.y) * cell.y + std::abs(slope.z) * cell.z;
+            });
           }
           if (loads_.act(*model_.grid, field.slot, tile.body))
             add_load_forces<S>(loads_, model_, field.slot, tile.body, {}, place, block, used, contributions);
@@ -84,12 +82,11 @@ void ImplicitPassesWith<S>::map_surface() {
       const Place place(frame, layout, block);
       for (int l = 0; l < used; ++l) {
         const double volume = block[layout.offset(Column::volume) + l];
-        S::for_each_node(place, l, inverse_cell,
-                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& slope) {
-                           double* to = contributions + node_doubles * node;
-                           for (int a = 0; a < 3; ++a) to[a] += volume * slope[a];
-                           to[node_field::mass.first] += volume * shape;
-                         });
+        S::for_each_node(place, l, inverse_cell, [&](int node, double shape, const Vec3<double>& slope) {
+          double* to = contributions + node_doubles * node;
+          for (int a = 0; a < 3; ++a) to[a] += volume * slope[a];
+          to[node_field::mass.first] += volume * shape;
+        });
       }
     };
     for_each_block(field, true, map);

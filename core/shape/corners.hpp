@@ -289,20 +289,17 @@ struct CornerShape {
           factor * mean_divergence<node_block>(frame, nodes + node_doubles * place.lowest_of_cell(l));
   }
 
-  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
-    return g.site_index(x, axis) - 1;
-  }
   /// Without the nodes that no corner reaches.
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>&, F f) {
     constexpr int n = nodes_per_axis;
     for (int number = 0; number < n * n * n; ++number) {
-      const NodeOffset offset{{number % n, number / n % n, number / (n * n)}};
+      const int offset[3] = {number % n, number / n % n, number / (n * n)};
       double at[corners], sum[Domain::sums], largest = 0;
       for (int c = 0; c < corners; ++c) {
         at[c] = 1;
         for (int a = 0; a < 3; ++a)
-          at[c] *= std::max(1 - std::abs(place.corner[a][c][lane] - (offset.along[a] - 1)), 0.0);
+          at[c] *= std::max(1 - std::abs(place.corner[a][c][lane] - (offset[a] - 1)), 0.0);
         largest = std::max(largest, at[c]);
       }
       if (largest == 0) continue;
@@ -312,9 +309,7 @@ struct CornerShape {
       for (int s = 0; s < Domain::values; ++s) value += place.value[s][lane] * sum[s];
       for (int s = Domain::first_slope; s < Domain::sums; ++s)
         for (int a = 0; a < 3; ++a) slope[a] += place.slope[s - Domain::first_slope][a][lane] * sum[s];
-      f(place.lowest[lane] + offset.along[0] +
-            Place::side * (offset.along[1] + Place::side * offset.along[2]),
-        offset, value, slope);
+      f(place.lowest[lane] + offset[0] + Place::side * (offset[1] + Place::side * offset[2]), value, slope);
     }
   }
 };

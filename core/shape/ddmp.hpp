@@ -256,16 +256,15 @@ struct Ddmp {
     });
   }
 
-  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
-    return g.cell_index(x, axis) - 1;
-  }
   template <class F>
   static void for_each_weight(const Place& place, int lane, F f) {
     const int lowest = lowest_of_cell(place, lane) - node_block.index(0, 0, 0);
-    Linear::for_each_node(place, lane, {1, 1, 1},
-                          [&](int, const NodeOffset& at, double shape, const Vec3<double>&) {
-                            f(lowest + node_block.index(at.along[0], at.along[1], at.along[2]), shape);
-                          });
+    for (int n = 0; n < 8; ++n) {
+      const int at[3] = {n & 1, n >> 1 & 1, n >> 2};
+      double shape = 1;
+      for (int a = 0; a < 3; ++a) shape *= at[a] == 1 ? place.f[a][lane] : 1 - place.f[a][lane];
+      f(lowest + node_block.index(at[0], at[1], at[2]), shape);
+    }
   }
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
@@ -275,7 +274,7 @@ struct Ddmp {
     const int lowest = lowest_of_cell(place, lane) - node_block.index(0, 0, 0);
     for (int n = 0; n < 64; ++n) {
       const int i = n % 4, j = n / 4 % 4, k = n / 16;
-      f(lowest + node_block.index(i - 1, j - 1, k - 1), NodeOffset{{i, j, k}}, shape[n], gradient[n]);
+      f(lowest + node_block.index(i - 1, j - 1, k - 1), shape[n], gradient[n]);
     }
   }
 

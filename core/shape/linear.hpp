@@ -369,21 +369,19 @@ struct Linear {
 
   /// In the brick's node block, of the particle of a lane.
   static int lowest_of(const Place& place, int lane) { return place.node[lane]; }
-  /// Of the particles at coordinate `x`.
-  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) { return g.cell_index(x, axis); }
-  /// f(node, offset, S, gradient of S) for the nodes of the cell that holds the particle of a lane: for terms
+  /// f(node, S, gradient of S) for the nodes of the cell that holds the particle of a lane: for terms
   /// too infrequent to vectorise.
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
     const double fraction[3] = {place.f[0][lane], place.f[1][lane], place.f[2][lane]};
     for (int n = 0; n < 8; ++n) {
-      const NodeOffset offset{{n & 1, (n >> 1) & 1, n >> 2}};
+      const int offset[3] = {n & 1, n >> 1 & 1, n >> 2};
       double w[3], slope[3];
       for (int a = 0; a < 3; ++a) {
-        w[a] = offset.along[a] == 1 ? fraction[a] : 1 - fraction[a];
-        slope[a] = (offset.along[a] == 1 ? 1 : -1) * inverse_cell[a];
+        w[a] = offset[a] == 1 ? fraction[a] : 1 - fraction[a];
+        slope[a] = (offset[a] == 1 ? 1 : -1) * inverse_cell[a];
       }
-      f(place.node[lane] + corner_node(n), offset, w[0] * w[1] * w[2],
+      f(place.node[lane] + corner_node(n), w[0] * w[1] * w[2],
         Vec3<double>{slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]});
     }
   }

@@ -246,9 +246,6 @@ struct Separable : SizeColumns<Along::has_size> {
   }
 
   static int lowest_of(const Place& place, int lane) { return place.node[lane]; }
-  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
-    return g.site_index(x, axis) - 1;
-  }
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>&, F f) {
     constexpr int n = nodes_per_axis, side = Place::side;
@@ -257,7 +254,7 @@ struct Separable : SizeColumns<Along::has_size> {
     for (int k = 0; k < n; ++k) {
       for (int j = 0; j < n; ++j) {
         for (int i = 0; i < n; ++i) {
-          f(place.node[lane] + i + side * (j + side * k), NodeOffset{{i, j, k}}, w(0, i) * w(1, j) * w(2, k),
+          f(place.node[lane] + i + side * (j + side * k), w(0, i) * w(1, j) * w(2, k),
             Vec3<double>{d(0, i) * w(1, j) * w(2, k), w(0, i) * d(1, j) * w(2, k),
                          w(0, i) * w(1, j) * d(2, k)});
         }

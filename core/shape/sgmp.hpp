@@ -150,9 +150,6 @@ struct Sgmp {
     const auto [i, j, k] = lattice_points.node(place.node[lane]);
     return node_block.index(i - 1, j - 1, k - 1);
   }
-  static std::int64_t lowest_node(const GridGeometry& g, double x, int axis) {
-    return g.site_index(x, axis) - 1;
-  }
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
     // Along an axis: half the weights of the two centres on their nodes, and their differences.
@@ -170,8 +167,7 @@ struct Sgmp {
     for (int k = 0; k < nodes_per_axis; ++k) {
       for (int j = 0; j < nodes_per_axis; ++j) {
         for (int i = 0; i < nodes_per_axis; ++i) {
-          f(lowest + i + side_of_nodes * (j + side_of_nodes * k), NodeOffset{{i, j, k}},
-            w[0][i] * w[1][j] * w[2][k],
+          f(lowest + i + side_of_nodes * (j + side_of_nodes * k), w[0][i] * w[1][j] * w[2][k],
             Vec3<double>{slope[0][i] * w[1][j] * w[2][k], w[0][i] * slope[1][j] * w[2][k],
                          w[0][i] * w[1][j] * slope[2][k]});
         }

@@ -19,9 +19,9 @@
 //   Sample              optional: strain and motion of a block's particles from one reading of the nodes
 //   settle              optional: domains that Sample has carried along become those of the next step
 //   first_of_domain, columns_of_domain   optional: those of them that locating a particle reads
-//   nodes_per_axis, lowest_node   the nodes of a particle along an axis
+//   nodes_per_axis      the nodes of a particle along an axis
 //   lowest_of           optional: the lowest of a particle's nodes in its brick's node block
-//   for_each_node       f(node, offset from the lowest node, S_i, grad S_i) for one particle: for
+//   for_each_node       f(node, S_i, grad S_i) for one particle: for
 //                       infrequent terms
 //   for_each_weight     optional: the same without the gradient, where that costs much
 //   momentum_block      optional: the nodes that momentum and mass reach, where forces reach more
@@ -53,11 +53,6 @@ concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layo
   requires std::constructible_from<typename S::Interpolation, const typename S::Place&, const double*>;
 };
 
-/// A node of a particle's support, relative to the lowest one.
-struct NodeOffset {
-  int along[3];
-};
-
 /// Whether the shape functions need to know which cells hold particles.
 template <class S>
 inline constexpr bool needs_cells = requires {
@@ -78,7 +73,7 @@ void for_each_weight(const typename S::Place& place, int lane, const Vec3<double
     S::for_each_weight(place, lane, f);
   else
     S::for_each_node(place, lane, inverse_cell,
-                     [&](int node, const NodeOffset&, double shape, const Vec3<double>&) { f(node, shape); });
+                     [&](int node, double shape, const Vec3<double>&) { f(node, shape); });
 }
 
 /// Values that the particles of a block map to the grid, by lane.

@@ -133,7 +133,7 @@ void ConductionWith<S>::map_flux() {
         Vec3<double> gradient{};
         double unseen = block[layout.offset(Column::temperature) + l];
         S::for_each_node(place, l, grid.geometry().inverse_cell,
-                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
+                         [&](int node, double shape, const Vec3<double>& g) {
                            gradient = gradient + nodes[node_doubles * node + 1] * g;
                            unseen -= nodes[node_doubles * node + 1] * shape;
                          });
@@ -142,7 +142,7 @@ void ConductionWith<S>::map_flux() {
         const Vec3<double> flow =
             (-body.model->conductivity() * block[layout.offset(Column::volume) + l]) * gradient;
         S::for_each_node(place, l, grid.geometry().inverse_cell,
-                         [&](int node, const NodeOffset&, double shape, const Vec3<double>& g) {
+                         [&](int node, double shape, const Vec3<double>& g) {
                            to[flow_doubles * node] += dot(flow, g);
                            to[flow_doubles * node + 1] += shape * decaying;
                          });

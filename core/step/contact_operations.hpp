@@ -144,8 +144,7 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
         for (int l = 0; l < used; ++l) {
           if ((wanted >> l & 1u) == 0) continue;
           S::for_each_node(
-              place, l, frame.inverse_cell,
-              [&](int node, const NodeOffset&, double shape, const Vec3<double>& gradient) {
+              place, l, frame.inverse_cell, [&](int node, double shape, const Vec3<double>& gradient) {
                 using Record = Lanes<width>;
                 double* at = contributions + width * node;
                 const Record more = typename Record::vector{gradient[0], gradient[1], gradient[2], shape};

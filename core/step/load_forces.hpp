@@ -24,6 +24,23 @@ inline double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double
   return w[0] * w[1] * w[2];
 }
 
+/// Acceleration in the absorbing layers of the grid's non-reflecting faces.
+inline Vec3<double> absorption(const GridGeometry& g, const Vec3<double>& x, const Vec3<double>& v,
+                               double pressure_speed, double shear_speed) {
+  Vec3<double> a{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto face = static_cast<std::size_t>(2 * axis);
+    const double lower = GridGeometry::scaled(x[axis], g.origin[axis], g.inverse_cell[axis]),
+                 upper = static_cast<double>(g.cells[face / 2]) - lower;
+    double weight = 0;
+    if (g.boundary[face] == Boundary::nonreflecting) weight += std::max(1 - lower, 0.0);
+    if (g.boundary[face + 1] == Boundary::nonreflecting) weight += std::max(1 - upper, 0.0);
+    for (int i = 0; weight > 0 && i < 3; ++i)
+      a[i] -= 2 * weight * g.inverse_cell[axis] * (i == axis ? pressure_speed : shear_speed) * v[i];
+  }
+  return a;
+}
+
 /// f(node, force) for every particle on which loads act and every node of its support, in that order.
 /// `acceleration`: Loads::acceleration() where the particles map it, else zero.
 template <ShapePolicy S, class F>
@@ -34,7 +51,7 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
   const GridGeometry& g = model.grid->geometry();
   const Body& of_body = model.bodies[static_cast<std::size_t>(body)];
   const ColumnLayout& layout = of_body.pool->layout();
-  const bool dashpots = loads.nonreflecting() && loads.touches_nonreflecting(*model.grid, slot);
+  const bool absorbs = loads.nonreflecting() && loads.touches_nonreflecting(*model.grid, slot);
 
   for (int l = 0; l < used; ++l) {
     const auto get = [&](Column c) { return block[layout.offset(c) + l]; };
@@ -65,43 +82,24 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
         }
       }
     }
-    if (!dashpots && mine.surfaces.empty()) {
-      if (!acts) continue;
+    if (absorbs) {
+      const Vec3<double> v{get(Column::velocity_x), get(Column::velocity_y), get(Column::velocity_z)};
+      const Vec3<double> a = absorption(g, x, v, get(Column::sound_speed), mine.shear_speed);
+      acts = acts || a != Vec3<double>{};
+      per_shape = per_shape + m * a;
+    }
+    if (!acts) continue;
+    if (mine.surfaces.empty()) {
       // Without the gradients; the zero rounds the product as the sum with them does, to the same bits.
       for_each_weight<S>(place, l, g.inverse_cell, [&](int node, double shape_value) {
         f(node, shape_value * per_shape + Vec3<double>{});
       });
       continue;
     }
-    // One dashpot per grid face in the particle's reach, acting on the face's nodes.
-    Vec3<double> dashpot[3]{};
-    int side[3] = {-1, -1, -1};  // the face's nodes, relative to the lowest of the particle's
-    if (dashpots) {
-      const double c_p = get(Column::sound_speed), c_s = mine.shear_speed;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const auto axis = static_cast<int>(a);
-        const std::int64_t lowest = S::lowest_node(g, x[axis], axis), last = g.cells[a] - lowest;
-        if (g.boundary[2 * a] == Boundary::nonreflecting && lowest <= 0) side[a] = static_cast<int>(-lowest);
-        if (g.boundary[2 * a + 1] == Boundary::nonreflecting && last < S::nodes_per_axis)
-          side[a] = static_cast<int>(last);
-        if (side[a] < 0) continue;
-        acts = true;
-        for (int i = 0; i < 3; ++i) {
-          const double rate = (i == axis ? c_p : c_s) * g.inverse_cell[axis];
-          dashpot[a][i] = -2 * m * rate * get(next(Column::velocity_x, i));
-        }
-      }
-    }
-    if (!acts) continue;
-    S::for_each_node(place, l, g.inverse_cell,
-                     [&](int node, const NodeOffset& offset, double shape_value, const Vec3<double>& slope) {
-                       Vec3<double> force = shape_value * per_shape + slope.x * per_gradient[0] +
-                                            slope.y * per_gradient[1] + slope.z * per_gradient[2];
-                       for (int a = 0; a < 3; ++a) {
-                         if (side[a] == offset.along[a]) force = force + shape_value * dashpot[a];
-                       }
-                       f(node, force);
-                     });
+    S::for_each_node(place, l, g.inverse_cell, [&](int node, double shape_value, const Vec3<double>& slope) {
+      f(node, shape_value * per_shape + slope.x * per_gradient[0] + slope.y * per_gradient[1] +
+                  slope.z * per_gradient[2]);
+    });
   }
 }
 

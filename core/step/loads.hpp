@@ -16,10 +16,12 @@
 // surfaces in the box whose normal is +e. Where T varies with the place (expressions), the term S_i phi div T
 // is added; its derivatives are central differences over a small part of a cell.
 //
-// Non-reflecting face: dashpots on its nodes (Lysmer and Kuhlemeyer 1969), rho c_p against the normal
-// velocity, rho c_s against the tangential. The mass of a face's nodes is rho A h/2 for cells of depth h, so
-// a particle adds 2 m/h S_i c v. A node with half a cell's mass is stable up to 0.73 of the critical step,
-// one where three such faces meet up to 0.5; scenes with non-reflecting faces are limited to 0.5.
+// Non-reflecting face: the dashpots of Lysmer and Kuhlemeyer (1969), rho c_p v against the normal velocity
+// and rho c_s v against the tangential per area, spread over the layer of cells at the face. A particle at
+// the distance d adds m 2 (1 - d/h)/h c v, h the cell: the hat has the integral 1 over the layer, and the
+// particle maps it with its own functions. With wide functions, dashpots on the nodes of the face alone would
+// leave the nodes beyond it as a free surface. A particle slows at most at the rate 2 c/h, where three such
+// faces meet at 2 (c_p + 2 c_s)/h; scenes with non-reflecting faces are limited to half the critical step.
 // Shown by tests/core/step/loads_test.cpp.
 #pragma once
 

@@ -22,7 +22,7 @@ void ReferenceStepper::add_orders() {
   for (int order = 2; order <= case_.order; ++order) {
     for (Node& node : grid_) node.q = {};
     for (const auto& particle : case_.particles) {
-      const Support at = support<Support>(particle);
+      const Support& at = support<Support>(particle);
       Vector seen{};
       for (std::size_t n = 0; n < at.count; ++n)
         for (std::size_t a = 0; a < 3; ++a) seen[a] += at.value(n, a) * grid_[at.node[n]].du[a];
@@ -61,7 +61,7 @@ void ReferenceStepper::solve_mass(Vector Node::*of, Vector Node::*stopped) {
   for (std::size_t a = 0; a < 3; ++a) {
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
     for (const auto& particle : case_.particles) {
-      const Support at = support<Support>(particle);
+      const Support& at = support<Support>(particle);
       for (std::size_t i = 0; i < at.count; ++i)
         for (std::size_t j = 0; j < at.count; ++j)
           if (number[at.node[i]] >= 0 && number[at.node[j]] >= 0)

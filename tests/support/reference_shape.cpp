@@ -322,6 +322,13 @@ WideSupport dual_domain_support(const ReferenceGrid& grid, const Vector& x) {
     const double f = (x[a] - grid.origin[a]) / grid.cell[a] - cell[a];
     alpha *= 4 * f * (1 - f);
   }
+  std::array<std::array<int, 3>, 8> corners;  // of the cell
+  std::array<double, 8> value;
+  for (std::size_t m = 0; m < 8; ++m) {
+    const int number = static_cast<int>(m);
+    corners[m] = {cell[0] + (number & 1), cell[1] + (number >> 1 & 1), cell[2] + (number >> 2)};
+    value[m] = trilinear(grid, corners[m], x, -1);
+  }
   WideSupport result;
   for (int n = 0; n < 64; ++n) {
     WideSupport::Entry& entry = result.entry[result.count++];
@@ -340,14 +347,14 @@ WideSupport dual_domain_support(const ReferenceGrid& grid, const Vector& x) {
         gradient[a] = alpha * slope;
       }
     }
-    for (int m = 0; m < 8; ++m) {
-      const std::array<int, 3> j = {cell[0] + (m & 1), cell[1] + (m >> 1 & 1), cell[2] + (m >> 2)};
+    for (std::size_t m = 0; m < 8; ++m) {
+      const std::array<int, 3>& j = corners[m];
       const int n_ij = next_to(i, j);
       if (n_ij < 0) continue;
       const Vector mean = grid.averaged.empty()
                               ? averaged_gradient(grid, i, j)
                               : grid.averaged[number_of(grid, j)][static_cast<std::size_t>(n_ij)];
-      for (std::size_t a = 0; a < 3; ++a) gradient[a] += (1 - alpha) * trilinear(grid, j, x, -1) * mean[a];
+      for (std::size_t a = 0; a < 3; ++a) gradient[a] += (1 - alpha) * value[m] * mean[a];
     }
     entry.value.fill(entry.mass);
     entry.slope.fill(gradient);

@@ -81,6 +81,7 @@ void ReferenceStepper::step_with() {
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
   const bool usf = case_.scheme == ReferenceScheme::usf;
   if (case_.shape == ReferenceShape::ddmp) find_cells_in_use();
+  find_supports<Support>();
   particles_to_grid<Support>();
   if (usf) {
     initial_velocities();
@@ -114,7 +115,7 @@ void ReferenceStepper::step_with() {
 }
 
 template <>
-ReferenceStepper::CellSupport ReferenceStepper::support(const ReferenceParticle& particle) const {
+ReferenceStepper::CellSupport ReferenceStepper::find_support(const ReferenceParticle& particle) const {
   const Vector& x = particle.x;
   std::array<std::size_t, 3> first{};
   double N[3][2], dN[3][2];
@@ -143,7 +144,7 @@ ReferenceStepper::CellSupport ReferenceStepper::support(const ReferenceParticle&
 }
 
 template <>
-ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& particle) const {
+ReferenceStepper::AnySupport ReferenceStepper::find_support(const ReferenceParticle& particle) const {
   const Vector& x = particle.x;
   for (std::size_t a = 0; a < 3; ++a) {
     const double position = (x[a] - case_.origin[a]) / case_.cell[a];
@@ -155,6 +156,14 @@ ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& 
   result.count = result.wide.count;
   for (std::size_t n = 0; n < result.count; ++n) result.node[n] = number(result.wide.entry[n].node);
   return result;
+}
+
+template <class Support>
+void ReferenceStepper::find_supports() {
+  auto& supports = std::get<std::vector<Support>>(supports_);
+  supports.clear();
+  for (const ReferenceParticle& particle : case_.particles)
+    supports.push_back(find_support<Support>(particle));
 }
 
 /// What the faces of the grid do to component `axis` of a velocity at node (i, j, k).
@@ -177,7 +186,7 @@ void ReferenceStepper::particles_to_grid() {
   const std::vector<double> pressures = acting_pressures();
   for (std::size_t p = 0; p < case_.particles.size(); ++p) {
     const ReferenceParticle& particle = case_.particles[p];
-    const Support at = support<Support>(particle);
+    const Support& at = support<Support>(particle);
     for (std::size_t n = 0; n < at.count; ++n) {
       Node& node = grid_[at.node[n]];
       node.m += particle.m * at.mass(n);
@@ -249,7 +258,7 @@ void ReferenceStepper::integrate_momentum(double dt) {
 template <class Support>
 void ReferenceStepper::move_particles(double dt) {
   for (std::size_t index = 0; index < case_.particles.size(); ++index) {
-    const Support at = support<Support>(case_.particles[index]);
+    const Support& at = support<Support>(case_.particles[index]);
     next_x_[index] = case_.particles[index].x;
     for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
@@ -265,7 +274,7 @@ template <class Support>
 void ReferenceStepper::grid_to_particles(double dt, double velocity_dt) {
   if (!moves_last()) move_particles<Support>(dt);
   for (auto& particle : case_.particles) {
-    const Support at = support<Support>(particle);
+    const Support& at = support<Support>(particle);
     if (corrects()) particle.v = {};
     for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];
@@ -307,7 +316,7 @@ template <class Support>
 void ReferenceStepper::update_stresses(double dt) {
   std::vector<Matrix> gradients;
   for (const auto& particle : case_.particles) {
-    const Support at = support<Support>(particle);
+    const Support& at = support<Support>(particle);
     Matrix L{};
     for (std::size_t n = 0; n < at.count; ++n) {
       const Node& node = grid_[at.node[n]];

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "tests/support/reference_material.hpp"
@@ -121,7 +122,15 @@ class ReferenceStepper {
   };
 
   template <class Support>
-  Support support(const ReferenceParticle& particle) const;
+  Support find_support(const ReferenceParticle& particle) const;
+  template <class Support>
+  void find_supports();
+  /// At the start of the step.
+  template <class Support>
+  const Support& support(const ReferenceParticle& particle) const {
+    return std::get<std::vector<Support>>(
+        supports_)[static_cast<std::size_t>(&particle - case_.particles.data())];
+  }
   /// By their particles at the start of the step.
   void find_cells_in_use();
   ReferenceGrid grid_of(const ReferenceParticle& particle) const;
@@ -190,6 +199,7 @@ class ReferenceStepper {
   double length_ = 0;          ///< smallest cell edge
   double node_mass_unit_ = 0;  ///< rho_0 * cell volume
   std::vector<Node> grid_;
+  std::tuple<std::vector<CellSupport>, std::vector<AnySupport>> supports_;  ///< one of them is empty
   std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
   std::vector<DomainCorners> next_corner_;  ///< for cpdi2
   double time_ = 0, last_dt_ = 0, impulse_time_ = 0;
@@ -197,9 +207,9 @@ class ReferenceStepper {
 };
 
 template <>
-ReferenceStepper::CellSupport ReferenceStepper::support(const ReferenceParticle& particle) const;
+ReferenceStepper::CellSupport ReferenceStepper::find_support(const ReferenceParticle& particle) const;
 template <>
-ReferenceStepper::AnySupport ReferenceStepper::support(const ReferenceParticle& particle) const;
+ReferenceStepper::AnySupport ReferenceStepper::find_support(const ReferenceParticle& particle) const;
 
 /// The copper Taylor bar of thesis 3.5.1 and 5.3.3: a full cylinder, 25.4 long and 7.6 across, at 190 mm/ms
 /// onto the symmetry plane z = 0; particles on a lattice of spacing dp (along z: nearest that divides the

@@ -218,7 +218,7 @@ TEMPLATE_TEST_CASE("Domains that reach more than a cell are counted, and evaluat
   const auto place = c.block_place(block);
   double reach[3] = {};
   TestType::for_each_node(place, 2, c.geometry.inverse_cell,
-                          [&](int node, const NodeOffset&, double, const Vec3<double>& slope) {
+                          [&](int node, double, const Vec3<double>& slope) {
                             for (int a = 0; a < 3; ++a)
                               reach[a] += slope[a] * (c.node_position(node)[a] - block[block_lanes * a + 2]);
                           });
@@ -302,7 +302,7 @@ TEMPLATE_TEST_CASE("What infrequent terms see of a particle's nodes is what the 
       };
       std::vector<int> seen(static_cast<std::size_t>(c.shape.nodes()));
       TestType::for_each_node(place, l, c.geometry.inverse_cell,
-                              [&](int node, const NodeOffset&, double value, const Vec3<double>& slope) {
+                              [&](int node, double value, const Vec3<double>& slope) {
                                 ++seen[static_cast<std::size_t>(node)];
                                 add(node, 1, value, slope);
                               });
