@@ -358,8 +358,9 @@ void Ddmp::shape_and_gradient(const Place& place, int lane, const Vec3<double>& 
   const std::array<int, 3> cell = lattice_points.node(place.node[lane]);
   double alpha = 64;
   for (const auto& fraction : place.f) alpha *= fraction[lane] * (1 - fraction[lane]);
-  const auto of_corner = [&](int, const NodeOffset& offset, double s, const Vec3<double>& direct) {
-    const int(&c)[3] = offset.along;
+  const auto of_corner = [&](int node, double s, const Vec3<double>& direct) {
+    const std::array<int, 3> point = lattice_points.node(node);
+    const int c[3] = {point[0] - cell[0], point[1] - cell[1], point[2] - cell[2]};
     const int at = number(c[0], c[1], c[2]);
     shape[at] = s;
     gradient[at] = gradient[at] + alpha * direct;

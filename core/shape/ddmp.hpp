@@ -258,13 +258,10 @@ struct Ddmp {
 
   template <class F>
   static void for_each_weight(const Place& place, int lane, F f) {
-    const int lowest = lowest_of_cell(place, lane) - node_block.index(0, 0, 0);
-    for (int n = 0; n < 8; ++n) {
-      const int at[3] = {n & 1, n >> 1 & 1, n >> 2};
-      double shape = 1;
-      for (int a = 0; a < 3; ++a) shape *= at[a] == 1 ? place.f[a][lane] : 1 - place.f[a][lane];
-      f(lowest + node_block.index(at[0], at[1], at[2]), shape);
-    }
+    Linear::for_each_node(place, lane, {1, 1, 1}, [&](int node, double shape, const Vec3<double>&) {
+      const auto [i, j, k] = lattice_points.node(node);
+      f(node_block.index(i, j, k), shape);
+    });
   }
   template <class F>
   static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {

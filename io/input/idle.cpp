@@ -9,6 +9,7 @@
 
 #include "io/input/contact_notes.hpp"
 #include "io/input/idle_rules.hpp"
+#include "io/input/method_notes.hpp"
 #include "io/input/shape_notes.hpp"
 #include "io/input/text.hpp"
 
@@ -122,6 +123,8 @@ std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene
   else
     note_no_contact(scene, notes);
   note_blocks(scene, notes);
+  note_linear_functions(root, scene, notes);
+  note_soft_drivers(scene, notes);
   std::ranges::stable_sort(notes, {}, &core::Diagnostic::line);
   return notes;
 }

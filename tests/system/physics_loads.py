@@ -81,12 +81,12 @@ class Loads(_mpm.Case):
         found = self.states(text)
         self.assertLess(np.abs(found.column("pres") / 5 - 1).max(), 0.01)
 
-    def bar(self, load, faces, end, length=40, more_cells=4, velocity=0.0, ranks=1, folder="run", interval=None):
+    def bar(self, load, faces, end, length=40, more_cells=4, velocity=0.0, ranks=1, folder="run", interval=None, shape="linear"):
         body = _mpm.block("bar", (0, 0, 0), (length, 1, 1), (velocity, 0, 0), more=load)
         text = _mpm.scene([body], _mpm.grid((0, 0, 0), (length + more_cells, 1, 1), faces),
                           _mpm.solution(end), [_mpm.material(strength=f'type="IsoElastic" Young="{YOUNG}" Poisson="{POISSON}" bq1="0" bq2="0"')],
                           output=f'<Console print_time="{end / 20}"/>' + pictures(interval or end))
-        return self.states(text, folder, ranks=ranks)
+        return self.states(text.replace("<Grid>", f'<Grid shape="{shape}">'), folder, ranks=ranks)
 
     def test_traction_on_an_end(self):
         # The far end of a bar in uniaxial strain is pulled at once: behind the wave v = t/(rho c), stress = t.
@@ -112,17 +112,33 @@ class Loads(_mpm.Case):
         # wall would send it back.
         table = "".join(f'<Coefficient time="{16 * i / 20 / C_P!r}" c="{math.sin(math.pi * i / 20) ** 2!r}"/>' for i in range(21))
         push = f'<Traction tx="-2" normal="0" xmax="2" ramp="2">{table}</Traction>'
-        left = {}
-        for face in "32":
-            self.bar(push, f"0{face}2222", 70 / C_P, more_cells=0, folder=face)
-            status = _cases.status(self.folder / face)
-            left[face] = status["kinetic"][-1] / max(status["kinetic"])
-            if face == "3":  # what is gone has been booked as work done on the outside
+        # Of wide functions the short waves of the pulse are slow and some are still in the bar.
+        for shape, face, least, most in (("linear", "2", 0.9, 1.01), ("linear", "3", 0, 0.004), ("uGIMP", "3", 0, 0.004),
+                                         ("QuadraticBSpline", "3", 0, 0.015), ("SGMP", "3", 0, 0.05)):
+            with self.subTest(shape=shape, face=face):
+                self.bar(push, f"0{face}2222", 70 / C_P, more_cells=0, folder=shape + face, shape=shape)
+                status = _cases.status(self.folder / (shape + face))
+                left = status["kinetic"][-1] / max(status["kinetic"])
+                self.assertTrue(least <= left <= most, left)
+                if face == "2":
+                    continue
+                # What is gone has been booked as work done on the outside. First order in the step: dashpots act on the
+                # velocity at its beginning.
                 missing = np.array(status["total"]) - status["external_work"]
-                # First order in the step: dashpots act on the velocity at its beginning.
                 self.assertLess(np.abs(missing).max(), 0.04 * max(status["total"]))
-        self.assertLess(left["3"], 0.005)
-        self.assertGreater(left["2"], 0.9)
+
+    def test_a_block_is_absorbed(self):
+        # Three absorbing faces meet at every corner. Nothing comes back, and the books close.
+        block = _mpm.block("block", (0, 0, 0), (6, 6, 6), (1, 0.7, 0.4))
+        for shape in ("linear", "QuadraticBSpline", "CubicBSpline", "SGMP"):
+            with self.subTest(shape=shape):
+                text = _mpm.scene([block], _mpm.grid((0, 0, 0), (6, 6, 6), "333333"), _mpm.solution(60 / C_P),
+                                  output=f'<Console print_time="{5 / C_P}"/>')
+                self.run_in(shape, [self.write(text.replace("<Grid>", f'<Grid shape="{shape}">'))])
+                status = _cases.status(self.folder / shape)
+                self.assertLess(status["kinetic"][-1], 0.002 * status["kinetic"][0])
+                lost = np.array(status["total"]) - status["external_work"] - status["total"][0]
+                self.assertLess(np.abs(lost).max(), 0.04 * status["total"][0])
 
 
 _mpm.main()

@@ -1,0 +1,97 @@
+#include "io/input/method_notes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/contact/component_contact.hpp"
+
+namespace mpm::io {
+
+namespace {
+
+/// The box of the bodies' initial velocities where these are numbers, with that of walls.
+class VelocityRange {
+ public:
+  explicit VelocityRange(const core::Scene& scene) {
+    core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+      if (body.initial_velocity_expressions.empty() && body.prescribed_velocity_expressions.empty())
+        add(body.prescribed_velocity.value_or(body.initial_velocity));
+    });
+    for (const core::GridAxis& axis : scene.grid.axes)
+      if (core::is_constrained(axis.lower) || core::is_constrained(axis.upper)) add({});
+  }
+  double largest_difference() const {
+    const core::Vec3<double> d = highest_ - lowest_;
+    return std::hypot(d.x, d.y, d.z);
+  }
+
+ private:
+  void add(const core::Vec3<double>& v) {
+    for (int a = 0; a < 3; ++a) {
+      lowest_[a] = empty_ ? v[a] : std::min(lowest_[a], v[a]);
+      highest_[a] = empty_ ? v[a] : std::max(highest_[a], v[a]);
+    }
+    empty_ = false;
+  }
+  bool empty_ = true;
+  core::Vec3<double> lowest_{}, highest_{};
+};
+
+}  // namespace
+
+void note_linear_functions(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  if (scene.solution.integration != core::Integration::explicit_dynamics ||
+      scene.grid.shape != core::ShapeFunction::linear)
+    return;
+  const std::optional<Node> grid = root.child("Grid");
+  if (!grid || grid->find("shape") != nullptr) return;
+  double cell = std::numeric_limits<double>::infinity();
+  for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
+  const double cells = VelocityRange(scene).largest_difference() * scene.solution.end_time / cell;
+  constexpr double notable = 2;
+  if (!(cells >= notable) && scene.detonations.empty()) return;
+  const std::string who =
+      scene.detonations.empty()
+          ? fmt::format("bodies approach each other or a wall by up to {:.3g} cells", cells)
+          : "explosives move what is around them across cells";
+  notes.push_back(
+      {scene.provenance.path,
+       grid->line(),
+       "Grid",
+       {},
+       {},
+       fmt::format("linear shape functions, the default: {}; stresses scatter and energy is lost where "
+                   "particles cross cells, and finer cells do not help: shape=\"SGMP\" does not suffer from "
+                   "it at about the same cost (docs/choosing.md)",
+                   who)});
+}
+
+void note_soft_drivers(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  if (scene.solution.integration != core::Integration::explicit_dynamics) return;
+  const core::BodyInput* driver = nullptr;
+  int bodies = 0;
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    ++bodies;
+    const bool drives = body.prescribed_velocity || body.constrain_rigid_position;
+    if (drives && driver == nullptr && !core::is_rigid(scene.materials[body.material])) driver = &body;
+  });
+  if (driver == nullptr || bodies < 2) return;
+  notes.push_back(
+      {driver->source.file,
+       driver->source.line,
+       "Body",
+       {},
+       {},
+       fmt::format("body '{}' has a prescribed velocity and a deformable material: explicit steps "
+                   "prescribe it to the particles, not to the nodes, so that it presses on other "
+                   "bodies with its own stiffness and they may enter it; choose a material a "
+                   "hundred times stiffer than theirs, or Rigid with Contact",
+                   driver->name)});
+}
+
+}  // namespace mpm::io

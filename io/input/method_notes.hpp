@@ -1,0 +1,19 @@
+// Defaults of the method that do not suit the scene, and motions that the method does not bring about as a
+// user may expect.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.hpp"
+#include "io/input/node.hpp"
+
+namespace mpm::io {
+
+/// Explicit scenes in which bodies strike each other or a wall, or a detonation runs, over several cells,
+/// where the input does not choose the shape functions.
+void note_linear_functions(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
+/// Deformable bodies of prescribed velocity beside other bodies, in explicit steps.
+void note_soft_drivers(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
+}  // namespace mpm::io
