@@ -66,8 +66,8 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
        {},
        {},
        fmt::format("linear shape functions, the default: {}; stresses scatter and energy is lost where "
-                   "particles cross cells, and finer cells do not help: shape=\"SGMP\" does not suffer from "
-                   "it at about the same cost (docs/choosing.md)",
+                   "particles cross cells, and finer cells do not help: shape=\"SGMP\" avoids this at "
+                   "about the same cost (docs/choosing.md)",
                    who)});
 }
 
