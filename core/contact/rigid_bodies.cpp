@@ -46,7 +46,7 @@ RigidImpulse& RigidImpulse::operator+=(const RigidImpulse& other) {
 }
 
 RigidBodies::RigidBodies(Model& model, Reductions& ranks) : model_(model), ranks_(ranks) {
-  by_component_.assign(model.scene->components.size(), -1);
+  by_component_.assign(component_count(*model.scene), -1);
   by_body_.assign(model.bodies.size(), -1);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];

@@ -40,6 +40,10 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     if (strain_may_jump(model_)) then("limit strain", [&] { limit_strain(); });
   };
 
+  // First: every exchange sends what there is in each of these fields.
+  if (model_.scene->contact.enable)
+    then("velocity fields of components", [&] { pass.find_fields(ranks_); });
+
   if (cells_) {
     then("cells in use", [&] { cells_->find(); });
     then("exchange cells", [&] { cells_->finish_exchange(); });
@@ -54,7 +58,6 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   }
 
   if (model_.scene->contact.enable) {
-    then("velocity fields of components", [&] { pass.find_fields(ranks_); });
     then("surfaces to grid", [&] { pass.map_surfaces(); });
     then("exchange surfaces", [&] { pass.finish_exchange(); });
     then("normals", [&] { pass.find_meetings(); });

@@ -194,6 +194,17 @@ class Heat(_mpm.Case):
             states = {self.slabs(24, 1.0, f"ranks{n}", ranks=n, pair=pair)[0].state for n in (1, 2, 3)}
             self.assertEqual(len(states), 1)
 
+    def test_the_same_on_any_ranks_where_components_meet(self):
+        # Nodes of the contact have a velocity field each; a block that flies into new bricks changes the bricks of one rank only.
+        soft = _mpm.material(strength='type="IsoElastic" Young="1000" Poisson="0.3" SpecHeat="1" CoefficientOfThermalConductivity="5"')
+        components = [[_mpm.block("lower", (1, 1, 1), (22, 2, 1), more='<InitialTemperature value="500"/>'),
+                       _mpm.block("thrown", (21, 1, 5), (2, 2, 2), (0, 0, 15))],
+                      [_mpm.block("upper", (1, 1, 2), (22, 2, 1)), _mpm.block("rests", (1, 1, 5), (2, 2, 2))]]
+        text = _mpm.scene(['</Component><Component name="second">'.join("".join(bodies) for bodies in components)],
+                          _mpm.grid((0, 0, 0), (24, 4, 40)), _mpm.solution(1.2, factor=0.9), [soft], more='<Contact enable="1"/>')
+        states = {self.state(text, f"contact{n}", ranks=n) for n in (1, 2, 3)}
+        self.assertEqual(len(states), 1)
+
     def test_conduction_needs_a_heat_capacity(self):
         text = _mpm.scene([_mpm.block("b", (1, 1, 1), (2, 2, 2))], _mpm.grid((0, 0, 0), (4, 4, 4)), _mpm.solution(1),
                           [_mpm.material(strength='type="IsoElastic" Young="1" Poisson="0" CoefficientOfThermalConductivity="1"')])

@@ -100,6 +100,16 @@ class Rigid(_mpm.Case):
         outcome = self.run_in(folder, [self.write(text)], **how)
         return outcome.state, _mpm.summary(self.folder / folder), _cases.status(self.folder / folder)
 
+    def test_debris_meets_a_rigid_wall(self):
+        # Failed particles are a component of their own, which is none of the rigid bodies.
+        brittle = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"',
+                                '<FailureModel type="PriStrain" PriStrainMax="0" PriStrainMin="-0.001" ShearStrainMax="0"/>')
+        bodies = [_mpm.block("block", (2, 2, 2), (2, 2, 2), (5, 0, 0)), _mpm.block("wall", (4, 1, 1), (1, 4, 4), of="iron", more=held())]
+        text = scene(bodies, _mpm.grid((0, 0, 0), (8, 6, 6)), _mpm.solution(0.5), brittle, output='<Console print_time="0.05"/>')
+        self.run_in("run", [self.write(text.replace('contact_type="1"', 'contact_type="1" failure_to_component="1"'))])
+        summary = _mpm.summary(self.folder / "run")
+        self.assertEqual(summary["failed"], 64)
+
     def test_sliding_down_a_rigid_plane(self):
         """Friction below 2/7 of the slope: the ball slides with g (sin - mu cos)."""
         _, summary, _ = self.go(incline(60, 0.2))
