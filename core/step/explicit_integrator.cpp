@@ -41,8 +41,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   };
 
   // First: every exchange sends what there is in each of these fields.
-  if (model_.scene->contact.enable)
-    then("velocity fields of components", [&] { pass.find_fields(ranks_); });
+  if (model_.scene->contact.enable) then("velocity fields of components", [&] { pass.find_fields(ranks_); });
 
   if (cells_) {
     then("cells in use", [&] { cells_->find(); });
