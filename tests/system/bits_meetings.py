@@ -1,0 +1,20 @@
+"""Random scenes of bodies that meet leave the same bits on any ranks, threads and after a restart.
+
+The attack tests/attack/random_meetings.py runs them by the hundred."""
+
+import _meetings
+import _mpm
+
+
+class Meetings(_mpm.Case):
+    def test_some_random_scenes(self):
+        ends = []
+        for number in range(10):
+            with self.subTest(number=number):
+                end, wrong = _meetings.judge(number, 1, self.folder / str(number))
+                self.assertEqual(wrong, "")
+                ends.append(end)
+        self.assertGreater(ends.count("completed"), 5)
+
+
+_mpm.main()
