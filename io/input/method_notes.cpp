@@ -94,4 +94,34 @@ void note_soft_drivers(const core::Scene& scene, std::vector<core::Diagnostic>& 
                    driver->name)});
 }
 
+void note_free_axes(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const core::SolutionInput& solution = scene.solution;
+  if (solution.integration != core::Integration::implicit || !solution.implicit ||
+      !solution.implicit->quasistatic())
+    return;
+  bool held[3] = {false, false, false}, all = false;
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    all = all || body.prescribed_velocity || !body.fixed_layers.empty();
+  });
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const core::Boundary face : {scene.grid.axes[a].lower, scene.grid.axes[a].upper}) {
+      all = all || face == core::Boundary::fixed;
+      held[a] = held[a] || face == core::Boundary::symmetry;
+    }
+  }
+  std::vector<std::string> free;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (!held[a]) free.emplace_back(1, "xyz"[a]);
+  if (all || free.empty()) return;
+  notes.push_back(
+      {scene.provenance.path,
+       scene.grid.source.line,
+       "Grid",
+       {},
+       {},
+       fmt::format("no symmetry plane, fixed face or body of prescribed velocity holds the bodies along {}: "
+                   "in quasi-static steps, which have no inertia, they may drift there",
+                   fmt::join(free, " and "))});
+}
+
 }  // namespace mpm::io

@@ -16,4 +16,7 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
 /// Deformable bodies of prescribed velocity beside other bodies, in explicit steps.
 void note_soft_drivers(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
+/// Axes along which nothing holds the bodies of a quasi-static scene.
+void note_free_axes(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
 }  // namespace mpm::io

@@ -1,0 +1,87 @@
+// Notes of methods that the input does not choose, and of motions that they do not bring about.
+
+#include <algorithm>
+
+#include <catch2/catch.hpp>
+
+#include "io/input/specification.hpp"
+#include "physics/catalogue.hpp"
+#include "tests/io/input/support.hpp"
+
+namespace {
+
+using namespace mpm;
+using test::bar;
+using test::replaced;
+
+std::vector<std::string> notes_of(std::string_view text) {
+  static const io::ElementSpec language = io::language(physics::catalogue());
+  std::vector<core::Diagnostic> notes;
+  io::parse_scene(text, "case.xmp", language, {.check_files = false, .notes = &notes});
+  std::vector<std::string> lines;
+  for (core::Diagnostic& note : notes) {
+    note.file.clear();
+    lines.push_back(to_text(note));
+  }
+  return lines;
+}
+
+using Notes = std::vector<std::string>;
+
+std::string linear(std::string_view why) {
+  return "line 16: <Grid>: linear shape functions, the default: " + std::string(why) +
+         "; stresses scatter and energy is lost where particles cross cells, and finer cells do not help: "
+         "shape=\"SGMP\" avoids this at about the same cost (docs/choosing.md)";
+}
+
+TEST_CASE("linear functions by default, where bodies move over several cells") {
+  CHECK(notes_of(bar) == Notes{linear("bodies approach each other or a wall by up to 20 cells")});
+  CHECK(notes_of(replaced(bar, "<Grid>", "<Grid shape=\"linear\">")).empty());
+  CHECK(notes_of(replaced(bar, "<Grid>", "<Grid shape=\"SGMP\">")).empty());
+  CHECK(notes_of(replaced(bar, "-190", "-18")).empty());  // 1.9 cells
+  const std::string alone = replaced(replaced(replaced(bar, "\"0\" boundary=\"2\"", "\"0\" boundary=\"0\""),
+                                              "\"0\" boundary=\"2\"", "\"0\" boundary=\"0\""),
+                                     "\"0\" boundary=\"2\"", "\"0\" boundary=\"3\"");
+  CHECK(notes_of(alone).empty());  // it flies without stress
+  const std::string lit =
+      replaced(replaced(bar, "-190", "0"), "</PeneBlast>",
+               "<Detonation><Item type='point' time='0' x='0' y='0' z='0'/></Detonation></PeneBlast>");
+  const Notes notes = notes_of(lit);
+  CHECK(std::count(notes.begin(), notes.end(), linear("explosives move what is around them across cells")) ==
+        1);
+}
+
+TEST_CASE("a deformable body of prescribed velocity beside another one") {
+  const std::string chosen = replaced(bar, "<Grid>", "<Grid shape=\"SGMP\">");
+  const std::string second = replaced(
+      chosen, "</Component>",
+      "<Body name='ram' material='cu' type='Block'><Geometry dp='0.38' x0='0' y0='0' z0='20' lx='3.8' "
+      "ly='3.8' lz='0.76'/><PrescribedVelocity vx='0' vy='0' vz='-1'/></Body></Component>");
+  CHECK(
+      notes_of(second) ==
+      Notes{"line 15: <Body>: body 'ram' has a prescribed velocity and a deformable material: explicit "
+            "steps prescribe it to the particles, not to the nodes, so that it presses on other bodies with "
+            "its own stiffness and they may enter it; choose a material a hundred times stiffer than "
+            "theirs, or Rigid with Contact"});
+  CHECK(notes_of(replaced(chosen, "<InitialVelocity vx=\"0\" vy=\"0\" vz=\"-190\"/>",
+                          "<PrescribedVelocity vx='0' vy='0' vz='-1'/>"))
+            .empty());  // there is nothing that could enter it
+}
+
+TEST_CASE("quasi-static bodies that nothing holds along an axis") {
+  const std::string still =
+      replaced(replaced(bar, "<InitialVelocity vx=\"0\" vy=\"0\" vz=\"-190\"/>", ""), "<Solution>",
+               "<Solution Integration=\"impl\"><Implicit type=\"quasistatic\" step=\"0.01\"/>");
+  CHECK(notes_of(still).empty());
+  const std::string free =
+      replaced(still, "<YMin value=\"0\" boundary=\"2\"/>", "<YMin value=\"0\" boundary=\"0\"/>");
+  CHECK(
+      notes_of(free) ==
+      Notes{"line 14: <Grid>: no symmetry plane, fixed face or body of prescribed velocity holds the bodies "
+            "along y: in quasi-static steps, which have no inertia, they may drift there"});
+  CHECK(notes_of(
+            replaced(free, "<XMax value=\"11.4\" boundary=\"0\"/>", "<XMax value=\"11.4\" boundary=\"1\"/>"))
+            .empty());
+}
+
+}  // namespace
