@@ -122,6 +122,7 @@ std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene
   else
     note_no_contact(scene, notes);
   note_blocks(scene, notes);
+  note_no_bodies(scene, notes);
   std::ranges::stable_sort(notes, {}, &core::Diagnostic::line);
   return notes;
 }
