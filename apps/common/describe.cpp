@@ -69,10 +69,14 @@ std::string why_idle(const core::LoadArea& area) {
   if (!area.reached) return "no particle of the body is in its box";
   const int normal = area.load->normal;
   if (normal < 0 || area.load->pressure != 0 || !area.crossed || area_along(area, normal) != 0) return {};
+  // A face that crosses the body has its cross-section there, unless no particle is on its ramp.
+  if (area.lower[normal] + area.upper[normal] == 0)
+    return "no particle is on the ramp of the box's face that crosses the body; use a wider ramp, or move "
+           "the "
+           "face by half the distance of the particles";
   return fmt::format(
-      "no surface with the normal +{0} or -{0} is in its box, whose faces belong outside of the body, at "
-      "least "
-      "half a ramp from the loaded surface",
+      "no surface with the normal +{0} or -{0} is in its box; one of the box's faces belongs outside of the "
+      "body, at least half a ramp from the loaded surface",
       axes[normal]);
 }
 
@@ -90,7 +94,7 @@ std::string words_of_area(const core::LoadArea& area) {
   }
   if (load.normal >= 0 && load.pressure == 0) return words;
   const double x = area_along(area, 0), y = area_along(area, 1), z = area_along(area, 2);
-  return fmt::format("{}{}pressure acts on the sum of area vectors ({:.4g}, {:.4g}, {:.4g})", words,
+  return fmt::format("{}{}has its pressure on the sum of area vectors ({:.4g}, {:.4g}, {:.4g})", words,
                      words.empty() ? "" : "; ", x, y, z);
 }
 

@@ -56,7 +56,8 @@ void check_loads(const Node& root, const core::Scene& scene, const BuildContext&
         load.report(context.diagnostics, "ramp",
                     fmt::format("less than the distance {:.6g} of the body's particles: none of their layers "
                                 "would be on the ramp, or too many for its width, and the load would be zero "
-                                "or several times too large; expected at least {:.6g}, best a multiple of it",
+                                "or several times too large; expected at least {:.6g}, best twice that with "
+                                "the box's faces midway between layers",
                                 spacing, spacing));
       }
     }
