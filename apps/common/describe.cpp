@@ -10,10 +10,13 @@
 
 #include "core/particle_range.hpp"
 #include "core/setup/memory.hpp"
+#include "core/step/load_areas.hpp"
 
 namespace mpm::apps {
 
 namespace {
+
+constexpr std::size_t most_lines = 100;
 
 std::string bytes_in_words(double bytes) {
   return bytes < 1e6   ? fmt::format("{:.1f} kB", bytes / 1e3)
@@ -21,11 +24,23 @@ std::string bytes_in_words(double bytes) {
                        : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
+/// A line for each material of the bodies: waves far from what is known of it show a wrong unit.
+void describe_materials(const core::Model& model, io::Log& log) {
+  std::vector<const core::ConstitutiveModel*> said;
+  for (const core::Body& body : model.bodies) {
+    const core::ConstitutiveModel* material = body.model;
+    if (said.size() == most_lines || std::ranges::find(said, material) != said.end()) continue;
+    said.push_back(material);
+    const double waves = material->initial_sound_speed();
+    log.say("material   \"{}\": density {:.6g}, {}", material->name(), material->reference_density(),
+            waves > 0 ? fmt::format("speed of waves at rest {:.4g}", waves) : "rigid");
+  }
+}
+
 /// A line for each body, up to a maximum.
 void describe_bodies(const core::Model& model, io::Log& log) {
-  constexpr std::size_t most = 100;
   const int common = core::ColumnSet::mechanics().size();
-  for (std::size_t b = 0; b < std::min(model.bodies.size(), most); ++b) {
+  for (std::size_t b = 0; b < std::min(model.bodies.size(), most_lines); ++b) {
     const core::Body& body = model.bodies[b];
     const core::ColumnLayout& layout = body.pool->layout();
     std::string more;
@@ -36,7 +51,68 @@ void describe_bodies(const core::Model& model, io::Log& log) {
     log.say("body       \"{}\" of \"{}\": {} bytes per particle{}{}", body.name, body.model->name(),
             layout.bytes_per_particle(), more.empty() ? "" : ", beyond the mechanics", more);
   }
-  if (model.bodies.size() > most) log.say("body       {} more bodies", model.bodies.size() - most);
+  if (model.bodies.size() > most_lines)
+    log.say("body       {} more bodies", model.bodies.size() - most_lines);
+}
+
+constexpr char axes[] = "xyz";
+
+/// The area along the normal, where a part of the box's cross-sections remains.
+double area_along(const core::LoadArea& area, int normal) {
+  const double net = area.net()[normal];
+  constexpr double rounding = 1e-9;
+  return std::abs(net) > rounding * (area.lower[normal] + area.upper[normal]) ? net : 0;
+}
+
+/// Empty for a load that acts.
+std::string why_idle(const core::LoadArea& area) {
+  if (!area.reached) return "no particle of the body is in its box";
+  const int normal = area.load->normal;
+  if (normal < 0 || area.load->pressure != 0 || !area.crossed || area_along(area, normal) != 0) return {};
+  // A face that crosses the body has its cross-section there, unless no particle is on its ramp.
+  if (area.lower[normal] + area.upper[normal] == 0)
+    return "no particle is on the ramp of the box's face that crosses the body; use a wider ramp, or move "
+           "the "
+           "face by half the distance of the particles";
+  return fmt::format(
+      "no surface with the normal +{0} or -{0} is in its box; one of the box's faces belongs outside of the "
+      "body, at least half a ramp from the loaded surface",
+      axes[normal]);
+}
+
+std::string words_of_area(const core::LoadArea& area) {
+  const core::SurfaceLoad& load = *area.load;
+  std::string words;
+  if (load.normal >= 0) {
+    const double along = area_along(area, load.normal);
+    words = along == 0 ? fmt::format(
+                             "acts on surfaces with the normals +{0} and -{0} in opposite directions, "
+                             "without a total force",
+                             axes[load.normal])
+                       : fmt::format("acts on the area {:.4g} with the normal {}{}", std::abs(along),
+                                     along > 0 ? '+' : '-', axes[load.normal]);
+  }
+  if (load.normal >= 0 && load.pressure == 0) return words;
+  const double x = area_along(area, 0), y = area_along(area, 1), z = area_along(area, 2);
+  return fmt::format("{}{}has its pressure on the sum of area vectors ({:.4g}, {:.4g}, {:.4g})", words,
+                     words.empty() ? "" : "; ", x, y, z);
+}
+
+/// A line for each load of a surface, up to a maximum; a warning where it does nothing. Collective.
+void describe_loads(const core::Model& model, core::Reductions& ranks, io::Log& log) {
+  std::size_t said = 0;
+  for (const core::LoadArea& area : core::load_areas(model, ranks)) {
+    // A pressure on the whole surface needs no words.
+    const bool everywhere = area.lower == core::Vec3<double>{} && area.upper == core::Vec3<double>{} &&
+                            !area.crossed && area.reached;
+    if (area.load->normal < 0 && everywhere) continue;
+    if (said++ == most_lines) return log.say("load       more loads");
+    const std::string& body = model.bodies[area.body].name;
+    if (const std::string why = why_idle(area); !why.empty())
+      log.warn("Traction {} of body \"{}\" has no effect: {}", area.number, body, why);
+    else
+      log.say("load       Traction {} of \"{}\" {}", area.number, body, words_of_area(area));
+  }
 }
 
 }  // namespace
@@ -55,7 +131,9 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Redu
           threads, particles.min, particles.max);
   log.say("memory     {} for particles, bricks and bodies, maximum over the ranks",
           bytes_in_words(memory.max));
+  describe_materials(model, log);
   describe_bodies(model, log);
+  describe_loads(model, ranks, log);
   std::string phases;
   for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
   log.say("step       {}", phases);
@@ -104,6 +182,32 @@ void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io
                  : fmt::format("; with density=\"{:.6g}\" it would start nearly free of pressure",
                                inputs[b]->density * (1 - change)));
   }
+}
+
+void say_large_strains(const core::Model& model, core::Reductions& ranks, io::Log& log) {
+  if (model.scene->solution.volume.update != core::VolumeUpdate::accumulated_strain) return;
+  constexpr double notable = 0.01;  // of the volume; a strain of 0.14 along one axis
+  std::int64_t count = 0;
+  double largest = 0;
+  for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
+    if (!block.layout->has(core::Column::strain_xx)) continue;
+    for (const core::ConstParticle p : block) {
+      const double xx = p[core::Column::strain_xx], yy = p[core::Column::strain_yy],
+                   zz = p[core::Column::strain_zz];
+      // The strains are logarithmic: their trace is exact.
+      const double error = std::abs((1 + xx) * (1 + yy) * (1 + zz) * std::exp(-(xx + yy + zz)) - 1);
+      if (error > notable) ++count;
+      largest = std::max(largest, error);
+    }
+  }
+  ranks.sum(std::span<std::int64_t>(&count, 1));
+  largest = ranks.largest(largest);
+  if (count > 0)
+    log.warn(
+        "Volume update_type 4 is for small strains: at the end the volumes of {} particle(s) are wrong by "
+        "more "
+        "than {:.3g} %, of one by {:.3g} %; use update_type 0 or 3",
+        count, 100 * notable, 100 * largest);
 }
 
 void say_what_was_counted(const core::Model& model, core::Reductions& ranks, io::Log& log) {

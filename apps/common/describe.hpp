@@ -20,6 +20,9 @@ void warn_of_long_step(const core::Model& model, io::Log& log);
 /// gives the density (to first order) that avoids it. Collective.
 void say_thermal_pressures(const core::Model& model, core::Reductions& ranks, io::Log& log);
 
+/// Reports particles whose accumulated strain, at the end, is too large for Volume update_type 4. Collective.
+void say_large_strains(const core::Model& model, core::Reductions& ranks, io::Log& log);
+
 /// Reports states that were corrected or limited, in particles times steps. Collective.
 void say_what_was_counted(const core::Model& model, core::Reductions& ranks, io::Log& log);
 

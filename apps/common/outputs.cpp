@@ -113,6 +113,7 @@ Outputs::Outputs(const std::string& folder, const core::Model& model, core::Redu
   if (out.post_processing) say_absent(out.post_processing->variables);
   for (const std::string& notice : absent) log_.note("note       {}", notice);
   for (const std::string& chosen : history_.chosen_late()) log_.note("note       {}", chosen);
+  for (const std::string& chosen : history_.chosen_far()) log_.say("note       {}", chosen);
   open_pictures(folder, model, ranks, from);
   say_notices();
 }

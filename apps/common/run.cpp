@@ -292,6 +292,7 @@ class Run {
           totals.removed_internal);
     }
     say_what_was_counted(model_, communication_.reductions, *log_);
+    say_large_strains(model_, communication_.reductions, *log_);
     watch_->conclude(*log_);
     if (status == "failed") {
       log_->say("FAILED     {}", reason);

@@ -103,6 +103,22 @@ bool no_pictures(const Place& at) {
   return !post || (!post->h5part && post->vtk == core::PostProcessingInput::Vtk::none);
 }
 
+/// Bodies take part, but none of them is written.
+bool all_unseen(const Place& at) {
+  const std::vector<const core::BodyInput*> bodies = core::active_bodies(at.scene);
+  return !no_pictures(at) && !bodies.empty() && std::ranges::all_of(bodies, &core::BodyInput::no_output);
+}
+
+bool outside_grid(const Place& at) {
+  constexpr const char* coordinates[] = {"x", "y", "z"};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const core::GridAxis& axis = at.scene.grid.axes[a];
+    const double x = at.node.real(coordinates[a]);
+    if (x < axis.min || x > axis.max) return true;
+  }
+  return false;
+}
+
 bool steps_are_implicit(const Place& at) {
   return at.scene.solution.integration == core::Integration::implicit;
 }
@@ -379,6 +395,8 @@ const std::vector<IdleRule>& idle_rules() {
        [](const Place&) { return true; },
        "bricks of cells are shared among the threads"},
       {"Output/PostProcessing", {}, no_pictures, "neither h5part nor vtk_data requests a file"},
+      {"Output/PostProcessing", {}, all_unseen, "every body has NoOutput: its files have no particles"},
+      {"Output/TimeHistory/Point", {}, outside_grid, "the point is outside of the grid: its columns are 0"},
       {"Output/Restart",
        {},
        [](const Place& at) { return *at.scene.output.restart_interval > at.scene.solution.end_time; },

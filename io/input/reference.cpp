@@ -6,6 +6,7 @@
 
 #include "io/input/specification.hpp"
 #include "io/input/text.hpp"
+#include "io/output/variables.hpp"
 
 namespace mpm::io {
 
@@ -145,6 +146,19 @@ std::string functions_in_words() {
   return join(names, " ");
 }
 
+/// Of all output variables.
+std::string variable_section() {
+  std::string text =
+      "## Output variables\n\n"
+      "Words of `var` in PostProcessing and TimeHistory. Numbers of bodies and materials are in the order of "
+      "the input. A variable that a body's\n"
+      "material does not have is written as 0.\n\n"
+      "| var | unit | meaning |\n|---|---|---|\n";
+  for (const VariableInfo& v : variable_table)
+    text += fmt::format("| `{}` | {} | {} |\n", v.name, v.dimension, escaped(v.meaning));
+  return text + '\n';
+}
+
 }  // namespace
 
 std::string keyword_reference(const core::Catalogue& catalogue) {
@@ -168,7 +182,7 @@ std::string keyword_reference(const core::Catalogue& catalogue) {
       functions_in_words() +
       ";\n`log` is the natural logarithm like `ln`. If a result is not finite, the run stops with a message "
       "that names the particle.\n\n" +
-      section(language(catalogue), "", 1, catalogue);
+      section(language(catalogue), "", 1, catalogue) + variable_section();
   text.pop_back();
   return text;
 }

@@ -52,4 +52,16 @@ void note_blocks(const core::Scene& scene, std::vector<core::Diagnostic>& notes)
                    more > 0 ? fmt::format(" (and {} more such bodies)", more) : "")});
 }
 
+void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  if (!core::active_bodies(scene).empty()) return;
+  const core::SourceLocation& at = scene.components.front().source;
+  notes.push_back({at.file,
+                   at.line,
+                   "Component",
+                   {},
+                   {},
+                   "the run has no particles: every body has Deactive=\"1\", or is an operand of Bool bodies "
+                   "(ForBoolBody)"});
+}
+
 }  // namespace mpm::io

@@ -10,4 +10,7 @@ namespace mpm::io {
 /// The blocks whose particles, of whole number along each edge, have another volume than the input says.
 void note_blocks(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
+/// A scene none of whose bodies takes part in the run.
+void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
 }  // namespace mpm::io

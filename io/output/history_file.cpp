@@ -192,14 +192,18 @@ std::vector<HistoryFile::Target> HistoryFile::targets_of(const core::Scene& scen
 void HistoryFile::choose_particles(const core::Model& model, core::Reductions& ranks) {
   const auto needs_one = [](const Target& t) { return t.particle && !t.recalled; };
   if (std::ranges::none_of(targets_, needs_one)) return;
-  std::vector<double> nearest(targets_.size(), infinity), identity(targets_.size(), infinity);
+  std::vector<double> nearest(targets_.size(), infinity), identity(targets_.size(), infinity),
+      volume(targets_.size(), infinity);
   for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
     for (const core::ConstParticle p : block) {
       for (std::size_t i = 0; i < targets_.size(); ++i) {
         const double d = squared_distance(p.vector(Column::position_x), targets_[i].point);
         if (d > nearest[i]) continue;
         const double id = p[Column::identity];
-        identity[i] = d < nearest[i] ? id : std::fmin(id, identity[i]);
+        if (d < nearest[i] || id < identity[i]) {
+          identity[i] = id;
+          volume[i] = p[Column::volume];
+        }
         nearest[i] = d;
       }
     }
@@ -209,7 +213,12 @@ void HistoryFile::choose_particles(const core::Model& model, core::Reductions& r
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (mine[i] != nearest[i]) identity[i] = infinity;
   }
+  const std::vector<double> my_identity = identity;
   ranks.minimum(identity);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (my_identity[i] != identity[i]) volume[i] = infinity;
+  }
+  ranks.minimum(volume);
   int particles = 0;
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     Target& t = targets_[i];
@@ -217,6 +226,13 @@ void HistoryFile::choose_particles(const core::Model& model, core::Reductions& r
     if (!needs_one(t) || identity[i] == infinity) continue;
     t.identity = static_cast<std::uint64_t>(identity[i]);
     t.present = true;
+    const double distance = std::sqrt(nearest[i]), spacing = std::cbrt(volume[i]);
+    if (distance > spacing)
+      chosen_far_.push_back(
+          fmt::format("particle{} of the time histories, the one nearest to ({:.9g}, {:.9g}, {:.9g}), is "
+                      "{:.4g} away, more "
+                      "than the distance {:.4g} of particles: no body is at this point",
+                      particles, t.point.x, t.point.y, t.point.z, distance, spacing));
     if (model.clock.step > 0)
       chosen_late_.push_back(fmt::format(
           "particle{} of the time histories is the one nearest to ({:.9g}, {:.9g}, {:.9g}) at the "

@@ -37,6 +37,9 @@ class HistoryFile {
 
   /// Particles that this run has chosen although it began at a restart, one line each, for the log.
   const std::vector<std::string>& chosen_late() const { return chosen_late_; }
+  /// Particles that are farther from the point of their history than particles are from each other, one line
+  /// each, for the log.
+  const std::vector<std::string>& chosen_far() const { return chosen_far_; }
   /// With histories, every step has a row; otherwise the total energies are written on request.
   bool each_step() const { return !targets_.empty() || !reactions_.means().empty(); }
   /// Adds the row of the present state to the buffer. Throws core::NumericalFailure if an energy is not
@@ -85,7 +88,7 @@ class HistoryFile {
   ContactForces forces_;
   std::size_t record_ = 0;  ///< doubles exchanged per row
   std::optional<TableFile> file_;
-  std::vector<std::string> gone_, chosen_late_;
+  std::vector<std::string> gone_, chosen_late_, chosen_far_;
 };
 
 }  // namespace mpm::io

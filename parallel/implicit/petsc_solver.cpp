@@ -150,6 +150,22 @@ bool PetscSolver::try_otherwise(SNES snes, bool linear) {
   return true;
 }
 
+/// Ours is the test of convergence, which does not read PETSc's tolerances of Newton's method.
+void refuse_idle_tolerances() {
+  PetscBool own_test = PETSC_FALSE;
+  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-snes_convergence_test", &own_test));
+  if (own_test == PETSC_TRUE) return;
+  for (const char* name : {"-snes_rtol", "-snes_atol", "-snes_stol"}) {
+    PetscBool given = PETSC_FALSE;
+    check_petsc(PetscOptionsHasName(nullptr, nullptr, name, &given));
+    if (given == PETSC_TRUE)
+      throw WrongSolverOptions(
+          fmt::format("option {} of PETSc after -- has no effect: rtol and atol of Implicit decide; set them "
+                      "instead, or add -snes_convergence_test default",
+                      name));
+  }
+}
+
 /// After the first solve all options that PETSc knows have been read.
 void PetscSolver::refuse_unused_options() {
   if (!given_ || looked_) return;
@@ -220,6 +236,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
     check_petsc(VecRestoreArray(solution, &to));
   };
   start_from_guess();
+  if (given_ && !looked_) refuse_idle_tolerances();
   if (options.matrix_free && of_->action.object == nullptr) {
     // It would change the type of the product by differences.
     PetscBool named = PETSC_FALSE;

@@ -81,7 +81,7 @@ def scenes():
               _mpm.block("shaken", (5, 1, 1), (2, 2, 2), more='<HarmExcit><A x="0" y="3" z="0"/><Omega x="0" y="8" z="0"/>'
                          '<Theta x="0" y="0.4" z="0"/><EndTime x="1" y="1" z="1"/></HarmExcit>'),
               _mpm.block("pressed", (1, 5, 1), (2, 2, 2), more='<Traction pressure="1" tx="1" ty="0" tz="0" normal="0" '
-                         'xmin="2.5" ramp="0.5"><Coefficient time="0" c="0"/><Coefficient time="1" c="1"/></Traction>'),
+                         'xmin="2.5" ramp="1"><Coefficient time="0" c="0"/><Coefficient time="1" c="1"/></Traction>'),
               _mpm.block("piston", (5, 5, 1), (2, 2, 2), more='<PrescribedVelocity vx="0" vy="0" vz="0.5"/>'
                          '<ConstrainRigidPosition value="1"/>')]
     points = ('<Body name="points" material="soft" type="Point" density="1.1"><Geometry><Point mass="0.1" x="6" y="3.5" z="6"/>'

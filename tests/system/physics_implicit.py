@@ -519,6 +519,7 @@ class Refused(_mpm.Case):
                                    (path, ("-pc_factor_mat_solver_type", "mumps"), _mpm.DONE),
                                    (path, ("-ksp_typo", "gmres"), _mpm.INPUT_ERROR),
                                    (path, ("-ksp_type", "gmrez"), _mpm.INPUT_ERROR),
+                                   (path, ("-snes_rtol", "1e-3"), _mpm.INPUT_ERROR),
                                    (path, ("-pc_factor_mat_solver_type", "nosuch"), _mpm.INPUT_ERROR),
                                    (explicit, ("-ksp_type", "cg"), _mpm.INPUT_ERROR)):
             with self.subTest(options=options, job=job.name):

@@ -100,6 +100,31 @@ class Loads(_mpm.Case):
         status = _cases.status(self.folder / "run")
         self.assertLess(abs(status["relative_drift"][-1]), 0.02)
 
+    def test_the_log_says_where_a_load_acts(self):
+        # A body of 4 x 2 x 2 with layers of particles at 0.25, 0.75, ...; cells and ramps of 1.
+        said = {
+            'tx="1" normal="2" zmin="1"': "acts on the area 8 with the normal +z",
+            'tx="1" normal="2" zmax="1" xmin="2"': "acts on the area 4 with the normal -z",
+            'tx="1" normal="2" zmin="2"': "acts on the area 4 with the normal +z",  # half the ramp is outside
+            'tx="1" normal="0"': "acts on surfaces with the normals +x and -x in opposite directions, without a total force",
+            'pressure="1" zmin="1"': "has its pressure on the sum of area vectors (0, 0, 8)",
+            'pressure="1"': None,
+            'tx="1" normal="2" zmin="3"': "has no effect: no particle of the body is in its box",
+            'tx="1" normal="0" xmin="1" xmax="3"': "has no effect: no surface with the normal +x or -x is in its box",
+            'tx="1" normal="2" zmin="1" ramp="0.5"': "has no effect: no particle is on the ramp",
+        }
+        for ranks, loads in ((1, said), (2, list(said)[1:4])):
+            for load in loads:
+                text = _mpm.scene([_mpm.block("bar", (0, 0, 0), (4, 2, 2), more=f"<Traction {load}/>")],
+                                  _mpm.grid((-4, -4, -4), (8, 8, 8)), _mpm.solution(1.0))
+                outcome = self.run_in("dry", [self.write(text), "--dry-run"], ranks=ranks)
+                lines = [line for line in outcome.out.splitlines() if "Traction" in line]
+                with self.subTest(load=load, ranks=ranks):
+                    self.assertEqual(len(lines), said[load] is not None, lines)
+                    if lines:
+                        self.assertIn(said[load], lines[0])
+                        self.assertEqual(lines[0].startswith("warning: "), "no effect" in lines[0])
+
     def test_the_load_is_the_same_on_any_ranks(self):
         load = '<Traction pressure="1" tx="2" ty="0.5" normal="0" xmin="20" ramp="3"/>'
         hashes = set()

@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ElementTree
 import h5py
 import numpy
 
+import _cases
 import _mpm
 from _mpm import BIN, DONE, FILE_ERROR, INPUT_ERROR, NUMERICAL_FAILURE, Case
 
@@ -107,6 +108,9 @@ class CommandLine(Case):
                 wave = (1000 * 0.7 / (1.3 * 0.4)) ** 0.5
                 self.assertAlmostEqual(critical, 1 / (wave + 10**0.5), delta=1e-6)
 
+                # A density in other units shows in the speed of waves.
+                self.assertIn(f'material   "soft": density 1, speed of waves at rest {wave:.4g}\n', outcome.out)
+
     def test_dry_run_names_the_columns_of_a_material(self):
         hard = _mpm.material("soft", strength='type="IsoHarden" Young="1000" Poisson="0.3" Yield0="1" TangMod="10"')
         text = _mpm.scene([_mpm.block("cube", (2, 2, 2), (4, 4, 4))], _mpm.grid((0, 0, 0), (8, 8, 8)),
@@ -124,6 +128,39 @@ class CommandLine(Case):
         for name, data in before.items():
             now = (self.folder / "out" / name).read_bytes()
             self.assertEqual(now[: len(data)] if name == "case.out" else now, data, name)
+
+    def test_a_history_of_a_particle_far_from_its_point(self):
+        # The cube's corner at (6, 6, 6) is less than a spacing of 0.5 from the nearest particle.
+        points = '<TimeHistory var="pres"><Particle x="6" y="6" z="6"/><Particle x="6" y="6" z="7"/></TimeHistory>'
+        text = _mpm.scene([_mpm.block("cube", (2, 2, 2), (4, 4, 4))], _mpm.grid((0, 0, 0), (8, 8, 8)),
+                          _mpm.solution(0.01), output=points)
+        for ranks in (1, 2):
+            outcome = self.run_in("out", [self.write(text)], ranks=ranks)
+            found = [line for line in outcome.out.splitlines() if "nearest to" in line]
+            self.assertEqual(found, ["note       particle2 of the time histories, the one nearest to (6, 6, 7), is 1.299 "
+                                     "away, more than the distance 0.5 of particles: no body is at this point"])
+
+    def test_volumes_of_accumulated_strains(self):
+        """The error that the log gives is that of the strains: 1 + e against exp(e) along each axis."""
+        for speed in (0.1, 1.5):
+            body = _mpm.block("bar", (0, 0, 0), (8, 2, 2)).replace(
+                '<InitialVelocity vx="0" vy="0" vz="0"/>', f'<PrescribedVelocity vx="-{speed}*X/8" vy="0" vz="0"/>')
+            text = _mpm.scene([body], _mpm.grid((0, 0, 0), (10, 4, 4), "202020"),
+                              _mpm.solution(1, more='<Volume update_type="4"/>'),
+                              output='<PostProcessing time_interval="1" h5part="1" var="exx|eyy|ezz"/>')
+            outcome = self.run_in(f"at {speed}", [self.write(text)])
+            states = _cases.States(self.folder / f"at {speed}")
+            strains = [states.column(name) for name in ("exx", "eyy", "ezz")]
+            errors = numpy.abs(numpy.prod([(1 + e) * numpy.exp(-e) for e in strains], axis=0) - 1)
+            found = re.search("warning: Volume update_type 4 is for small strains: at the end the volumes of "
+                              r"(\d+) particle\(s\) are wrong by more than 1 %, of one by ([\d.e-]+) %", outcome.out)
+            if speed < 1:
+                self.assertLess(errors.max(), 0.01)
+                self.assertIsNone(found)
+            else:
+                self.assertIsNotNone(found, outcome)
+                self.assertEqual(int(found.group(1)), (errors > 0.01).sum())
+                self.assertAlmostEqual(float(found.group(2)) / (100 * errors.max()), 1, delta=0.005)
 
     def test_name_without_ending_and_with_dots_and_spaces(self):
         self.write(collision(), "my case.v2.xmp")

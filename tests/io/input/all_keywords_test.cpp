@@ -169,7 +169,7 @@ std::string bodies() {
   text += body(
       "Block", block,
       "<Traction pressure='1' tx='1' ty='2' tz='3' normal='0' xmin='0' xmax='1' ymin='0' ymax='1' zmin='0' "
-      "zmax='1' ramp='0.5'><Coefficient time='0' c='1'/><Coefficient time='1' c='2'/></Traction>");
+      "zmax='1' ramp='2'><Coefficient time='0' c='1'/><Coefficient time='1' c='2'/></Traction>");
   text += body("Block", block,
                "<InitialVelocity vx='0.1*sin(pi*x/25)' vy='X' vz='0'/>"
                "<BodyForce bx='1' by='if(x > 0, y, z)*t' bz='X + Y + Z'/>"

@@ -346,6 +346,29 @@ TEST_CASE("a block whose spacing does not divide its edges") {
   CHECK(notes("3").size() == 1);
 }
 
+TEST_CASE("outputs of nothing, and a run of nothing") {
+  const auto with = [](const std::string& control, const std::string& output) {
+    return notes_of(replaced(replaced(bar, "    </Body>", control + "    </Body>"), "</PeneBlast>",
+                             "<Output>" + output + "</Output></PeneBlast>"));
+  };
+  const std::string pictures = "<PostProcessing time_interval='0.01' vtk_data='1' var='pres'/>",
+                    hidden = "<BodyContrl NoOutput='1'/>", removed = "<BodyContrl Deactive='1'/>";
+  CHECK(with("", pictures).empty());
+  CHECK(with(hidden, pictures) ==
+        std::vector<std::string>{
+            "line 26: <PostProcessing>: no effect: every body has NoOutput: its files have no particles"});
+  CHECK(with(removed, "") ==
+        std::vector<std::string>{"line 11: <Component>: the run has no particles: every body has "
+                                 "Deactive=\"1\", or is an operand of Bool bodies (ForBoolBody)"});
+  const auto at = [&](const std::string& x) {
+    return with("", "<TimeHistory var='pres'><Point x='" + x + "' y='1' z='26.6'/></TimeHistory>");
+  };
+  CHECK(at("11.4").empty());
+  for (const std::string x : {"11.5", "-0.1"})
+    CHECK(at(x) == std::vector<std::string>{
+                       "line 26: <Point>: no effect: the point is outside of the grid: its columns are 0"});
+}
+
 /// A second body beside the rod, of the rod's component or of one of its own.
 std::string two_bodies(std::string_view text, double x, bool own_component) {
   const std::string second = fmt::format(

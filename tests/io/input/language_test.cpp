@@ -119,7 +119,8 @@ TEST_CASE("the reference names every attribute") {
   for (const std::string_view piece :
        {"## Grid\n", "### Grid / Cell / XMin\n", "`DamageRandom`", "`NotConsiderVisForCp`",
         "`type=\"Homemade\"`: a law of these tests", "**Not implemented yet.**",
-        "`RectangluarForMembrane` is accepted for"})
+        "`RectangluarForMembrane` is accepted for", "## Output variables\n",
+        "| `engi` | energy | internal energy of the particle, not per mass |\n"})
     CHECK(reference.find(piece) != reference.npos);
 }
 
