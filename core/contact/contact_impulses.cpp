@@ -21,10 +21,11 @@ struct Contact::Node {
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
   std::vector<ContactPair> pairs;
   std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
-  /// Of a free rigid body with one of prescribed motion, apart from `pairs` where the motion at the end counts.
+  /// Of a free rigid body with one of prescribed motion, apart from `pairs` where the motion at the end
+  /// counts.
   struct Rigid {
     RigidContact contact;
-    int recorded = -1;     ///< number of the pair in the record
+    int recorded = -1;      ///< number of the pair in the record
     bool is_first = false;  ///< the free body is the first of the pair
   };
   std::vector<Rigid> rigid_contacts;

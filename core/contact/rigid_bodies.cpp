@@ -242,8 +242,10 @@ void RigidBodies::fail_pressed(std::size_t number) {
   std::string list;
   for (const std::string& other : others) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", other);
   throw NumericalFailure(fmt::format(
-      "step {}, time {:.6g}: the free rigid body '{}' cannot give way to the rigid bodies of prescribed motion "
-      "that it touches ({}): they press it from several sides. Leave it room, or make one of them deformable",
+      "step {}, time {:.6g}: no impulses keep the free rigid body '{}' from entering the rigid bodies of "
+      "prescribed motion that it touches ({}). Where they close on it from several sides, leave it room or "
+      "make "
+      "one of them deformable",
       model_.clock.step + 1, model_.clock.time, name(number), list));
 }
 
@@ -272,7 +274,8 @@ void RigidBodies::find_motion(std::span<const RigidContact> contacts,
       rigid.end = alone ? free : next_trial(without, free, before, values);
       if (const std::span<RigidContact> own = contacts_of(r); !own.empty()) {
         for (RigidContact& contact : own) contact.impulse = {};
-        if (!resolve_rigid_contacts(without, RigidResistance(without, values), rigid.end, own)) fail_pressed(r);
+        if (!resolve_rigid_contacts(without, RigidResistance(without, values), rigid.end, own))
+          fail_pressed(r);
       }
       rest = rest && same_motion(without, before, rigid.end);
     }
@@ -282,7 +285,7 @@ void RigidBodies::find_motion(std::span<const RigidContact> contacts,
 }
 
 double RigidBodies::longest_step(const Loads& loads) const {
-  constexpr double part = 0.1;       // of a cell
+  constexpr double part = 0.1;         // of a cell
   constexpr double least_steps = 100;  // in a run: loads and prescribed motions may begin at any time
   const SolutionInput& solution = model_.scene->solution;
   if (std::ranges::any_of(model_.bodies, [](const Body& body) { return !body.rigid; }))
@@ -297,8 +300,10 @@ double RigidBodies::longest_step(const Loads& loads) const {
     // The half diagonal of a brick with this mass and inertia.
     const double radius = std::sqrt(1.5 * trace(s.inertia) / s.mass);
     const double speed = size(s.velocity) + radius * size(s.spin);
-    const double more = (bodies_[r].driven ? 0.0 : size(solution.gravity + acceleration_of(*inputs[body], model_.clock.time))) +
-                        radius * size(loads.angular_acceleration(bodies_[r].body));
+    const double more =
+        (bodies_[r].driven ? 0.0
+                           : size(solution.gravity + acceleration_of(*inputs[body], model_.clock.time))) +
+        radius * size(loads.angular_acceleration(bodies_[r].body));
     // speed t + more t^2 = way: the speed is that of the step's end.
     const double sum = speed + std::sqrt(speed * speed + 4 * more * way);
     if (sum > 0) longest = std::min(longest, 2 * way / sum);

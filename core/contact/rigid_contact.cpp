@@ -9,9 +9,11 @@ namespace mpm::core {
 
 namespace {
 
-constexpr int even_sweeps = 20, most_sweeps = 4000;
-constexpr double rest = 1e-14;      // of the largest relative velocity, in a sweep
-constexpr double most_left = 1e-7;  // of that velocity, with which a body may still approach at the end
+constexpr int even_sweeps = 20, fewest_sweeps = 200, most_sweeps = 4000;
+constexpr std::size_t most_work = 2000000;  // sweeps times contacts, where there are many
+constexpr double rest = 1e-14;              // of the largest relative velocity, in a sweep
+constexpr double most_left = 1e-5;  // of that velocity, with which a body may still approach at the end
+constexpr double most_gain = 1e-7;  // of the impulses times that velocity
 
 /// A contact with what the body answers to unit impulses along its three axes, the first of them the normal.
 struct Touch {
@@ -79,7 +81,8 @@ double rub(Touch& t, const RigidVelocity& q, double parts, RigidVelocity& to) {
   return largest;
 }
 
-/// Whether the body no longer approaches, and has gained no energy, but for a small part of the speed `fastest`.
+/// Whether the body no longer approaches, and has gained no energy, but for a small part of the speed
+/// `fastest`.
 bool is_settled(std::span<const Touch> touches, const RigidVelocity& without, const RigidVelocity& q,
                 double fastest) {
   double work = 0, all = 0;
@@ -90,7 +93,7 @@ bool is_settled(std::span<const Touch> touches, const RigidVelocity& without, co
       all += std::abs(t.p[a]) * fastest;
     }
   }
-  return work <= most_left * all;  // false where it is not a number
+  return work <= most_gain * all;  // false where it is not a number
 }
 
 }  // namespace
@@ -124,7 +127,8 @@ bool resolve_rigid_contacts(const RigidState& s, const RigidResistance& resistan
         rub(t, before, parts, q);
       }
     }
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    const int sweeps = std::clamp(static_cast<int>(most_work / touches.size()), fewest_sweeps, most_sweeps);
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
       double largest = 0;
       for (Touch& t : touches) {
         if (!moves(t)) continue;
