@@ -3,12 +3,12 @@
 // body (rigid_state.hpp), the same bits on every rank.
 //
 // At a node a driven body has infinite mass, and so has a free one with the motion that it has at the end of
-// the step: found once the nodes' velocities without contact are known (rigid_motion.hpp). A driven body
-// where a free one meets it answers as a deformable of a million times the free one's mass. Where the motion
-// is not yet known (USF's strain) a free one has its mass over the number of nodes at which it touched others
-// in the step before, so that the impulses of all of them stop it and no more (mass splitting, as in
-// node_contact.hpp). Two free bodies do not act on each other, nor do two driven ones: contact.hpp stops the
-// run where such two enter each other, and this class where a free one comes to a wall of the grid.
+// the step: found once the nodes' velocities without contact are known (rigid_motion.hpp), together with the
+// impulses of the driven bodies on it (rigid_contact.hpp). Where the motion is not yet known (USF's strain) a
+// free one has its mass over the number of nodes at which it touched others in the step before, so that the
+// impulses of all of them stop it and no more (mass splitting, as in node_contact.hpp). Two free bodies do not
+// act on each other, nor do two driven ones: contact.hpp stops the run where such two enter each other, and
+// this class where a free one comes to a wall of the grid.
 #pragma once
 
 #include <algorithm>
