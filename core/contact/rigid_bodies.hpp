@@ -6,9 +6,9 @@
 // the step: found once the nodes' velocities without contact are known (rigid_motion.hpp), together with the
 // impulses of the driven bodies on it (rigid_contact.hpp). Where the motion is not yet known (USF's strain) a
 // free one has its mass over the number of nodes at which it touched others in the step before, so that the
-// impulses of all of them stop it and no more (mass splitting, as in node_contact.hpp). Two free bodies do not
-// act on each other, nor do two driven ones: contact.hpp stops the run where such two enter each other, and
-// this class where a free one comes to a wall of the grid.
+// impulses of all of them stop it and no more (mass splitting, as in node_contact.hpp). Two free bodies do
+// not act on each other, nor do two driven ones: contact.hpp stops the run where such two enter each other,
+// and this class where a free one comes to a wall of the grid.
 #pragma once
 
 #include <algorithm>
