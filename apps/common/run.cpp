@@ -49,6 +49,18 @@ std::vector<std::string> add_new_bodies(core::Model& model, const std::vector<st
   return notices;
 }
 
+/// A sentence of the bodies of which nothing is left, whose mean places and velocities have no value; or
+/// empty.
+std::string words_of_emptied_bodies(const core::Model& model, const core::Totals& totals) {
+  std::string words;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (totals.bodies[b].particles > 0) continue;
+    words += fmt::format("{}body '{}' has no particles left: all of them have left the grid or were eroded",
+                         words.empty() ? "" : "; ", model.bodies[b].name);
+  }
+  return words;
+}
+
 /// One run in its stages; the members are in the order of their construction.
 class Run {
  public:
@@ -278,6 +290,8 @@ class Run {
         communication_.reductions.spread(particle_steps_).mean * communication_.reductions.size();
     const core::Totals totals = core::compute_totals(model_, communication_);
     if (report.reason.empty()) report.reason = watch_->words_of_drift();
+    const std::string emptied = words_of_emptied_bodies(model_, totals);
+    if (!emptied.empty()) report.reason += (report.reason.empty() ? "" : "; ") + emptied;
     log_->say("\n{}", io::timing_table(report));
     if (const std::string words = stepper_->words_of_run(); !words.empty()) log_->say("implicit   {}", words);
     log_->say(
@@ -291,6 +305,7 @@ class Run {
           totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic,
           totals.removed_internal);
     }
+    if (!emptied.empty()) log_->warn("{}", emptied);
     say_what_was_counted(model_, communication_.reductions, *log_);
     say_large_strains(model_, communication_.reductions, *log_);
     watch_->conclude(*log_);

@@ -18,6 +18,7 @@
 // All copies of a node see the same sums and find the same impulses, as they find the same motion.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -93,6 +94,7 @@ struct RigidNode {
   std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
   int moves = -1;  ///< field of the body whose motion at the end counts; -1: several rigid bodies meet
   std::vector<ContactPair> pairs;
+  std::vector<RigidContact> contacts;  ///< with bodies of prescribed motion
 };
 
 /// What contact adds to in a step, by thread.
@@ -173,6 +175,7 @@ class Contact {
   void find_failed(const BrickGrid& grid, Reductions& ranks);
   ContactSurface surface(const FieldNodes& field, int node) const;
   bool by_regression(std::int32_t a, std::int32_t b) const;
+  bool are_rigid_and_meet(std::int32_t a, std::int32_t b) const;
   double friction(std::int32_t a, std::int32_t b) const;
   /// Number of the rigid body that is a component; -1: none.
   int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
@@ -188,10 +191,12 @@ class Contact {
   static Vec3<double> outward(int field, std::span<const MeetingNodes::Pair> pairs);
   Vec3<double> outward(std::span<const FieldNodes> fields, int field, int node,
                        std::span<const MeetingNodes::Pair> pairs) const;
+  static std::int64_t number_in_grid(const BrickGrid& grid, Slot s, const std::array<int, 3>& in_brick);
   bool take_node(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
                  const MeetingNodes::Node& node, Node& at) const;
   bool find_pairs(std::span<const FieldNodes> fields, std::span<const MeetingNodes::Pair> pairs,
                   Node& at) const;
+  void take_rigid_contacts(Node& at) const;
   void hold_pairs(Node& at) const;
   void resolve_strain(Node& at, Velocity which) const;
   static Vec3<double> increment(const Node& at, std::size_t field);
@@ -201,6 +206,7 @@ class Contact {
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
   void find_blows(const Node& at, std::span<Vec3<double>> by_field) const;
   void book(const Node& at, ContactSums& sums) const;
+  void book_rigid(const Node& at, ContactSums& sums) const;
 
   const Model& model_;
   const RigidBodies* rigid_;
@@ -217,10 +223,10 @@ class Contact {
   std::vector<std::size_t> seen_begin_{0};
   std::vector<std::int32_t> seen_;
   ContactInput::Normal normal_;
-  bool regresses_ = false;  ///< some pairs of components
+  bool regresses_ = false;  ///< some pairs of components: particles give their normals
   /// Mass in a full cell, by component, of rigid bodies; 0: others. Empty with fewer than two of them.
   std::vector<double> full_mass_;
-  ContactPoints points_;                ///< empty without regression
+  ContactPoints points_;                ///< empty unless particles give normals
   std::vector<MeetingNodes> meetings_;  ///< by owned slot; those of slots that do not meet are not set
 };
 

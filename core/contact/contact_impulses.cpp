@@ -9,6 +9,7 @@ namespace mpm::core {
 
 /// The fields at a node that have mass there, and their pairs that may touch.
 struct Contact::Node {
+  std::int64_t in_grid = 0;  ///< number
   Vec3<double> place{};
   std::vector<ContactField> fields;
   std::vector<int> rigid;    ///< numbers of the rigid bodies; -1: deformable
@@ -20,6 +21,14 @@ struct Contact::Node {
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
   std::vector<ContactPair> pairs;
   std::vector<int> recorded;  ///< numbers of the pairs in the record; -1: not recorded
+  /// Of a free rigid body with one of prescribed motion, apart from `pairs` where the motion at the end
+  /// counts.
+  struct Rigid {
+    RigidContact contact;
+    int recorded = -1;      ///< number of the pair in the record
+    bool is_first = false;  ///< the free body is the first of the pair
+  };
+  std::vector<Rigid> rigid_contacts;
   // At the end of the step: velocities at its start, as the particles have them and with Pan's first
   // impulses; those before the impulses that the particles get; and of each pair the share of the normal part
   // of Pan's first impulse that the particles get, and what they get of that impulse.
@@ -31,7 +40,7 @@ struct Contact::Node {
 
   void clear() {
     fields.clear(), rigid.clear(), wave.clear(), records.clear(), number.clear(), pairs.clear(),
-        recorded.clear();
+        recorded.clear(), rigid_contacts.clear();
     moves = -1, change = {}, free_body = false;
   }
 };
@@ -64,6 +73,34 @@ bool Contact::find_pairs(std::span<const FieldNodes> fields, std::span<const Mee
     at.recorded.push_back(pairs_.number(first, second));
   }
   return !at.pairs.empty();
+}
+
+/// Moves the pairs of a free rigid body and one of prescribed motion, which all nodes resolve together, to a
+/// list of their own.
+void Contact::take_rigid_contacts(Node& at) const {
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    const ContactPair& pair = at.pairs[p];
+    const int first = at.rigid[static_cast<std::size_t>(pair.first)],
+              second = at.rigid[static_cast<std::size_t>(pair.second)];
+    if (first < 0 || second < 0) {
+      at.recorded[kept] = at.recorded[p];
+      at.pairs[kept++] = pair;
+      continue;
+    }
+    const bool is_first = rigid_->is_free(first);
+    const int free = is_first ? first : second, driven = is_first ? second : first;
+    at.rigid_contacts.push_back({{.node = at.in_grid,
+                                  .free = free,
+                                  .driven = driven,
+                                  .place = at.place,
+                                  .normal = is_first ? -1.0 * pair.normal : pair.normal,
+                                  .velocity = velocity_at(rigid_->state(driven), at.place),
+                                  .friction = pair.friction},
+                                 at.recorded[p],
+                                 is_first});
+  }
+  at.pairs.resize(kept), at.recorded.resize(kept);
 }
 
 /// An impulse of this step has done its work where the end of the step finds two fields at rest against each
@@ -202,7 +239,15 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
       at.records[f].velocity()[a] = at.fields[f].velocity[a];
     }
   }
-  if (counts) book(at, sums);
+  for (const Node::Rigid& r : at.rigid_contacts) {
+    const RigidContact& c = r.contact;
+    const Vec3<double> u = velocity_at(rigid_->state(c.free), c.place) - c.velocity;
+    sums.fastest = std::max(sums.fastest, -dot(u, c.normal));
+  }
+  if (counts) {
+    book(at, sums);
+    book_rigid(at, sums);
+  }
 }
 
 /// Energy and impulses of resolve_end().
@@ -238,11 +283,35 @@ void Contact::book(const Node& at, ContactSums& sums) const {
   }
 }
 
+/// Energy and impulses of a free rigid body with those of prescribed motion.
+void Contact::book_rigid(const Node& at, ContactSums& sums) const {
+  for (const Node::Rigid& r : at.rigid_contacts) {
+    const RigidContact& c = r.contact;
+    const Vec3<double> impulse = rigid_->impulse_of(c);
+    if (impulse == Vec3<double>{}) continue;
+    const Vec3<double> mean =
+        0.5 * (velocity_at(rigid_->state(c.free), c.place) + rigid_->velocity_at_end(c.free, c.place));
+    const Vec3<double> relative = mean - c.velocity;
+    const double pressing = dot(impulse, c.normal) * dot(relative, c.normal), all = dot(impulse, relative);
+    sums.record.dissipated.add(-all);
+    sums.record.friction_heat.add(pressing - all);
+    if (r.recorded >= 0) sums.record.add_impulse(r.recorded, r.is_first ? -1.0 * impulse : impulse);
+    const auto on = [&](int number, const Vec3<double>& on_it, const Vec3<double>& velocity) {
+      sums.rigid[static_cast<std::size_t>(number)].add(on_it, c.place - rigid_->state(number).centre,
+                                                       dot(on_it, velocity));
+    };
+    on(c.free, impulse, mean);
+    on(c.driven, -1.0 * impulse, c.velocity);
+  }
+}
+
 /// The fields with mass at a node, and their pairs that touch; false without any.
 bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
                         const MeetingNodes::Node& node, Node& at) const {
   at.clear();
-  at.place = grid.geometry().node_place(grid.brick(s).coord, grid.shape().node(node.number));
+  const std::array<int, 3> in_brick = grid.shape().node(node.number);
+  at.place = grid.geometry().node_place(grid.brick(s).coord, in_brick);
+  at.in_grid = number_in_grid(grid, s, in_brick);
   int free_bodies = 0;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const Motion record{fields[f].motion.data() + node_doubles * node.number};
@@ -265,15 +334,14 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
   if (free_bodies != 1 || which == Velocity::of_strain) {
     at.moves = -1;
   } else {
-    const int free_body = at.rigid[static_cast<std::size_t>(at.moves)];
-    for (std::size_t f = 0; f < at.fields.size(); ++f)
-      if (at.rigid[f] >= 0 && at.rigid[f] != free_body) at.fields[f].mass = rigid_->stiff_mass(free_body);
     ContactField& moves = at.fields[static_cast<std::size_t>(at.moves)];
     const Vec3<double> end = rigid_->velocity_at_end(at.rigid[static_cast<std::size_t>(at.moves)], at.place);
     at.change = end - moves.velocity;
     moves = {std::numeric_limits<double>::infinity(), end};
   }
-  return find_pairs(fields, meetings(s).pairs_of(node), at);
+  if (!find_pairs(fields, meetings(s).pairs_of(node), at)) return false;
+  if (which != Velocity::of_strain) take_rigid_contacts(at);
+  return true;
 }
 
 void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
@@ -320,12 +388,14 @@ void Contact::find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNod
                                std::vector<RigidNode>& to) const {
   Node at;
   for (const MeetingNodes::Node& node : meetings(s).nodes) {
-    if (node.counts && take_node(grid, s, Velocity::of_end, fields, node, at) && at.free_body)
-      to.push_back({at.place, at.fields, at.rigid, at.moves, at.pairs});
+    if (!node.counts || !take_node(grid, s, Velocity::of_end, fields, node, at) || !at.free_body) continue;
+    to.push_back({at.place, at.fields, at.rigid, at.moves, at.pairs, {}});
+    for (const Node::Rigid& r : at.rigid_contacts) to.back().contacts.push_back(r.contact);
   }
 }
 
 void Contact::respond(const RigidNode& node, std::span<RigidResponse> to) const {
+  if (node.pairs.empty()) return;
   std::vector<ContactField> fields = node.fields;
   std::vector<ContactPair> pairs = node.pairs;
   const auto at = [&](int f) { return static_cast<std::size_t>(f); };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/contact/contact.hpp"
+#include "core/contact/widest_gap.hpp"
 
 namespace mpm::core {
 
@@ -53,8 +54,15 @@ ContactSurface Contact::surface(const FieldNodes& field, int node) const {
   return {{g[0], g[1], g[2]}, weight_[c], has_failed_[c]};
 }
 
-/// Whether the particles of two components give their normal. Rigid ones have gradients that are exact.
+/// A free rigid body and one of prescribed motion.
+bool Contact::are_rigid_and_meet(std::int32_t a, std::int32_t b) const {
+  return rigid(a) >= 0 && rigid(b) >= 0 && rigid_->is_free(rigid(a)) != rigid_->is_free(rigid(b));
+}
+
+/// Whether the particles of two components give their normal. Rigid ones have gradients that are exact, but
+/// not where two of them meet.
 bool Contact::by_regression(std::int32_t a, std::int32_t b) const {
+  if (are_rigid_and_meet(a, b)) return true;
   if (normal_ != ContactInput::Normal::automatic) return normal_ == ContactInput::Normal::regression;
   const auto first = static_cast<std::size_t>(a), second = static_cast<std::size_t>(b);
   return weight_[first] == weight_[second] && std::isfinite(weight_[first]) &&
@@ -114,6 +122,15 @@ void Contact::find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot 
   });
 }
 
+std::int64_t Contact::number_in_grid(const BrickGrid& grid, Slot s, const std::array<int, 3>& in_brick) {
+  const BrickCoord brick = grid.brick(s).coord;
+  const std::int64_t number[3] = {brick_cells * std::int64_t{brick.x} + in_brick[0],
+                                  brick_cells * std::int64_t{brick.y} + in_brick[1],
+                                  brick_cells * std::int64_t{brick.z} + in_brick[2]};
+  const auto& cells = grid.geometry().cells;
+  return (number[2] * (cells[1] + 1) + number[1]) * (cells[0] + 1) + number[0];
+}
+
 /// Contact does not part two driven rigid bodies, nor two free ones. Those that touch fill a node's cell
 /// together, whatever surface they share, but for the particles' steps in it; those that have entered each
 /// other fill it more than once.
@@ -144,13 +161,7 @@ void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<co
         const std::int32_t component = fields[static_cast<std::size_t>(present[k])].component;
         return std::ranges::find(model_.bodies, component, &Body::component)->name;
       };
-      const BrickCoord brick = grid.brick(s).coord;
-      const std::int64_t number[3] = {brick_cells * std::int64_t{brick.x} + in_brick[0],
-                                      brick_cells * std::int64_t{brick.y} + in_brick[1],
-                                      brick_cells * std::int64_t{brick.z} + in_brick[2]};
-      const auto& cells = grid.geometry().cells;
-      const auto order =
-          static_cast<double>((number[2] * (cells[1] + 1) + number[1]) * (cells[0] + 1) + number[0]);
+      const auto order = static_cast<double>(number_in_grid(grid, s, in_brick));
       meetings_[static_cast<std::size_t>(s)].overlap.offer(order, [&] {
         return fmt::format(
             "the rigid bodies '{}' and '{}', both {}, have met and overlap near ({:.6g}, {:.6g}, {:.6g}): "
@@ -218,7 +229,8 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
       if (by_regression(first.component, second.component)) {
         scratch.by_cell.around(grid, s, shape.node(node.number), first.component, second.component,
                                scratch.points);
-        normal = separating_normal(scratch.points, scratch.near);
+        if (are_rigid_and_meet(first.component, second.component)) normal = widest_gap_normal(scratch.points);
+        if (!normal) normal = separating_normal(scratch.points, scratch.near);
         if (normal) normal = in_space(*normal, grid.geometry().inverse_cell);
       }
       if (!normal) normal = contact_normal(surface(first, node.number), surface(second, node.number));

@@ -4,7 +4,10 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -199,9 +202,58 @@ void RigidBodies::find_rotation(Rigid& rigid) {
       rigid.driven ? rotation(length_.dt * rigid.end.spin) : turn_in_step(s, rigid.end.spin, length_.dt);
 }
 
-void RigidBodies::find_motion(const std::function<void(std::span<RigidResponse>)>& respond) {
+void RigidBodies::gather(std::span<const RigidContact> mine) {
+  static_assert(std::is_trivially_copyable_v<RigidContact>);
+  constexpr std::size_t size = sizeof(RigidContact);
+  std::string bytes(size * mine.size(), 0);
+  if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
+  contacts_.clear();
+  for (const std::string& of_rank : ranks_.gather(bytes)) {
+    const std::size_t first = contacts_.size();
+    contacts_.resize(first + of_rank.size() / size);
+    if (!of_rank.empty()) std::memcpy(contacts_.data() + first, of_rank.data(), of_rank.size());
+  }
+  std::ranges::sort(contacts_, [](const RigidContact& a, const RigidContact& b) { return a < b; });
+}
+
+std::span<RigidContact> RigidBodies::contacts_of(std::size_t number) {
+  const auto [first, last] =
+      std::ranges::equal_range(contacts_, static_cast<std::int32_t>(number), {}, &RigidContact::free);
+  return {first, last};
+}
+
+Vec3<double> RigidBodies::impulse_of(const RigidContact& contact) const {
+  const auto at = std::lower_bound(contacts_.begin(), contacts_.end(), contact);
+  if (at == contacts_.end() || contact < *at)
+    throw std::logic_error("a node of two rigid bodies was not among those that found their motion");
+  return at->impulse;
+}
+
+void RigidBodies::fail_pressed(std::size_t number) {
+  const auto name = [&](std::size_t r) {
+    return model_.bodies[static_cast<std::size_t>(bodies_[r].body)].name;
+  };
+  std::vector<std::string> others;
+  for (const RigidContact& contact : contacts_of(number)) {
+    std::string other = name(static_cast<std::size_t>(contact.driven));
+    if (contact.impulse != Vec3<double>{} && std::ranges::find(others, other) == others.end())
+      others.push_back(std::move(other));
+  }
+  std::string list;
+  for (const std::string& other : others) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", other);
+  throw NumericalFailure(fmt::format(
+      "step {}, time {:.6g}: no impulses keep the free rigid body '{}' from entering the rigid bodies of "
+      "prescribed motion that it touches ({}). Where they close on it from several sides, leave it room or "
+      "make "
+      "one of them deformable",
+      model_.clock.step + 1, model_.clock.time, name(number), list));
+}
+
+void RigidBodies::find_motion(std::span<const RigidContact> contacts,
+                              const std::function<void(std::span<RigidResponse>)>& respond) {
   constexpr int most_trials = 20;
   constexpr auto size = static_cast<std::size_t>(RigidResponse::size);
+  gather(contacts);
   bool rest = false;
   for (int trial = 0; trial < most_trials && !rest; ++trial) {
     std::vector<RigidResponse> responses(bodies_.size());
@@ -216,14 +268,47 @@ void RigidBodies::find_motion(const std::function<void(std::span<RigidResponse>)
       if (rigid.driven) continue;
       double values[size];
       for (std::size_t i = 0; i < size; ++i) values[i] = sums[size * r + i].value();
+      const bool alone = std::ranges::all_of(values, [](double v) { return v == 0; });
       const RigidState& without = state(static_cast<int>(r));
-      const RigidVelocity before = rigid.end;
-      rigid.end = next_trial(without, {without.velocity, without.spin}, before, values);
+      const RigidVelocity free{without.velocity, without.spin}, before = rigid.end;
+      rigid.end = alone ? free : next_trial(without, free, before, values);
+      if (const std::span<RigidContact> own = contacts_of(r); !own.empty()) {
+        for (RigidContact& contact : own) contact.impulse = {};
+        if (!resolve_rigid_contacts(without, RigidResistance(without, values), rigid.end, own))
+          fail_pressed(r);
+      }
       rest = rest && same_motion(without, before, rigid.end);
     }
   }
   for (Rigid& rigid : bodies_)
     if (!rigid.driven) find_rotation(rigid);
+}
+
+double RigidBodies::longest_step(const Loads& loads) const {
+  constexpr double part = 0.1;         // of a cell
+  constexpr double least_steps = 100;  // in a run: loads and prescribed motions may begin at any time
+  const SolutionInput& solution = model_.scene->solution;
+  if (std::ranges::any_of(model_.bodies, [](const Body& body) { return !body.rigid; }))
+    return std::numeric_limits<double>::infinity();
+  const std::vector<const BodyInput*> inputs = active_bodies(*model_.scene);
+  const double way = part * model_.grid->geometry().smallest_cell();
+  double longest = solution.end_time / least_steps;
+  for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    const auto body = static_cast<std::size_t>(bodies_[r].body);
+    const RigidState& s = state(static_cast<int>(r));
+    const auto size = [](const Vec3<double>& v) { return std::sqrt(dot(v, v)); };
+    // The half diagonal of a brick with this mass and inertia.
+    const double radius = std::sqrt(1.5 * trace(s.inertia) / s.mass);
+    const double speed = size(s.velocity) + radius * size(s.spin);
+    const double more =
+        (bodies_[r].driven ? 0.0
+                           : size(solution.gravity + acceleration_of(*inputs[body], model_.clock.time))) +
+        radius * size(loads.angular_acceleration(bodies_[r].body));
+    // speed t + more t^2 = way: the speed is that of the step's end.
+    const double sum = speed + std::sqrt(speed * speed + 4 * more * way);
+    if (sum > 0) longest = std::min(longest, 2 * way / sum);
+  }
+  return longest;
 }
 
 void RigidBodies::move(int number, const ColumnLayout& layout, double* block) const {

@@ -3,12 +3,12 @@
 // body (rigid_state.hpp), the same bits on every rank.
 //
 // At a node a driven body has infinite mass, and so has a free one with the motion that it has at the end of
-// the step: found once the nodes' velocities without contact are known (rigid_motion.hpp). A driven body
-// where a free one meets it answers as a deformable of a million times the free one's mass. Where the motion
-// is not yet known (USF's strain) a free one has its mass over the number of nodes at which it touched others
-// in the step before, so that the impulses of all of them stop it and no more (mass splitting, as in
-// node_contact.hpp). Two free bodies do not act on each other, nor do two driven ones: contact.hpp stops the
-// run where such two enter each other, and this class where a free one comes to a wall of the grid.
+// the step: found once the nodes' velocities without contact are known (rigid_motion.hpp), together with the
+// impulses of the driven bodies on it (rigid_contact.hpp). Where the motion is not yet known (USF's strain) a
+// free one has its mass over the number of nodes at which it touched others in the step before, so that the
+// impulses of all of them stop it and no more (mass splitting, as in node_contact.hpp). Two free bodies do
+// not act on each other, nor do two driven ones: contact.hpp stops the run where such two enter each other,
+// and this class where a free one comes to a wall of the grid.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/communication/reductions.hpp"
-#include "core/contact/rigid_motion.hpp"
+#include "core/contact/rigid_contact.hpp"
 #include "core/exact_sum.hpp"
 #include "core/model.hpp"
 #include "core/step/loads.hpp"
@@ -53,8 +53,6 @@ class RigidBodies {
   bool any_free() const {
     return std::ranges::any_of(bodies_, [](const Rigid& r) { return !r.driven; });
   }
-  /// Mass of a driven body at a node where it meets this free one: so large that the latter stops with it.
-  double stiff_mass(int number) const { return 1e6 * state(number).mass; }
   /// Mass of a rigid body at a node where its motion at the end of the step is not known.
   double mass_at_node(int number) const { return node_mass_[static_cast<std::size_t>(number)]; }
   /// Velocity at a place at the end of the step: without contact until find_motion(), which tries several.
@@ -68,9 +66,16 @@ class RigidBodies {
   void shorten_step(const Loads& loads, const Vec3<double>& gravity, const StepLength& length) {
     move_without_contact(loads, gravity, length);
   }
-  /// The motion of the free bodies at the end of the step; respond(responses) adds what the nodes of this
-  /// rank answer to velocity_at_end(), per body. Collective.
-  void find_motion(const std::function<void(std::span<RigidResponse>)>& respond);
+  /// The motion of the free bodies at the end of the step. `contacts`: where bodies of prescribed motion meet
+  /// them, of this rank; respond(responses) adds what its nodes with deformable bodies answer to
+  /// velocity_at_end(), per body. Throws NumericalFailure where others close on a body. Collective.
+  void find_motion(std::span<const RigidContact> contacts,
+                   const std::function<void(std::span<RigidResponse>)>& respond);
+  /// On the free body, after find_motion().
+  Vec3<double> impulse_of(const RigidContact& contact) const;
+  /// The longest step in which no body moves by more than a part of a cell; infinite where a scene has
+  /// deformable bodies, whose waves limit it.
+  double longest_step(const Loads& loads) const;
   /// Moves a block of a rigid body's particles.
   void move(int number, const ColumnLayout& layout, double* block) const;
   /// With the impulses of all threads, per body: the motion at the end of the step. The work of loads and
@@ -97,6 +102,11 @@ class RigidBodies {
   /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
   Vec3<double> symmetry_planes_at(int number);
   void find_rotation(Rigid& rigid);
+  /// Those of all ranks. Collective.
+  void gather(std::span<const RigidContact> mine);
+  /// Of a body, in contacts_.
+  std::span<RigidContact> contacts_of(std::size_t number);
+  [[noreturn]] void fail_pressed(std::size_t number);
   std::uint32_t faces_reached(const RigidState& s, const Vec3<double>& x, double edge) const;
   /// Throws NumericalFailure where a free body has reached a face that holds others. Collective.
   void require_inside();
@@ -107,6 +117,7 @@ class RigidBodies {
   std::vector<Rigid> bodies_;
   std::vector<double> node_mass_;
   std::vector<int> by_component_, by_body_;
+  std::vector<RigidContact> contacts_;  ///< of all ranks in this step, in their order
 };
 
 /// A sentence for each free rigid body that symmetry planes cut.

@@ -8,8 +8,6 @@ namespace mpm::core {
 
 namespace {
 
-using Six = std::array<double, 6>;
-
 /// Number of the entry in row i and column j <= i of a lower triangle.
 constexpr int triangle(int i, int j) { return i * (i + 1) / 2 + j; }
 
@@ -26,25 +24,6 @@ std::array<bool, 6> held(const RigidState& s) {
   std::array<bool, 6> is{};
   for (std::size_t i = 0; i < 6; ++i) is[i] = free[i] == 0;
   return is;
-}
-
-/// x with A x = b, A positive definite: L D L^T in place of its lower triangle.
-Six solve(std::array<double, 21> a, Six b) {
-  const auto at = [&](int i, int j) -> double& { return a[static_cast<std::size_t>(triangle(i, j))]; };
-  const auto x = [&](int i) -> double& { return b[static_cast<std::size_t>(i)]; };
-  for (int j = 0; j < 6; ++j) {
-    for (int k = 0; k < j; ++k) at(j, j) -= at(j, k) * at(j, k) * at(k, k);
-    for (int i = j + 1; i < 6; ++i) {
-      for (int k = 0; k < j; ++k) at(i, j) -= at(i, k) * at(j, k) * at(k, k);
-      at(i, j) /= at(j, j);
-    }
-  }
-  for (int i = 0; i < 6; ++i)
-    for (int k = 0; k < i; ++k) x(i) -= at(i, k) * x(k);
-  for (int i = 0; i < 6; ++i) x(i) /= at(i, i);
-  for (int i = 5; i >= 0; --i)
-    for (int k = i + 1; k < 6; ++k) x(i) -= at(k, i) * x(k);
-  return b;
 }
 
 }  // namespace
@@ -70,24 +49,43 @@ void RigidResponse::add(const Vec3<double>& p, const Vec3<double>& arm, const Ve
   }
 }
 
-RigidVelocity next_trial(const RigidState& s, const RigidVelocity& free, const RigidVelocity& trial,
-                         std::span<const double> response) {
-  std::array<double, 21> a;
-  std::ranges::copy(response.subspan(6), a.begin());
-  const auto at = [&](int i, int j) -> double& { return a[static_cast<std::size_t>(triangle(i, j))]; };
+RigidResistance::RigidResistance(const RigidState& s, std::span<const double> response) : fixed_(held(s)) {
+  std::ranges::copy(response.subspan(6), factor_.begin());
+  const auto at = [&](int i, int j) -> double& { return factor_[static_cast<std::size_t>(triangle(i, j))]; };
   for (int i = 0; i < 3; ++i) at(i, i) += s.mass;
   const Sym3<double>& j = s.inertia;
   at(3, 3) += j.xx, at(4, 4) += j.yy, at(5, 5) += j.zz;
   at(4, 3) += j.xy, at(5, 4) += j.yz, at(5, 3) += j.xz;
-  Six b = both(s.mass * (free.velocity - trial.velocity), j * (free.spin - trial.spin));
-  const std::array<bool, 6> fixed = held(s);
-  for (std::size_t i = 0; i < 6; ++i) {
-    b[i] = fixed[i] ? 0 : b[i] + response[i];
-    for (std::size_t k = 0; k <= i; ++k)
-      if (fixed[i] || fixed[k])
-        a[static_cast<std::size_t>(triangle(static_cast<int>(i), static_cast<int>(k)))] = i == k;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k <= i; ++k)
+      if (fixed_[static_cast<std::size_t>(i)] || fixed_[static_cast<std::size_t>(k)]) at(i, k) = i == k;
+  for (int c = 0; c < 6; ++c) {
+    for (int k = 0; k < c; ++k) at(c, c) -= at(c, k) * at(c, k) * at(k, k);
+    for (int i = c + 1; i < 6; ++i) {
+      for (int k = 0; k < c; ++k) at(i, c) -= at(i, k) * at(c, k) * at(k, k);
+      at(i, c) /= at(c, c);
+    }
   }
-  const Six d = solve(a, b);
+}
+
+Six RigidResistance::answer(Six b) const {
+  const auto at = [&](int i, int j) { return factor_[static_cast<std::size_t>(triangle(i, j))]; };
+  const auto x = [&](int i) -> double& { return b[static_cast<std::size_t>(i)]; };
+  for (std::size_t i = 0; i < 6; ++i)
+    if (fixed_[i]) b[i] = 0;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < i; ++k) x(i) -= at(i, k) * x(k);
+  for (int i = 0; i < 6; ++i) x(i) /= at(i, i);
+  for (int i = 5; i >= 0; --i)
+    for (int k = i + 1; k < 6; ++k) x(i) -= at(k, i) * x(k);
+  return b;
+}
+
+RigidVelocity next_trial(const RigidState& s, const RigidVelocity& free, const RigidVelocity& trial,
+                         std::span<const double> response) {
+  Six b = both(s.mass * (free.velocity - trial.velocity), s.inertia * (free.spin - trial.spin));
+  for (std::size_t i = 0; i < 6; ++i) b[i] += response[i];
+  const Six d = RigidResistance(s, response).answer(b);
   return {trial.velocity + Vec3<double>{d[0], d[1], d[2]}, trial.spin + Vec3<double>{d[3], d[4], d[5]}};
 }
 

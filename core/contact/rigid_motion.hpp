@@ -13,6 +13,7 @@
 // press, and q with them. Sums over nodes are exact, so that q has the same bits on any ranks and threads.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "core/contact/rigid_state.hpp"
@@ -35,6 +36,22 @@ struct RigidResponse {
   /// `across` it.
   void add(const Vec3<double>& p, const Vec3<double>& arm, const Vec3<double>& normal, double along,
            double across);
+};
+
+/// A motion of a body, velocity and then spin, or an impulse and its moment.
+using Six = std::array<double, 6>;
+
+/// M + sum B^T k B of a body, where symmetry planes let it move: an impulse's answer is the change of motion.
+class RigidResistance {
+ public:
+  /// `response`: the values of the sums.
+  RigidResistance(const RigidState& s, std::span<const double> response);
+  /// x with A x = b.
+  Six answer(Six b) const;
+
+ private:
+  std::array<double, 21> factor_;  ///< L D L^T in place of the lower triangle
+  std::array<bool, 6> fixed_;
 };
 
 /// The next trial, q'. `free`: q0; `response`: the values of the sums.

@@ -251,7 +251,11 @@ void PassesWith<S, T>::find_rigid_motion() {
     take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
     contact_->find_rigid_nodes(*model_.grid, s, at.fields, at.rigid_nodes);
   });
-  rigid_->find_motion([this](std::span<RigidResponse> responses) {
+  std::vector<RigidContact> contacts;
+  for (const Scratch& w : scratch_)
+    for (const RigidNode& node : w.rigid_nodes)
+      contacts.insert(contacts.end(), node.contacts.begin(), node.contacts.end());
+  rigid_->find_motion(contacts, [this](std::span<RigidResponse> responses) {
     for (const Scratch& w : scratch_)
       for (const RigidNode& node : w.rigid_nodes) contact_->respond(node, responses);
   });

@@ -154,7 +154,8 @@ double ExplicitIntegrator::next_step(const Clock& clock) const {
   if (how.specified > 0) return how.specified;
   const double factor =
       passes_->loads().nonreflecting() ? std::min(how.factor, Loads::nonreflecting_factor) : how.factor;
-  return factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
+  const double stable = factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
+  return rigid_ ? std::min(stable, rigid_->longest_step(passes_->loads())) : stable;
 }
 
 double ExplicitIntegrator::stable_step(const StepStatistics& statistics) const {

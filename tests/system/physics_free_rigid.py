@@ -29,6 +29,17 @@ def gravity(g):
     return f'<Gravity ax="0" ay="0" az="{-g}"/>'
 
 
+def on_a_base(body, end, friction=0.0, acceleration=None, shape="linear", distance="", step=None, more=()):
+    """Rigid bodies alone: `body` on a fixed base whose upper face is at z = 1."""
+    base = _mpm.block("base", (0, 0, 0.6), (3, 0.8, 0.4), dp=0.05, of="iron", more=held())
+    grid = _mpm.grid((-1, -1, 0), (4, 1.8, 2), cell=0.1).replace("<Grid>", f'<Grid shape="{shape}">')
+    gravity = "" if acceleration is None else '<Gravity ax="{}" ay="{}" az="{}"/>'.format(*acceleration)
+    text = physics_rigid.scene([base, body, *more], grid, _mpm.solution(end, more=gravity), "", friction,
+                               f'<Console print_time="{end / 20}"/><Restart time_interval="{end / 2}"/>', distance=distance)
+    text = text.replace('mat1="soft"', 'mat1="iron"')
+    return text.replace('<TimeStep factor="0.5"/>', "" if step is None else f'<TimeStep specified="{step!r}"/>')
+
+
 class FreeRigid(_mpm.Case):
     def go(self, text, folder="run", **how):
         outcome = self.run_in(folder, [self.write(text)], **how)
@@ -75,6 +86,63 @@ class FreeRigid(_mpm.Case):
         self.assertAlmostEqual(energy["dissipated_by_contact"] / kinetic, 1, delta=0.01)
         self.assertLess(abs(energy["relative_drift"]), 0.01)
         self.assertEqual(self.run_in("ranks", [self.folder / "case.xmp"], ranks=3).state, outcome.state)
+
+    def test_slides_without_friction(self):
+        """On a fixed body, its edges over that one: velocity and energy stay, to round-off."""
+        regression = 'contact_normal="regression" distance_type="2" min_distance="0.05"'
+        block = _mpm.block("block", (0.3, 0.2, 1), (0.4, 0.4, 0.2), (3, 0, 0), 0.05, "iron")
+        for shape, distance, acceleration in (("linear", "", None), ("SGMP", regression, None), ("linear", "", (0, 0, -10))):
+            with self.subTest(shape=shape, distance=distance, acceleration=acceleration):
+                _, summary, _ = self.go(on_a_base(block, 0.05, 0.0, acceleration, shape, distance, 1e-3))
+                velocity, energy = summary["bodies"][1]["velocity"], summary["energy"]
+                print(f"slides without friction, {shape}: velocity {velocity}, kinetic energy {energy['kinetic']!r}")
+                self.assertLess(np.abs(np.subtract(velocity, (3, 0, 0))).max(), 1e-11)
+                self.assertAlmostEqual(energy["kinetic"], 0.5 * summary["bodies"][1]["mass"] * 9, delta=1e-9)
+
+    def test_slides_with_friction(self):
+        """(F - mu N)/m from rest, with given steps and its own; and it slows down. The same bits on any ranks and from a restart."""
+        for start, push, step, law in ((0, 5, 1e-3, 2), (0, 5, None, 2), (3, 0, None, -3), (0, 2, None, 0)):
+            with self.subTest(start=start, push=push, step=step):
+                block = _mpm.block("block", (0.3, 0.2, 1), (0.4, 0.4, 0.2), (start, 0, 0), 0.05, "iron")
+                text = on_a_base(block, 0.1, 0.3, (push, 0, -10), step=step)
+                one, summary, _ = self.go(text, "one")
+                acceleration = (summary["bodies"][1]["velocity"][0] - start) / 0.1
+                print(f"slides with friction: acceleration {acceleration:.12f}, exact {law}, {summary['steps']} steps")
+                self.assertGreater(summary["steps"], 50)
+                self.assertAlmostEqual(acceleration, law, delta=1e-9)
+                self.assertGreaterEqual(summary["energy"]["dissipated_by_contact"], -1e-12)
+        for ranks in (2, 3):
+            self.assertEqual(self.run_in(f"r{ranks}", [self.folder / "case.xmp"], ranks=ranks).state, one.state)
+        restart = self.folder / "one" / _mpm.restarts(self.folder / "one")[0]
+        self.assertEqual(self.run_in("resumed", [restart], ranks=2).state, one.state)
+
+    def test_topples(self):
+        """A column tips over its edge, falls on its side and lies still: contact gives no energy in any row."""
+        column = _mpm.block("column", (0.3, 0.2, 1), (0.2, 0.4, 0.6), dp=0.05, of="iron")
+        gaps = 'distance_type="2" min_distance="0.05"'
+        one, summary, status = self.go(on_a_base(column, 0.8, 1.0, (6, 0, -10), distance=gaps))
+        dissipated, body = status["contact_dissipation"], summary["bodies"][1]
+        print(f"topples: centre {body['centre']}, velocity {body['velocity']}, dissipated {dissipated[-1]:.3f}")
+        self.assertLess(body["centre"][2], 1.15)
+        self.assertLess(np.abs(body["velocity"]).max(), 1e-6)
+        self.assertGreaterEqual(np.diff(dissipated).min(), -1e-9 * dissipated[-1])
+        self.assertLess(abs(summary["energy"]["relative_drift"]), 1e-9)
+        self.assertEqual(self.run_in("ranks", [self.folder / "case.xmp"], ranks=3).state, one.state)
+
+    def test_pressed_from_two_sides(self):
+        """No motion leaves both: the run stops and names them."""
+        block = _mpm.block("block", (0.3, 0.2, 1), (0.4, 0.4, 0.2), dp=0.05, of="iron")
+        lid = _mpm.block("lid", (0, 0, 1.2), (1, 0.8, 0.2), dp=0.05, of="iron", more=held(vz=-1.0))
+        outcome = self.run_in("pressed", [self.write(on_a_base(block, 0.1, more=[lid]))], code=_mpm.NUMERICAL_FAILURE)
+        self.assertIn("keep the free rigid body 'block' from entering the rigid bodies of prescribed motion that it touches ('base', 'lid')",
+                      outcome.complaint)
+
+    def test_all_particles_leave(self):
+        """A body that flies out of the grid: the log and the summary's reason say that nothing is left of it."""
+        block = _mpm.block("block", (0.3, 0.2, 1.2), (0.4, 0.4, 0.2), (60, 0, 0), 0.05, "iron")
+        outcome, summary, _ = self.go(on_a_base(block, 0.1))
+        self.assertIn("body 'block' has no particles left", summary["reason"])
+        self.assertIn("warning: body 'block' has no particles left", outcome.out)
 
     def test_two_free_bodies(self):
         """They do not act on each other: the run stops once they are in each other."""
