@@ -18,8 +18,8 @@ Vec3<double> in_space(const Vec3<double>& n, const Vec3<double>& inverse_cell) {
   return (1 / std::sqrt(dot(g, g))) * g;
 }
 
-/// Whether one of two surfaces gives the normal and has none here, as in the middle of a thin plate. That of the
-/// other one would tilt at its edges.
+/// Whether one of two surfaces gives the normal and has none here, as in the middle of a thin plate. That of
+/// the other one would tilt at its edges.
 bool leaves_open(const ContactSurface& first, const ContactSurface& second) {
   const ContactSurface* s = deciding(first, second);
   return s != nullptr && !has_direction(*s, uneven_slope);
@@ -210,34 +210,38 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
                            RegressionScratch& scratch) {
   MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
   const NodeBlockShape shape = grid.shape();
+  const auto field = [&](int f) -> const FieldNodes& { return fields[static_cast<std::size_t>(f)]; };
+  const auto asks_particles = [&](const MeetingNodes::Node& node, const MeetingNodes::Pair& pair) {
+    const FieldNodes &first = field(pair.first), &second = field(pair.second);
+    return by_regression(first.component, second.component) ||
+           leaves_open(surface(first, node.number), surface(second, node.number));
+  };
   if (regresses_) {
     PointsByCell::Range range;
-    for (std::size_t a = 0; a < 3; ++a) {
-      range.lowest[a] = shape.highest(), range.highest[a] = shape.lowest();
-      for (const MeetingNodes::Node& node : at.nodes) {
-        if (node.finder != s) continue;
+    std::ranges::fill(range.lowest, shape.highest()), std::ranges::fill(range.highest, shape.lowest());
+    for (const MeetingNodes::Node& node : at.nodes) {
+      const auto asks = [&](const MeetingNodes::Pair& pair) { return asks_particles(node, pair); };
+      if (node.finder != s || std::ranges::none_of(at.pairs_of(node), asks)) continue;
+      for (std::size_t a = 0; a < 3; ++a) {
         range.lowest[a] = std::min(range.lowest[a], shape.node(node.number)[a]);
         range.highest[a] = std::max(range.highest[a], shape.node(node.number)[a]);
       }
     }
-    if (range.lowest[0] > range.highest[0]) return;
-    scratch.by_cell.take(grid, points_, s, range);
+    if (range.lowest[0] <= range.highest[0]) scratch.by_cell.take(grid, points_, s, range);
   }
   for (const MeetingNodes::Node& node : at.nodes) {
     if (regresses_ && node.finder != s) continue;
     for (std::size_t p = node.first_pair; p < node.last_pair; ++p) {
       MeetingNodes::Pair& pair = at.pairs[p];
-      const FieldNodes &first = fields[static_cast<std::size_t>(pair.first)],
-                       &second = fields[static_cast<std::size_t>(pair.second)];
-      const ContactSurface one = surface(first, node.number), other = surface(second, node.number);
+      const FieldNodes &first = field(pair.first), &second = field(pair.second);
       std::optional<Vec3<double>> normal;
-      if (by_regression(first.component, second.component) || leaves_open(one, other)) {
+      if (asks_particles(node, pair)) {
         scratch.by_cell.around(grid, s, shape.node(node.number), first.component, second.component,
                                scratch.points);
         normal = separating_normal(scratch.points, scratch.near);
         if (normal) normal = in_space(*normal, grid.geometry().inverse_cell);
       }
-      if (!normal) normal = contact_normal(one, other);
+      if (!normal) normal = contact_normal(surface(first, node.number), surface(second, node.number));
       pair.normal = normal.value_or(Vec3<double>{});
     }
   }

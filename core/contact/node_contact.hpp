@@ -46,10 +46,10 @@ inline constexpr double contact_mass_ratio = 1e5;
 /// Sets the impulses of the pairs and the velocities of the fields.
 void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pairs);
 
-/// A surface has a direction where its gradient over a cell is at least this share of the mass at the node. At
-/// the surface of a filled half-space it is 2, deeper inside it falls to zero as the distance leaves the reach
-/// of shape functions; at 1e-3 what lies on the half-space has a mass that is below contact_mass_ratio. Less is
-/// round-off, as in the middle of a plate of two cells, and would point anywhere.
+/// A surface has a direction where its gradient over a cell is at least this share of the mass at the node.
+/// At the surface of a filled half-space it is 2, deeper inside it falls to zero as the distance leaves the
+/// reach of shape functions; at 1e-3 what lies on the half-space has a mass that is below contact_mass_ratio.
+/// Less is round-off, as in the middle of a plate of two cells, and would point anywhere.
 inline constexpr double least_slope = 1e-3;
 /// Less than this is that of an inside where particles are not evenly spaced: particles give better normals,
 /// where they are known.
@@ -81,9 +81,9 @@ inline const ContactSurface* deciding(const ContactSurface& first, const Contact
   return first.weight > second.weight ? &first : &second;
 }
 
-/// Normal from `first` to `second`: that of the deciding one, or the mean of both (4-32). One without a direction leaves it to the other. None where no
-/// surface has a direction, or both have opposite ones: as nothing tells along which way they press, the node
-/// is left alone.
+/// Normal from `first` to `second`: that of the deciding one, or the mean of both (4-32). One without a
+/// direction leaves it to the other. None where no surface has a direction, or both have opposite ones: as
+/// nothing tells along which way they press, the node is left alone.
 std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const ContactSurface& second);
 
 }  // namespace mpm::core
