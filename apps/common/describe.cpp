@@ -69,11 +69,6 @@ std::string why_idle(const core::LoadArea& area) {
   if (!area.reached) return "no particle of the body is in its box";
   const int normal = area.load->normal;
   if (normal < 0 || area.load->pressure != 0 || !area.crossed || area_along(area, normal) != 0) return {};
-  // A face that crosses the body has its cross-section there, unless no particle is on its ramp.
-  if (area.lower[normal] + area.upper[normal] == 0)
-    return "no particle is on the ramp of the box's face that crosses the body; use a wider ramp, or move "
-           "the "
-           "face by half the distance of the particles";
   return fmt::format(
       "no surface with the normal +{0} or -{0} is in its box; one of the box's faces belongs outside of the "
       "body, at least half a ramp from the loaded surface",

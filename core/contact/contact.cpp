@@ -52,9 +52,11 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
     wave_.push_back(0);
   }
   has_failed_.resize(weight_.size());
+  // Where one component decides, at the nodes at which its gradient does not tell.
   for (std::size_t a = 0; a < weight_.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
-      regresses_ = regresses_ || by_regression(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+      regresses_ = regresses_ || input.ignore_failed_normals || weight_[a] != weight_[b] ||
+                   by_regression(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
   const std::size_t materials = model.materials.size();
   friction_.assign(materials * materials, 0.0);
   for (std::size_t a = 0; a < materials; ++a)

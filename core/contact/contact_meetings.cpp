@@ -19,6 +19,13 @@ Vec3<double> in_space(const Vec3<double>& n, const Vec3<double>& inverse_cell) {
   return (1 / std::sqrt(dot(g, g))) * g;
 }
 
+/// Whether one of two surfaces gives the normal and has none here, as in the middle of a thin plate. That of
+/// the other one would tilt at its edges.
+bool leaves_open(const ContactSurface& first, const ContactSurface& second) {
+  const ContactSurface* s = deciding(first, second);
+  return s != nullptr && !has_direction(*s, uneven_slope);
+}
+
 }  // namespace
 
 double Contact::half_edge(double volume) const { return to_faces_ ? 0.5 * std::cbrt(volume) : 0.0; }
@@ -51,7 +58,9 @@ void Contact::take_surfaces(const BrickGrid& grid, const SharedNodes& shared, Sl
 ContactSurface Contact::surface(const FieldNodes& field, int node) const {
   const double* g = field.surface.data() + node_doubles * node;
   const auto c = static_cast<std::size_t>(field.component);
-  return {{g[0], g[1], g[2]}, weight_[c], has_failed_[c]};
+  const Vec3<double> gradient{g[0], g[1], g[2]};
+  return {gradient, weight_[c], has_failed_[c],
+          slope_of(gradient, g[node_field::surface_mass.first], model_.grid->geometry().cell)};
 }
 
 /// A free rigid body and one of prescribed motion.
@@ -59,14 +68,20 @@ bool Contact::are_rigid_and_meet(std::int32_t a, std::int32_t b) const {
   return rigid(a) >= 0 && rigid(b) >= 0 && rigid_->is_free(rigid(a)) != rigid_->is_free(rigid(b));
 }
 
-/// Whether the particles of two components give their normal. Rigid ones have gradients that are exact, but
-/// not where two of them meet.
+/// Whether the particles of two components give their normal wherever they meet: always those of two rigid
+/// bodies. The gradient of a rigid body tilts at its edges as any other's: it decides where it has been given
+/// the larger weight.
 bool Contact::by_regression(std::int32_t a, std::int32_t b) const {
   if (are_rigid_and_meet(a, b)) return true;
   if (normal_ != ContactInput::Normal::automatic) return normal_ == ContactInput::Normal::regression;
   const auto first = static_cast<std::size_t>(a), second = static_cast<std::size_t>(b);
-  return weight_[first] == weight_[second] && std::isfinite(weight_[first]) &&
-         has_failed_[first] == has_failed_[second];
+  if (has_failed_[first] != has_failed_[second]) return false;
+  const bool rigid_first = rigid(a) >= 0, rigid_second = rigid(b) >= 0;
+  if (!rigid_first && !rigid_second) return weight_[first] == weight_[second];
+  if (rigid_first && rigid_second) return true;
+  if (model_.scene->contact.automatic_weights) return false;
+  const double given = model_.scene->components[rigid_first ? first : second].normal_weight;
+  return given <= weight_[rigid_first ? second : first];
 }
 
 void Contact::find_meetings(const BrickGrid& grid, const SharedNodes& shared, Slot s,
@@ -206,27 +221,32 @@ void Contact::find_normals(const BrickGrid& grid, Slot s, std::span<const FieldN
                            RegressionScratch& scratch) {
   MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
   const NodeBlockShape shape = grid.shape();
+  const auto field = [&](int f) -> const FieldNodes& { return fields[static_cast<std::size_t>(f)]; };
+  const auto asks_particles = [&](const MeetingNodes::Node& node, const MeetingNodes::Pair& pair) {
+    const FieldNodes &first = field(pair.first), &second = field(pair.second);
+    return by_regression(first.component, second.component) ||
+           leaves_open(surface(first, node.number), surface(second, node.number));
+  };
   if (regresses_) {
     PointsByCell::Range range;
-    for (std::size_t a = 0; a < 3; ++a) {
-      range.lowest[a] = shape.highest(), range.highest[a] = shape.lowest();
-      for (const MeetingNodes::Node& node : at.nodes) {
-        if (node.finder != s) continue;
+    std::ranges::fill(range.lowest, shape.highest()), std::ranges::fill(range.highest, shape.lowest());
+    for (const MeetingNodes::Node& node : at.nodes) {
+      const auto asks = [&](const MeetingNodes::Pair& pair) { return asks_particles(node, pair); };
+      if (node.finder != s || std::ranges::none_of(at.pairs_of(node), asks)) continue;
+      for (std::size_t a = 0; a < 3; ++a) {
         range.lowest[a] = std::min(range.lowest[a], shape.node(node.number)[a]);
         range.highest[a] = std::max(range.highest[a], shape.node(node.number)[a]);
       }
     }
-    if (range.lowest[0] > range.highest[0]) return;
-    scratch.by_cell.take(grid, points_, s, range);
+    if (range.lowest[0] <= range.highest[0]) scratch.by_cell.take(grid, points_, s, range);
   }
   for (const MeetingNodes::Node& node : at.nodes) {
     if (regresses_ && node.finder != s) continue;
     for (std::size_t p = node.first_pair; p < node.last_pair; ++p) {
       MeetingNodes::Pair& pair = at.pairs[p];
-      const FieldNodes &first = fields[static_cast<std::size_t>(pair.first)],
-                       &second = fields[static_cast<std::size_t>(pair.second)];
+      const FieldNodes &first = field(pair.first), &second = field(pair.second);
       std::optional<Vec3<double>> normal;
-      if (by_regression(first.component, second.component)) {
+      if (asks_particles(node, pair)) {
         scratch.by_cell.around(grid, s, shape.node(node.number), first.component, second.component,
                                scratch.points);
         if (are_rigid_and_meet(first.component, second.component)) normal = widest_gap_normal(scratch.points);
@@ -261,8 +281,9 @@ Vec3<double> Contact::outward(int field, std::span<const MeetingNodes::Pair> pai
     sum = pair.first == field ? sum + pair.normal : sum - pair.normal;
     ++count;
   }
+  if (count < 2) return sum;
   const double length = std::sqrt(dot(sum, sum));
-  return count > 1 && length > 0 ? (1 / length) * sum : sum;
+  return length >= least_slope ? (1 / length) * sum : Vec3<double>{};
 }
 
 /// By gradients alone: of two fields that of the pair, of more its own. Zero where it has no surface.
@@ -270,10 +291,13 @@ Vec3<double> Contact::outward(std::span<const FieldNodes> fields, int field, int
                               std::span<const MeetingNodes::Pair> pairs) const {
   const auto of = [&](int f) { return surface(fields[static_cast<std::size_t>(f)], node); };
   const ContactSurface mine = of(field);
-  if (mine.mass_gradient == Vec3<double>{}) return {};
+  const auto is_here = [](const ContactSurface& s) {
+    return s.mass_gradient != Vec3<double>{} || std::isfinite(s.slope);
+  };
+  if (!is_here(mine)) return {};
   int other = -1, others = 0;
   for (int k = 0; k < static_cast<int>(fields.size()); ++k) {
-    if (k == field || of(k).mass_gradient == Vec3<double>{}) continue;
+    if (k == field || !is_here(of(k))) continue;
     other = k;
     ++others;
   }
@@ -324,12 +348,14 @@ void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& share
   constexpr double highest_held = 0.7;  // in cells
   const double lowest_reach = -highest_held * grid.geometry().smallest_cell();
   const auto held = [&](int field, const double* of_node) {
-    return normal_ != ContactInput::Normal::regression ||
-           rigid(components[static_cast<std::size_t>(field)]) < 0 || of_node[field] >= lowest_reach;
+    return rigid(components[static_cast<std::size_t>(field)]) < 0 || of_node[field] >= lowest_reach;
   };
   at.filter([&](std::size_t n, const MeetingNodes::Pair& pair) {
     const double* of_node = reach.data() + n * components.size();
-    if (!held(pair.first, of_node) || !held(pair.second, of_node)) return false;
+    const bool holds = held(pair.first, of_node) && held(pair.second, of_node);
+    if (!holds && by_regression(components[static_cast<std::size_t>(pair.first)],
+                                components[static_cast<std::size_t>(pair.second)]))
+      return false;
     return -(of_node[pair.first] + of_node[pair.second]) <= *largest_gap_;
   });
 }

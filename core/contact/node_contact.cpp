@@ -77,16 +77,18 @@ void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pai
 }
 
 std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const ContactSurface& second) {
-  const auto direction = [](const Vec3<double>& g) -> std::optional<Vec3<double>> {
-    const double length = std::sqrt(dot(g, g));
-    if (!(length > 0)) return std::nullopt;
-    return (1 / length) * g;
+  const auto direction = [](double sign, const ContactSurface& s) -> std::optional<Vec3<double>> {
+    const double length = std::sqrt(dot(s.mass_gradient, s.mass_gradient));
+    if (!has_direction(s)) return std::nullopt;
+    return sign / length * s.mass_gradient;
   };
-  const auto a = direction(first.mass_gradient), b = direction(-1.0 * second.mass_gradient);
-  if (a && b && first.excluded != second.excluded) return first.excluded ? b : a;
-  if (!a || (b && second.weight > first.weight)) return b;
-  if (!b || first.weight > second.weight) return a;
-  return direction(*a + *b);
+  const auto a = direction(1, first), b = direction(-1, second);
+  if (!a || !b) return a ? a : b;
+  if (const ContactSurface* s = deciding(first, second)) return s == &first ? a : b;
+  const Vec3<double> sum = *a + *b;
+  const double length = std::sqrt(dot(sum, sum));
+  if (!(length >= least_slope)) return std::nullopt;
+  return (1 / length) * sum;
 }
 
 }  // namespace mpm::core

@@ -14,6 +14,8 @@
 // until the velocities rest. No order of the pairs or components enters.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -44,15 +46,44 @@ inline constexpr double contact_mass_ratio = 1e5;
 /// Sets the impulses of the pairs and the velocities of the fields.
 void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pairs);
 
+/// A surface has a direction where its gradient over a cell is at least this share of the mass at the node.
+/// At the surface of a filled half-space it is 2, deeper inside it falls to zero as the distance leaves the
+/// reach of shape functions; at 1e-3 what lies on the half-space has a mass that is below contact_mass_ratio.
+/// Less is round-off, as in the middle of a plate of two cells, and would point anywhere.
+inline constexpr double least_slope = 1e-3;
+/// Less than this is that of an inside where particles are not evenly spaced: particles give better normals,
+/// where they are known.
+inline constexpr double uneven_slope = 0.1;
+
 /// Where the surface of a component is at a node.
 struct ContactSurface {
   Vec3<double> mass_gradient{};  ///< sum of m grad S over its particles: points outward (4-31)
   double weight = 0;             ///< normal_vector_weight
   bool excluded = false;         ///< decides only where the other is excluded too
+  double slope = std::numeric_limits<double>::infinity();  ///< its gradient over a cell, by its mass
 };
 
-/// Normal from `first` to `second`: that of the one that is not excluded, else that of the larger weight;
-/// with equal weights the mean of both (4-32). None where no surface has a direction.
+/// `mass`: of its particles at the node. Each axis by its own edge, as cells need not be cubes.
+inline double slope_of(const Vec3<double>& mass_gradient, double mass, const Vec3<double>& cell) {
+  const Vec3<double> g{mass_gradient.x * cell.x, mass_gradient.y * cell.y, mass_gradient.z * cell.z};
+  const double length = std::sqrt(dot(g, g));
+  return mass > 0 ? length / mass : std::numeric_limits<double>::infinity();
+}
+
+inline bool has_direction(const ContactSurface& s, double least = least_slope) {
+  return s.slope >= least && s.mass_gradient != Vec3<double>{};
+}
+
+/// Which of two gives the normal: the one that is not excluded, else that of the larger weight; null: both.
+inline const ContactSurface* deciding(const ContactSurface& first, const ContactSurface& second) {
+  if (first.excluded != second.excluded) return first.excluded ? &second : &first;
+  if (first.weight == second.weight) return nullptr;
+  return first.weight > second.weight ? &first : &second;
+}
+
+/// Normal from `first` to `second`: that of the deciding one, or the mean of both (4-32). One without a
+/// direction leaves it to the other. None where no surface has a direction, or both have opposite ones: as
+/// nothing tells along which way they press, the node is left alone.
 std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const ContactSurface& second);
 
 }  // namespace mpm::core

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/contact/component_contact.hpp"
+#include "core/contact/node_contact.hpp"
 
 namespace mpm::core {
 
@@ -204,7 +205,9 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
                             weight_[static_cast<std::size_t>(second.component)]};
   Vec3<double> along = first.gradient;
   if (weight[1] > weight[0]) along = -1.0 * second.gradient;
-  if (weight[1] == weight[0]) along = common(of_surface(first), -1.0 * of_surface(second));
+  const Surface& decides = weight[1] > weight[0] ? second : first;
+  if (weight[1] == weight[0] || slope_of(decides.gradient, decides.volume, g.cell) < least_slope)
+    along = common(of_surface(first), -1.0 * of_surface(second));
   // In the middle of a body of two cells.
   if (along == Vec3<double>{}) along = second.volume * first.gradient - first.volume * second.gradient;
   const double length = std::sqrt(dot(along, along));

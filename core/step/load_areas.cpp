@@ -12,11 +12,12 @@ namespace mpm::core {
 namespace {
 
 /// Adds a particle.
-void add(LoadArea& area, std::span<ExactSum> sums, double ramp, const ConstParticle& p) {
+void add(LoadArea& area, std::span<ExactSum> sums, double ramp, double cell, const ConstParticle& p) {
   const SurfaceLoad& load = *area.load;
   const Vec3<double> x = p.vector(Column::position_x);
   Vec3<double> slope{}, unused{};
-  const double weight = detail::box_weight(load, ramp, x, slope);
+  const double size = detail::size_for_loads(p[Column::volume], cell),
+               weight = detail::box_weight(load, ramp, x, size, slope);
   area.reached = area.reached || weight > 0;
   for (int a = 0; a < 3; ++a) {
     const double part = p[Column::volume] * slope[a];
@@ -25,7 +26,7 @@ void add(LoadArea& area, std::span<ExactSum> sums, double ramp, const ConstParti
   if (load.normal < 0) return;
   Vec3<double> between = x;
   between[load.normal] = 0.5 * (load.lower[load.normal] + load.upper[load.normal]);
-  area.crossed = area.crossed || weight < detail::box_weight(load, ramp, between, unused);
+  area.crossed = area.crossed || weight < detail::box_weight(load, ramp, between, size, unused);
 }
 
 }  // namespace
@@ -45,10 +46,10 @@ std::vector<LoadArea> load_areas(const Model& model, Reductions& ranks) {
     const auto b = static_cast<std::size_t>(block.body);
     const auto mine = std::ranges::equal_range(areas, b, {}, &LoadArea::body);
     for (LoadArea& area : mine) {
-      const double ramp = area.load->ramp.value_or(model.grid->geometry().smallest_cell());
+      const double cell = model.grid->geometry().smallest_cell(), ramp = area.load->ramp.value_or(cell);
       const auto first = static_cast<std::size_t>(&area - areas.data());
       for (const ConstParticle p : block)
-        add(area, std::span(sums).subspan(of_each * first, of_each), ramp, p);
+        add(area, std::span(sums).subspan(of_each * first, of_each), ramp, cell, p);
     }
   }
   ranks.sum(std::span<ExactSum>(sums));

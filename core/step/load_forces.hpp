@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/shape/shape.hpp"
 #include "core/step/loads.hpp"
@@ -10,15 +11,34 @@ namespace mpm::core {
 
 namespace detail {
 
-/// 1 inside, 0 outside, with ramps of width `ramp` about the box's faces; and its gradient.
-inline double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double>& x,
+/// Rises from 0 to 1 over a width `ramp` about 0: the mean over z - size/2 .. z + size/2, and its derivative.
+inline void mean_of_ramp(double z, double ramp, double size, double& mean, double& slope) {
+  const double upper = z + 0.5 * size, lower = z - 0.5 * size, end = 0.5 * ramp;
+  mean = lower >= end ? 1 : 0;
+  slope = 0;
+  if (lower >= end || upper <= -end) return;
+  const auto height = [&](double y) { return std::clamp(y / ramp + 0.5, 0.0, 1.0); };
+  const auto integral = [&](double y) { return y > end ? y : 0.5 * ramp * height(y) * height(y); };
+  mean = (integral(upper) - integral(lower)) / size;
+  slope = (height(upper) - height(lower)) / size;
+}
+
+/// The edge of a particle over which the weight of a box is taken: a brick knows the loads in its reach.
+inline double size_for_loads(double volume, double cell) { return std::min(std::cbrt(volume), cell); }
+
+/// 1 inside, 0 outside, with ramps of width `ramp` about the box's faces: the mean over a cube of edge `size`
+/// about x, and its gradient. The gradients of a lattice of particles add up to the ramp's height, wherever
+/// its ends are.
+inline double box_weight(const SurfaceLoad& load, double ramp, const Vec3<double>& x, double size,
                          Vec3<double>& gradient) {
   double w[3], slope[3];
   for (std::size_t a = 0; a < 3; ++a) {
     const double y = x[static_cast<int>(a)];
-    const double up = (y - load.lower[a]) / ramp + 0.5, down = (load.upper[a] - y) / ramp + 0.5;
-    w[a] = std::clamp(std::min(up, down), 0.0, 1.0);
-    slope[a] = w[a] == 0 || w[a] == 1 ? 0 : (up < down ? 1 : -1) / ramp;
+    double up, down, rise, fall;
+    mean_of_ramp(y - load.lower[a], ramp, size, up, rise);
+    mean_of_ramp(load.upper[a] - y, ramp, size, down, fall);
+    w[a] = up + down - 1;
+    slope[a] = rise - fall;
   }
   gradient = {slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]};
   return w[0] * w[1] * w[2];
@@ -66,8 +86,9 @@ void for_each_load_force(const Loads& loads, const Model& model, Slot slot, int 
         per_shape = per_shape + m * loads.varying_acceleration(mine, of_body, block + l);
       for (const Loads::Surface& s : mine.surfaces) {
         Vec3<double> slope{};
-        const double weight = box_weight(*s.input, s.ramp, x, slope);
-        if (weight == 0) continue;
+        const double size = size_for_loads(volume, g.smallest_cell());
+        const double weight = box_weight(*s.input, s.ramp, x, size, slope);
+        if (weight == 0 && slope == Vec3<double>{}) continue;
         acts = true;
         const Vec3<double>* column = s.column;
         Loads::Stress varying;

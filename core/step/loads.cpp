@@ -216,8 +216,8 @@ Loads::Stress Loads::varying_stress(const Surface& surface, const Body& body, co
 bool Loads::reach(const OfBody& of, const BrickGrid& grid, Slot slot) {
   if (!of.loaded) return false;
   if (!of.force.of_place.empty()) return true;
-  // A brick's particles are less than a cell beyond its cells.
-  constexpr int low = -1, high = brick_cells + 1;
+  // A brick's particles are less than a cell beyond its cells, and half a cell wide to each side.
+  constexpr int low = -2, high = brick_cells + 2;
   const BrickCoord brick = grid.brick(slot).coord;
   const Vec3<double> lower = grid.geometry().node_place(brick, {low, low, low}),
                      upper = grid.geometry().node_place(brick, {high, high, high});

@@ -12,9 +12,11 @@
 //   f_i = integral of S_i phi T n dA = integral of grad(S_i phi) . T dV
 //   = sum V (phi T grad S_i + S_i T grad phi)
 // phi is 1 in a box and falls linearly to 0 across its edges; without a box it is 1, and T = -p I is a
-// pressure on the whole surface of the body. With a normal axis e, T = t e^T applies the traction t to the
-// surfaces in the box whose normal is +e. Where T varies with the place (expressions), the term S_i phi div T
-// is added; its derivatives are central differences over a small part of a cell.
+// pressure on the whole surface of the body. A particle has the mean of phi over a cube of its volume, so
+// that a lattice of particles bears the whole load with any width of the edges. With a normal axis e, T = t
+// e^T applies the traction t to the surfaces in the box whose normal is +e. Where T varies with the place
+// (expressions), the term S_i phi div T is added; its derivatives are central differences over a small part
+// of a cell.
 //
 // Non-reflecting face: the dashpots of Lysmer and Kuhlemeyer (1969), rho c_p v against the normal velocity
 // and rho c_s v against the tangential per area, spread over the layer of cells at the face. A particle at

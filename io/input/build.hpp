@@ -33,8 +33,6 @@ std::vector<core::ComponentInput> build_components(const Node& root, const core:
                                                    const BuildContext& context);
 /// Reports invalid shapes of bodies (core/discretise/shape_check.hpp).
 void check_shapes(const Node& root, const core::Scene& scene, const BuildContext& context);
-/// Reports surface loads that the particles cannot resolve.
-void check_loads(const Node& root, const core::Scene& scene, const BuildContext& context);
 /// All alternatives but BoolGeometry, whose operands are bodies.
 core::Geometry build_geometry(const Node& geometry, const BuildContext& context);
 std::vector<core::DetonationItem> build_detonations(const Node& root, const BuildContext& context);

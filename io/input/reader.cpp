@@ -53,7 +53,6 @@ core::Scene build(const Node& root, const BuildContext& context) {
   scene.solution = build_solution(root, context);
   scene.components = build_components(root, scene, context);
   check_shapes(root, scene, context);
-  check_loads(root, scene, context);
   scene.detonations = build_detonations(root, context);
   check_method(root, scene, context);
   check_contact(root, scene, context);

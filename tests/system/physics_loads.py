@@ -111,7 +111,8 @@ class Loads(_mpm.Case):
             'pressure="1"': None,
             'tx="1" normal="2" zmin="3"': "has no effect: no particle of the body is in its box",
             'tx="1" normal="0" xmin="1" xmax="3"': "has no effect: no surface with the normal +x or -x is in its box",
-            'tx="1" normal="2" zmin="1" ramp="0.5"': "has no effect: no particle is on the ramp",
+            'tx="1" normal="2" zmin="1" ramp="0.5"': "acts on the area 8 with the normal +z",  # between layers of particles
+            'tx="1" normal="2" zmin="1.75" ramp="0.01"': "acts on the area 8 with the normal +z",  # on a layer
         }
         for ranks, loads in ((1, said), (2, list(said)[1:4])):
             for load in loads:

@@ -56,7 +56,7 @@ def thrown(end=1.5, output="", partition="", kind=1, cells=1, algorithm="MUSL"):
     soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
     bodies = [_mpm.block("block", (2, 2, 2), (6, 6, 3), dp=dp),
               _mpm.block("brick", (2.3, 2.2, 5.4), (2, 3, 2), (0.4, 0.2, -2), dp, of="iron")]
-    text = scene(bodies, _mpm.grid((0, 0, 0), (12, 12, 12), cell=1 / cells), _mpm.solution(end, algorithm), soft, 0.2,
+    text = scene(bodies, _mpm.grid((0, 0, -2), (12, 12, 12), cell=1 / cells), _mpm.solution(end, algorithm), soft, 0.2,
                  f'<Console print_time="{end / 20}"/><Restart time_interval="{end / 2}"/>' + output, kind)
     return text.replace("</PeneBlast>", partition + "</PeneBlast>")
 

@@ -77,9 +77,6 @@ SCENES = [
      ['material="iron"', "through contact", "pass through 'cube'"]),
     ("an explosive that is not lit", changed('type="IsoElastic" Young="1000" Poisson="0.3"', 'type="HighExpBurn" D="6930"'),
      ["HighExpBurn", "add a Detonation"]),
-    ("a ramp between layers of particles",
-     one_body(cube(more='<Traction tx="1" normal="2" zmin="5.25" ramp="0.3"/>')),
-     ["case.xmp:", 'ramp="0.3"', "distance 0.5 of the body's particles", "at least 0.5"]),
     ("a particle file that is not there", one_body(GRAINS), ["grains.txt", "no such file"]),
 ]
 SCENES_ON_TWO_RANKS_TOO = [

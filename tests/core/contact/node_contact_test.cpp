@@ -172,4 +172,25 @@ TEST_CASE("Normals of contact: the larger weight's, the mean of equal ones, and 
         Vector{0, 0, 1});
   CHECK_FALSE(contact_normal({}, {}).has_value());
   CHECK_FALSE(contact_normal({{1, 0, 0}, 0}, {{1, 0, 0}, 0}).has_value());  // both point the same way
+  CHECK_FALSE(contact_normal({{1, 0, 0}, 0}, {{1, 1e-9, 0}, 0}).has_value());
+}
+
+TEST_CASE("Normals of contact: gradients of round-off have no direction, in cells of any proportions") {
+  const Vector cell{0.5, 2, 1e-3}, along{0, 0, 3};
+  const auto surface = [&](const Vector& gradient, double mass, double weight) {
+    return ContactSurface{gradient, weight, false, slope_of(gradient, mass, cell)};
+  };
+  CHECK(slope_of({0, 0, 2e3}, 1, cell) == 2);
+  CHECK(slope_of({4, 0, 0}, 1, cell) == 2);
+  const ContactSurface inside = surface({1e-14, 2e-15, 3e-14}, 1, 5), other = surface(along, 1e-6, 0);
+  CHECK_FALSE(has_direction(inside));
+  CHECK(has_direction(other));
+  CHECK(has_direction(surface(along, 0, 0)));  // beyond its mass
+  CHECK_FALSE(has_direction(surface({}, 0, 0)));
+  CHECK(deciding(inside, other) == &inside);
+  CHECK(deciding(other, inside) == &inside);
+  CHECK(deciding(other, other) == nullptr);
+  CHECK(contact_normal(inside, other).value() == Vector{0, 0, -1});
+  CHECK(contact_normal(other, inside).value() == Vector{0, 0, 1});
+  CHECK_FALSE(contact_normal(inside, inside).has_value());
 }
