@@ -125,38 +125,68 @@ void PointsByCell::take(const BrickGrid& grid, const ContactPoints& points, Slot
   begin_.front() = 0;
 }
 
+/// With the mirror images in constrained faces near the node: those beyond one on which it is would be in the
+/// plane that the scale of zero makes.
 void PointsByCell::around(const BrickGrid& grid, Slot s, const std::array<int, 3>& node, std::int32_t first,
                           std::int32_t second, LabelledPoints& points) const {
   const GridGeometry& g = grid.geometry();
   const BrickCoord coord = grid.brick(s).coord;
   const Vec3<double> place = g.node_place(coord, node);
   const std::int32_t brick[3] = {coord.x, coord.y, coord.z};
-  double scale[3];
+  double scale[3], plane[3] = {};  // of the face whose mirror images are among the points
+  int lowest[3], highest[3], mirrored_lowest[3], mirrored_highest[3];
+  unsigned near_faces = 0;  // by axis
   for (int a = 0; a < 3; ++a) {
     const auto axis = static_cast<std::size_t>(a);
-    const std::int64_t number = std::int64_t{brick_cells} * brick[a] + node[axis];
-    const bool on_face = (number == 0 && is_constrained(g.boundary[2 * axis])) ||
-                         (number == g.cells[axis] && is_constrained(g.boundary[2 * axis + 1]));
-    scale[a] = on_face ? 0 : g.inverse_cell[a];
+    lowest[a] = node[axis] - layers, highest[a] = node[axis] + layers - 1;
+    scale[a] = g.inverse_cell[a];
+    const std::int64_t below = std::int64_t{brick_cells} * brick[a] + node[axis],
+                       above = g.cells[axis] - below;
+    const bool lower = is_constrained(g.boundary[2 * axis]), upper = is_constrained(g.boundary[2 * axis + 1]);
+    if ((lower && below == 0) || (upper && above == 0)) {
+      scale[a] = 0;
+    } else if (lower && below > 0 && below < layers) {
+      near_faces |= 1u << a;
+      plane[a] = g.origin[a];
+      mirrored_lowest[a] = node[axis] - static_cast<int>(below);
+      mirrored_highest[a] = mirrored_lowest[a] + layers - static_cast<int>(below) - 1;
+    } else if (upper && above > 0 && above < layers) {
+      near_faces |= 1u << a;
+      plane[a] = g.origin[a] + static_cast<double>(g.cells[axis]) * g.cell[a];
+      mirrored_highest[a] = node[axis] + static_cast<int>(above) - 1;
+      mirrored_lowest[a] = mirrored_highest[a] - (layers - static_cast<int>(above) - 1);
+    }
   }
   points.clear();
   using Points = LabelledPoints::Row;
-  const int lowest[3] = {node[0] - layers, node[1] - layers, node[2] - layers},
-            highest[3] = {node[0] + layers - 1, node[1] + layers - 1, node[2] + layers - 1};
   const Points zero(0.0), one(1.0), of_first(static_cast<double>(first)),
       of_second(static_cast<double>(second)), lane(Points::vector{0, 1, 2, 3, 4, 5, 6, 7});
-  for_each_row(lowest, highest, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; p += LabelledPoints::lanes) {
-      const auto at = [&](std::size_t a) { return load<Points>(rows_[a].data() + p); };
-      const Points component = at(3);
-      const auto exists = lane < Points(static_cast<double>(end - p));
-      const Points labels = select(exists & (component == of_first), -one,
-                                   select(exists & (component == of_second), one, zero));
-      if (any(labels != zero))
-        points.add(scale[0] * (at(0) - place.x), scale[1] * (at(1) - place.y), scale[2] * (at(2) - place.z),
-                   labels);
+  // The particles, then their images in each face, in each edge and in the corner near the node.
+  for (unsigned images = 0; images < 8; ++images) {
+    if ((images & ~near_faces) != 0) continue;
+    int low[3], high[3];
+    double sign[3], shift[3];  // an image is at shift - x
+    for (int a = 0; a < 3; ++a) {
+      const bool image = (images >> a & 1u) != 0;
+      low[a] = image ? mirrored_lowest[a] : lowest[a];
+      high[a] = image ? mirrored_highest[a] : highest[a];
+      sign[a] = image ? -1 : 1;
+      shift[a] = image ? 2 * plane[a] : 0;
     }
-  });
+    for_each_row(low, high, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; p += LabelledPoints::lanes) {
+        const auto along = [&](int a) {
+          const Points x = load<Points>(rows_[a].data() + p);
+          return scale[a] * (sign[a] * x + shift[a] - place[a]);
+        };
+        const Points component = load<Points>(rows_[3].data() + p);
+        const auto exists = lane < Points(static_cast<double>(end - p));
+        const Points labels = select(exists & (component == of_first), -one,
+                                     select(exists & (component == of_second), one, zero));
+        if (any(labels != zero)) points.add(along(0), along(1), along(2), labels);
+      }
+    });
+  }
 }
 
 }  // namespace mpm::core

@@ -327,7 +327,7 @@ class Rigid(_mpm.Case):
         for body in range(2):
             for axis in (0, 2):
                 self.assertAlmostEqual(half["bodies"][body]["velocity"][axis], whole["bodies"][body]["velocity"][axis],
-                                       delta=0.05)
+                                       delta=0.005)  # regression depends a little on the order
 
     def test_free_body_with_other_schemes(self):
         """USF and USL: momentum is exact, and the bodies part as with MUSL."""
