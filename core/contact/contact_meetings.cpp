@@ -70,7 +70,8 @@ bool Contact::are_rigid_and_meet(std::int32_t a, std::int32_t b) const {
 
 /// Whether the particles of two components give their normal wherever they meet: always those of two rigid
 /// bodies. The gradient of a rigid body tilts at its edges as any other's: it decides where it has been given
-/// the larger weight.
+/// the larger weight, and where gaps are not measured. Contact then acts at nodes up to two cells away, and
+/// upright normals beyond an edge would make the body wider.
 bool Contact::by_regression(std::int32_t a, std::int32_t b) const {
   if (are_rigid_and_meet(a, b)) return true;
   if (normal_ != ContactInput::Normal::automatic) return normal_ == ContactInput::Normal::regression;
@@ -79,6 +80,7 @@ bool Contact::by_regression(std::int32_t a, std::int32_t b) const {
   const bool rigid_first = rigid(a) >= 0, rigid_second = rigid(b) >= 0;
   if (!rigid_first && !rigid_second) return weight_[first] == weight_[second];
   if (rigid_first && rigid_second) return true;
+  if (!largest_gap_) return false;
   if (model_.scene->contact.automatic_weights) return false;
   const double given = model_.scene->components[rigid_first ? first : second].normal_weight;
   return given <= weight_[rigid_first ? second : first];

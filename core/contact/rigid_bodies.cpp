@@ -217,8 +217,9 @@ void RigidBodies::gather(std::span<const RigidContact> mine) {
 }
 
 std::span<RigidContact> RigidBodies::contacts_of(std::size_t number) {
-  const auto [first, last] =
-      std::ranges::equal_range(contacts_, static_cast<std::int32_t>(number), {}, &RigidContact::free);
+  const auto body = static_cast<std::int32_t>(number);
+  const auto first = std::ranges::lower_bound(contacts_, body, {}, &RigidContact::free),
+             last = std::ranges::upper_bound(contacts_, body, {}, &RigidContact::free);
   return {first, last};
 }
 

@@ -44,8 +44,9 @@ std::vector<LoadArea> load_areas(const Model& model, Reductions& ranks) {
   std::vector<ExactSum> sums(of_each * areas.size());
   for (const ConstParticleBlock& block : blocks_of(model)) {
     const auto b = static_cast<std::size_t>(block.body);
-    const auto mine = std::ranges::equal_range(areas, b, {}, &LoadArea::body);
-    for (LoadArea& area : mine) {
+    const auto mine = std::ranges::lower_bound(areas, b, {}, &LoadArea::body),
+               end = std::ranges::upper_bound(areas, b, {}, &LoadArea::body);
+    for (LoadArea& area : std::span(mine, end)) {
       const double cell = model.grid->geometry().smallest_cell(), ramp = area.load->ramp.value_or(cell);
       const auto first = static_cast<std::size_t>(&area - areas.data());
       for (const ConstParticle p : block)
