@@ -164,15 +164,15 @@ class Gallery(_mpm.Case):
         self.assertAlmostEqual(slow["rest"], 20, delta=2)
 
     def test_ball_in_clay(self):
-        """The limit load of plasticity, with three cells over the radius and walls at three radii: 10 % too much for the rough ball, 4 % for
-        the smooth one, whose load scatters by 10 % as it passes from cell to cell."""
-        for ball in ("rough", "smooth"):
+        """The limit load of plasticity, with three cells over the radius and walls at three radii: 4 % too little for the rough ball, 18 % too
+        much for the smooth one, whose load scatters by 8 % as it passes from cell to cell; the same with the whole ball."""
+        for ball, most in (("rough", 7), ("smooth", 21)):
             with self.subTest(ball=ball):
                 print(f"{ball} ", end="")
                 found = self.measured(_ball_in_clay.JOB, _ball_in_clay.text(3, ball, width=3, travel=0.34), _ball_in_clay.measure, ball)
-                self.assertLess(abs(found["error"]), 14)
+                self.assertLess(abs(found["error"]), most)
                 self.assertLess(abs(found["growth"]), 8)
-                self.assertLess(abs(found["drift"]), 1)
+                self.assertLess(abs(found["drift"]), 1.5)
 
     def test_lead_on_lead(self):
         """Thesis 3.5.2, with an eighth of its particles and a plate just wider than what becomes debris: a cloud that ends 198 mm from the
@@ -200,11 +200,12 @@ class Gallery(_mpm.Case):
         self.assertAlmostEqual(speeds[False], 551, delta=8)
 
     def test_projectile_through_concrete(self):
-        """Hanchak et al. at 1058 m/s (947 m/s left), with a small slab; with three cells across the projectile it is 13 % slower."""
+        """Hanchak et al. at 1058 m/s (947 m/s left), with a small slab; with three cells across the projectile it is 19 % slower, a quarter and the
+        whole alike."""
         found = self.measured(_projectile_through_concrete.JOB, _projectile_through_concrete.text(22, 1058, radius=80),
                               _projectile_through_concrete.measure, 1058)
         self.assertAlmostEqual(found["mass"], 500, delta=0.01)
-        self.assertAlmostEqual(found["residual"], 828, delta=10)
+        self.assertAlmostEqual(found["residual"], 767, delta=10)
         self.assertLess(found["lost"], 2)  # it is through
         self.assertLess(abs(found["drift"]), 3)
 
