@@ -245,8 +245,7 @@ void RigidBodies::fail_pressed(std::size_t number) {
   throw NumericalFailure(fmt::format(
       "step {}, time {:.6g}: no impulses keep the free rigid body '{}' from entering the rigid bodies of "
       "prescribed motion that it touches ({}). Where they close on it from several sides, leave it room or "
-      "make "
-      "one of them deformable",
+      "make one of them deformable",
       model_.clock.step + 1, model_.clock.time, name(number), list));
 }
 

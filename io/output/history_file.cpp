@@ -230,8 +230,7 @@ void HistoryFile::choose_particles(const core::Model& model, core::Reductions& r
     if (distance > spacing)
       chosen_far_.push_back(
           fmt::format("particle{} of the time histories, the one nearest to ({:.9g}, {:.9g}, {:.9g}), is "
-                      "{:.4g} away, more "
-                      "than the distance {:.4g} of particles: no body is at this point",
+                      "{:.4g} away, more than the distance {:.4g} of particles: no body is at this point",
                       particles, t.point.x, t.point.y, t.point.z, distance, spacing));
     if (model.clock.step > 0)
       chosen_late_.push_back(fmt::format(
