@@ -260,12 +260,13 @@ void check_rigid(const std::vector<core::BodyInput*>& bodies, const std::vector<
     if (deformable == nullptr || scene.contact.enable || implicit) continue;
     nodes[i].report(
         context.diagnostics, "material",
-        fmt::format("a rigid body acts on others only through contact, which is off: it "
-                    "would pass through '{}' without exerting a force. Set Contact enable to 1, give the "
-                    "body a deformable material, "
-                    "with PrescribedVelocity where its motion is known (such a body does exert forces), or "
-                    "remove it; a scene of rigid bodies only is accepted",
-                    deformable->name));
+        fmt::format(
+            "a rigid body acts on others only through contact, which is off: it "
+            "would pass through '{}' without exerting a force. Set Contact enable to 1, give the "
+            "body a deformable material, "
+            "with PrescribedVelocity where its motion is known (such a body pushes with its stiffness), or "
+            "remove it; a scene of rigid bodies only is accepted",
+            deformable->name));
   }
 }
 

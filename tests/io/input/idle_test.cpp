@@ -577,7 +577,8 @@ TEST_CASE("rigid bodies beside others are refused") {
       "off: it "
       "would pass through 'rod' without exerting a force. Set Contact enable to 1, give the body a "
       "deformable "
-      "material, with PrescribedVelocity where its motion is known (such a body does exert forces), or "
+      "material, with PrescribedVelocity where its motion is known (such a body pushes with its stiffness), "
+      "or "
       "remove it; a scene of rigid bodies only is accepted");
   CHECK_NOTHROW(parse(replaced(mixed, "name='second'", "name='second' Deactive='1'"), notes));
   CHECK_NOTHROW(parse(replaced(mixed, "<Solution>", "<Contact enable='1'/><Solution>"), notes, true));
