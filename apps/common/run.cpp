@@ -291,7 +291,6 @@ class Run {
     const core::Totals totals = core::compute_totals(model_, communication_);
     if (report.reason.empty()) report.reason = watch_->words_of_drift();
     const std::string emptied = words_of_emptied_bodies(model_, totals);
-    if (!emptied.empty()) report.reason += (report.reason.empty() ? "" : "; ") + emptied;
     log_->say("\n{}", io::timing_table(report));
     if (const std::string words = stepper_->words_of_run(); !words.empty()) log_->say("implicit   {}", words);
     log_->say(
@@ -305,7 +304,7 @@ class Run {
           totals.left_grid, totals.eroded, totals.removed_mass, totals.removed_kinetic,
           totals.removed_internal);
     }
-    if (!emptied.empty()) log_->warn("{}", emptied);
+    if (!emptied.empty()) log_->say("note       {}", emptied);
     say_what_was_counted(model_, communication_.reductions, *log_);
     say_large_strains(model_, communication_.reductions, *log_);
     watch_->conclude(*log_);
