@@ -311,7 +311,6 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
   at.clear();
   const std::array<int, 3> in_brick = grid.shape().node(node.number);
   at.place = grid.geometry().node_place(grid.brick(s).coord, in_brick);
-  at.in_grid = number_in_grid(grid, s, in_brick);
   int free_bodies = 0;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const Motion record{fields[f].motion.data() + node_doubles * node.number};
@@ -340,7 +339,10 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
     moves = {std::numeric_limits<double>::infinity(), end};
   }
   if (!find_pairs(fields, meetings(s).pairs_of(node), at)) return false;
-  if (which != Velocity::of_strain) take_rigid_contacts(at);
+  if (at.free_body && which != Velocity::of_strain) {
+    at.in_grid = number_in_grid(grid, s, in_brick);
+    take_rigid_contacts(at);
+  }
   return true;
 }
 

@@ -203,6 +203,7 @@ void RigidBodies::find_rotation(Rigid& rigid) {
 }
 
 void RigidBodies::gather(std::span<const RigidContact> mine) {
+  if (std::ranges::none_of(bodies_, &Rigid::driven)) return;  // on all ranks
   static_assert(std::is_trivially_copyable_v<RigidContact>);
   constexpr std::size_t size = sizeof(RigidContact);
   std::string bytes(size * mine.size(), 0);
