@@ -77,11 +77,11 @@ TEST_CASE("known, but not implemented yet") {
         "bodies: "
         "give bodies that are to meet components of their own, or set enable to 0"}},
       {"<Solution>", "<Contact enable=\"0\"/><Solution>", {"ok"}},
-      {"<Grid>", "<Grid gimp=\"1\">", {"ok"}},
-      {"<Grid>", "<Grid gimp=\"0\" shape=\"linear\">", {"ok"}},
-      {"<Grid>", "<Grid shape=\"DDMP\">", {"ok"}},
-      {"<Grid>", "<Grid shape=\"CPDI\">", {"ok"}},
-      {"<Grid>", "<Grid shape=\"CPDI2\">", {"ok"}},
+      {"<Grid shape=\"linear\">", "<Grid gimp=\"1\">", {"ok"}},
+      {"<Grid shape=\"linear\">", "<Grid gimp=\"0\" shape=\"linear\">", {"ok"}},
+      {"<Grid shape=\"linear\">", "<Grid shape=\"DDMP\">", {"ok"}},
+      {"<Grid shape=\"linear\">", "<Grid shape=\"CPDI\">", {"ok"}},
+      {"<Grid shape=\"linear\">", "<Grid shape=\"CPDI2\">", {"ok"}},
       {"boundary=\"2\"", "boundary=\"3\"", {"ok"}},
       {"<DCell", "<MovingGrid enable='1'/><DCell", {"line 22: <MovingGrid enable=\"1\">: " + zero}},
       {"<DCell", "<MovingGrid enable='0' x_min='0'/><DCell", {"ok"}},
@@ -449,7 +449,7 @@ TEST_CASE("what the consistent mass matrix does not go with elsewhere") {
         test::replaced(test::replaced(test::bar, from, to), "<Solution>", "<Solution mass=\"consistent\">"));
   };
   for (const std::string shape : {"CPDI", "CPDI2"}) {
-    CHECK(faults("<Grid>", "<Grid shape=\"" + shape + "\">") ==
+    CHECK(faults("<Grid shape=\"linear\">", "<Grid shape=\"" + shape + "\">") ==
           std::vector<std::string>{
               "line 25: <Solution mass=\"consistent\">: is not available with CPDI and CPDI2, whose domains "
               "tangle at the surface of a fluid: expected lumped, or another shape function"});

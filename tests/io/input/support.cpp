@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "io/input/specification.hpp"
+#include "physics/catalogue.hpp"
 
 namespace mpm::test {
 
@@ -73,9 +74,32 @@ std::string replaced(std::string_view text, std::string_view from, std::string_v
   return result.replace(at, from.size(), to);
 }
 
+std::string rigid_bar() {
+  const std::string text = replaced(bar, law, rigid_law);
+  return replaced(text, "<EquationOfState type=\"Gruneisen\" C0=\"3940\" S1=\"1.49\" gamma0=\"1.96\"/>", "");
+}
+
 core::Scene parse(std::string_view text, const io::ReadOptions& options) {
   static const io::ElementSpec language = io::language(small_catalogue());
   return io::parse_scene(text, "case.xmp", language, options);
+}
+
+core::Scene parse(std::string_view text, std::vector<core::Diagnostic>& notes, bool accept_later) {
+  static const io::ElementSpec language = io::language(physics::catalogue());
+  return io::parse_scene(text, "case.xmp", language,
+                         {.check_files = false, .accept_later = accept_later, .notes = &notes});
+}
+
+std::vector<std::string> notes_of(std::string_view text, bool accept_later) {
+  std::vector<core::Diagnostic> notes;
+  parse(text, notes, accept_later);
+  std::vector<std::string> lines;
+  for (core::Diagnostic& note : notes) {
+    CHECK(note.file == "case.xmp");
+    note.file.clear();
+    lines.push_back(to_text(note));
+  }
+  return lines;
 }
 
 std::vector<std::string> faults(std::string_view text, const io::ReadOptions& options) {

@@ -29,7 +29,7 @@ inline constexpr std::string_view bar = R"(<?xml version="1.0" encoding="utf-8"?
       <InitialVelocity vx="0" vy="0" vz="-190"/>
     </Body>
   </Component>
-  <Grid>
+  <Grid shape="linear">
     <Cell type="regular">
       <XMin value="0" boundary="2"/><XMax value="11.4" boundary="0"/>
       <YMin value="0" boundary="2"/><YMax value="11.4" boundary="0"/>
@@ -41,12 +41,24 @@ inline constexpr std::string_view bar = R"(<?xml version="1.0" encoding="utf-8"?
 </PeneBlast>
 )";
 
+/// The beginning of its law, and of that of a rigid bar.
+inline constexpr std::string_view law =
+    "<StrengthModel type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"";
+inline constexpr std::string_view rigid_law = "<StrengthModel type='Rigid'";
+std::string rigid_bar();
+
 /// Laws enough for the bar and its variants, independent of those of `physics`.
 const core::Catalogue& small_catalogue();
 
 std::string replaced(std::string_view text, std::string_view from, std::string_view to);
 
 core::Scene parse(std::string_view text, const io::ReadOptions& options = {});
+
+/// The scene of a text with the laws of the program, and its notes.
+core::Scene parse(std::string_view text, std::vector<core::Diagnostic>& notes, bool accept_later = false);
+
+/// Its notes without the file's name.
+std::vector<std::string> notes_of(std::string_view text, bool accept_later = false);
 
 /// The faults about a text without the file's name; one "ok" when there are none.
 std::vector<std::string> faults(std::string_view text, const io::ReadOptions& options = {});

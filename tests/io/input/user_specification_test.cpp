@@ -36,7 +36,7 @@ constexpr std::string_view small = R"(<PeneBlast spec="REQUIRED" attribute1="ver
       <Magnet spec="OPTIONAL" attribute1="strength, REQUIRED, DOUBLE, positive"/>
     </Body>
   </Component>
-  <Grid spec="REQUIRED"><Cell spec="REQUIRED" attribute1="type, REQUIRED, STRING">
+  <Grid spec="REQUIRED" attribute1="shape, OPTIONAL, STRING"><Cell spec="REQUIRED" attribute1="type, REQUIRED, STRING">
     <XMin spec="REQUIRED" attribute1="value, REQUIRED, DOUBLE" attribute2="boundary, REQUIRED, INTEGER, 0:4"/>
     <XMax spec="REQUIRED" attribute1="value, REQUIRED, DOUBLE" attribute2="boundary, REQUIRED, INTEGER, 0:4"/>
     <YMin spec="REQUIRED" attribute1="value, REQUIRED, DOUBLE" attribute2="boundary, REQUIRED, INTEGER, 0:4"/>
