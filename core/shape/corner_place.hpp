@@ -3,7 +3,8 @@
 // Domain supplies its columns, first_column and their number, and
 //   sums, reduce(u, sum)  the sums over the corners of a quantity u on which S_i and grad S_i depend: S_i on
 //                         the first `values` of them, grad S_i on those from first_slope on
-//   distribute            the converse: what each corner takes of a particle's quantities
+//   share, share_flow     the converse: what each corner takes of the particles' quantities, shared out by
+//                         S_i and by grad S_i
 //   corner_value(c)       which of the weights S_i gives corner c
 //   evaluate(frame, layout, block, middle, at, reach, weights)
 //                         the corners of a block's particles about `middle`, all in cells; how far they reach

@@ -6,10 +6,10 @@
 // A particle's corners share most of their nodes, and adding a record to a node takes longer than the
 // arithmetic between two additions. Particles to grid: S_i on 27 nodes, particles in the lanes, serves
 // momentum and mass, which are then added one particle at a time, a node's record in the lanes. With forces,
-// records are added corner by corner to the eight nodes of a cell; two sums take turns, because an addition
-// would wait for the one before. Grid to particles: velocities by S_i again; for strain and motion the nodes'
-// records are interpolated to the corners, and the sums over these that the domain needs are transposed to
-// particles in the lanes.
+// each corner is a point with a record of its own; those of a block that lie in the same cell are added up in
+// registers, the cell's nodes in the lanes, as particles are with linear functions. Grid to particles:
+// velocities by S_i again; for strain and motion the nodes' records are interpolated to the corners, and the
+// sums over these that the domain needs are transposed to particles in the lanes.
 #pragma once
 
 #include "core/shape/corner_place.hpp"
@@ -71,24 +71,69 @@ template <int n, int width, class F>
       for (int i = 0; i < n; ++i) f(i + n * (j + n * k), width * (i + side * (j + side * k)));
 }
 
-/// Adds the record of a point at x, y, z within a cell to the records, of `width` doubles, of the cell's
-/// nodes.
-template <int width, class T>
-[[gnu::always_inline]] inline void add(T record, T x, T y, T z, double* lowest) {
-  constexpr int side = corner_nodes.side();
-  const T upper = z * record;
-  for (const int k : {0, 1}) {
-    const T plane = k == 0 ? record - upper : upper, far = y * plane;
-    for (const int j : {0, 1}) {
-      const T row = j == 0 ? plane - far : far, right = x * row;
-      double* left_at = lowest + width * side * (j + side * k);
-      store(left_at, load<T>(left_at) + (row - right));
-      store(left_at + width, load<T>(left_at + width) + right);
+}  // namespace corner
+
+/// The corners of a block's particles as points, corner by corner, with what they add to the nodes of their
+/// cells: momentum, mass and force, if mapped.
+template <NodeFields what, class Domain>
+struct CornerPoints {
+  static constexpr int first = maps_momentum(what) ? 0 : node_field::force.first;
+  static constexpr int beyond = node_field::force.first + 3;
+  CornerCells<Domain> cells;
+  alignas(64) double record[beyond][corners * block_lanes];
+
+  CornerPoints(const CornerPlace<Domain>& place, const MappedRows& rows) : cells(place) {
+    using R = Lanes<8>;
+    R of[corners];
+    const auto keep = [&](int i) {
+      for (int c = 0; c < corners; ++c) store(record[i] + block_lanes * c, of[c]);
+    };
+    if constexpr (maps_momentum(what)) {
+      for (int a = 0; a < 4; ++a) {
+        Domain::share(place, load<R>(a < 3 ? rows.momentum[a] : rows.mass), of);
+        keep(a);
+      }
+    }
+    constexpr int row[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    for (int a = 0; a < 3; ++a) {
+      R flow[3];
+      for (int b = 0; b < 3; ++b) flow[b] = -load<R>(rows.stress[row[a][b]]);
+      Domain::share_flow(place, flow, of);
+      keep(node_field::force.first + a);
     }
   }
-}
 
-}  // namespace corner
+  /// Of the nodes of its cell.
+  [[gnu::always_inline]] linear::Nodes weights(int point) const {
+    const auto& f = cells.f[point / block_lanes];
+    const int lane = point % block_lanes;
+    return linear::weights_at(f[0][lane], f[1][lane], f[2][lane]);
+  }
+
+  /// f(lowest node, points as bits) for each cell that holds corners of the first `used` particles.
+  template <class F>
+  [[gnu::always_inline]] void for_each_cell(int used, F f) const {
+    using Mask = LaneMask<block_lanes>;
+    Mask::vector node[corners];
+    for (int c = 0; c < corners; ++c) {
+      typename CornerPlace<Domain>::Ints narrow;
+      std::memcpy(&narrow, cells.node[c], sizeof narrow);
+      node[c] = __builtin_convertvector(narrow, Mask::vector);
+    }
+    std::uint64_t left = 0;
+    for (int c = 0; c < corners; ++c) left |= ((std::uint64_t{1} << used) - 1) << (block_lanes * c);
+    while (left != 0) {
+      const int point = __builtin_ctzll(left), cell = cells.node[point / block_lanes][point % block_lanes];
+      std::uint64_t here = 0;
+#pragma GCC unroll 8
+      for (int c = 0; c < corners; ++c)
+        here |= std::uint64_t{bits(Mask{node[c] == std::int64_t{cell}})} << (block_lanes * c);
+      here &= left;
+      left &= ~here;
+      f(cell, here);
+    }
+  }
+};
 
 template <NodeFields what, class Domain>
 struct CornerScatter {
@@ -125,30 +170,19 @@ struct CornerScatter {
 
   static void add_forces(const CornerPlace<Domain>& place, int used, const MappedRows& rows,
                          double* records) {
-    using T = std::conditional_t<maps_momentum(what), Lanes<8>, Lanes<4>>;
-    const auto force = [](double x, double y, double z) {
-      if constexpr (maps_momentum(what))
-        return T(typename T::vector{0, 0, 0, 0, x, y, z, 0});
-      else
-        return T(typename T::vector{x, y, z, 0});
-    };
-    const CornerCells<Domain> cells(place);
-    if constexpr (!maps_momentum(what)) records += node_field::force.first;
-    for (int l = 0; l < used; ++l) {
-      const auto s = [&](int c) { return -rows.stress[c][l]; };
-      const T stress[3] = {force(s(0), s(3), s(5)), force(s(3), s(1), s(4)), force(s(5), s(4), s(2))};
-      T motion(0.0), record[corners];
-      if constexpr (maps_momentum(what))
-        motion = typename T::vector{
-            rows.momentum[0][l], rows.momentum[1][l], rows.momentum[2][l], rows.mass[l], 0, 0, 0, 0};
-      Domain::distribute(place, l, motion, stress, record);
+    using N = linear::Nodes;
+    using Points = CornerPoints<what, Domain>;
+    const Points points(place, rows);
+    points.for_each_cell(used, [&](int cell, std::uint64_t here) {
+      N sum[node_doubles] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+      for (; here != 0; here &= here - 1) {
+        const int point = __builtin_ctzll(here);
+        const N w = points.weights(point);
 #pragma GCC unroll 8
-      for (int c = 0; c < corners; ++c) {
-        double* sums = records + c % 2 * width * corner_nodes.nodes();
-        corner::add<width>(record[c], T(cells.f[c][0][l]), T(cells.f[c][1][l]), T(cells.f[c][2][l]),
-                           sums + width * cells.node[c][l]);
+        for (int i = Points::first; i < Points::beyond; ++i) sum[i] += w * N(points.record[i][point]);
       }
-    }
+      add_to_corners<width, corner_nodes>(sum, records + width * cell);
+    });
   }
 };
 
@@ -228,22 +262,6 @@ struct CornerSample {
   }
 };
 
-/// Sums over the particles for even and for odd corners.
-template <NodeFields what>
-class CornerSums {
- public:
-  static constexpr int doubles = record_doubles(what.array) * corner_nodes.nodes();
-  explicit CornerSums(double* contributions) : records(sum_), contributions_(contributions) {}
-  void finish(const BrickFrame&, const NodeMask* = nullptr) {
-    for (int i = 0; i < doubles; ++i) contributions_[i] += sum_[i] + sum_[doubles + i];
-  }
-  double* records;
-
- private:
-  alignas(64) double sum_[2 * doubles] = {};
-  double* contributions_;
-};
-
 /// A policy (shape.hpp) but for its name and how the domains follow the motion.
 template <class Domain>
 struct CornerShape {
@@ -256,7 +274,7 @@ struct CornerShape {
   template <NodeFields what>
   using Scatter = CornerScatter<what, Domain>;
   template <NodeFields what>
-  using Sums = std::conditional_t<maps_force(what), CornerSums<what>, Linear::Sums<what>>;
+  using Sums = Linear::Sums<what>;
   using Field = Linear::Field;
   static constexpr Column first_of_domain = Domain::first_column;
   static constexpr int columns_of_domain = Domain::columns;

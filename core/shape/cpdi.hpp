@@ -56,15 +56,20 @@ struct Parallelepiped {
     sum[2] = (total[1] - total[0]) + (total[3] - total[2]);
     sum[3] = upper - lower;
   }
-  /// What each corner takes of a particle's `total`, shared out by S_i, and of `flow` by grad S_i.
-  template <class Place, class T>
-  static void distribute(const Place& place, int lane, T total, const T (&flow)[3], T (&to)[corners]) {
-    T along[3];
+  /// The same for each corner.
+  template <class Place>
+  [[gnu::always_inline]] static void share(const Place& place, R total, R (&to)[corners]) {
+    const R part = total * load<R>(place.value[0]);
+    for (R& of_corner : to) of_corner = part;
+  }
+  template <class Place>
+  [[gnu::always_inline]] static void share_flow(const Place& place, const R (&flow)[3], R (&to)[corners]) {
+    R along[3];
     for (int k = 0; k < 3; ++k) {
-      along[k] = flow[0] * T(place.slope[k][0][lane]);
-      for (int a = 1; a < 3; ++a) along[k] += flow[a] * T(place.slope[k][a][lane]);
+      along[k] = flow[0] * load<R>(place.slope[k][0]);
+      for (int a = 1; a < 3; ++a) along[k] += flow[a] * load<R>(place.slope[k][a]);
     }
-    parallelepiped_corners(total * T(place.value[0][lane]), along[0], along[1], along[2], to);
+    parallelepiped_corners(R(0.0), along[0], along[1], along[2], to);
   }
   static void load_edges(const ColumnLayout& layout, const double* block, Vec3<R> (&r)[3]) {
     const double* edge = block + layout.offset(Column::edge_1x);
@@ -79,10 +84,12 @@ struct Parallelepiped {
     for (int a = 0; a < 3; ++a) {
       const R inverse(frame.inverse_cell[a]);
       for (Vec3<R>& edge : r) edge[a] *= inverse;
-      const R farthest = abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]);
-      const R scale = R(cpdi::farthest) / max(farthest, R(cpdi::farthest));
-      for (Vec3<R>& edge : r) edge[a] *= scale;
-      reach[a] = farthest * scale;
+      reach[a] = abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]);
+      if (bits(R(cpdi::farthest) < reach[a]) != 0) [[unlikely]] {
+        const R scale = R(cpdi::farthest) / max(reach[a], R(cpdi::farthest));
+        for (Vec3<R>& edge : r) edge[a] *= scale;
+        reach[a] *= scale;
+      }
       parallelepiped_corners(middle[a], r[0][a], r[1][a], r[2][a], at[a]);
     }
     const Vec3<R> g[3] = {cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1])};
@@ -141,11 +148,15 @@ struct HexahedronDomain {
   static void reduce(const T (&u)[corners], T (&sum)[corners]) {
     for (int c = 0; c < corners; ++c) sum[c] = u[c];
   }
-  template <class Place, class T>
-  static void distribute(const Place& place, int lane, T total, const T (&flow)[3], T (&to)[corners]) {
+  template <class Place>
+  [[gnu::always_inline]] static void share(const Place& place, R total, R (&to)[corners]) {
+    for (int c = 0; c < corners; ++c) to[c] = total * load<R>(place.value[c]);
+  }
+  template <class Place>
+  [[gnu::always_inline]] static void share_flow(const Place& place, const R (&flow)[3], R (&to)[corners]) {
     for (int c = 0; c < corners; ++c) {
-      to[c] = total * T(place.value[c][lane]);
-      for (int a = 0; a < 3; ++a) to[c] += flow[a] * T(place.slope[c][a][lane]);
+      to[c] = flow[0] * load<R>(place.slope[c][0]);
+      for (int a = 1; a < 3; ++a) to[c] += flow[a] * load<R>(place.slope[c][a]);
     }
   }
   static double* of(const ColumnLayout& layout, double* block) {

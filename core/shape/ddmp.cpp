@@ -270,7 +270,12 @@ void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes) {
   constexpr int components = 6;
   static_assert(points + 1 < row_doubles);
   // T_j by components, rows of nodes; zero beyond the lattice.
-  Row t[components][side * side] = {};
+  Row t[components][side * side];
+  for (int n = 0; n < side * side; ++n) {
+    const int j = n % side, k = n / side;
+    if (j > 0 && j <= points && k > 0 && k <= points) continue;
+    for (Row(&component)[side * side] : t) component[n] = Row(0.0);
+  }
   for (int k = 0; k < points; ++k) {
     for (int j = 0; j < points; ++j) {
       Row r[row_doubles] = {};

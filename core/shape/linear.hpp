@@ -73,7 +73,10 @@ struct LinearPlace {
 };
 
 /// Point number `n` = i + 2 j + 4 k of a site, relative to its lowest one.
-constexpr int corner_node(int n) { return lattice_points.index(n & 1, n >> 1 & 1, n >> 2); }
+template <NodeBlockShape shape = lattice_points>
+constexpr int corner_node(int n) {
+  return (n & 1) + shape.side() * ((n >> 1 & 1) + shape.side() * (n >> 2));
+}
 
 /// f(lowest node, lanes) for each cell that holds particles of the block, with their lanes.
 template <class Place, class F>
@@ -109,11 +112,14 @@ inline Nodes along_x(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 1
 inline Nodes along_y(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 2, 3, 0, 1, 6, 7, 4, 5); }
 inline Nodes along_z(Nodes a) { return a.v + __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7, 0, 1, 2, 3); }
 
-/// Of particle `i` of a block.
-[[gnu::always_inline]] inline Nodes weights(const LinearPlace& place, int i) {
-  const Nodes wx = one_x() + sign_x() * Nodes(place.f[0][i]), wy = one_y() + sign_y() * Nodes(place.f[1][i]),
-              wz = one_z() + sign_z() * Nodes(place.f[2][i]);
+/// Of a point at these fractions of the cell's edges, and of particle `i` of a block.
+[[gnu::always_inline]] inline Nodes weights_at(double x, double y, double z) {
+  const Nodes wx = one_x() + sign_x() * Nodes(x), wy = one_y() + sign_y() * Nodes(y),
+              wz = one_z() + sign_z() * Nodes(z);
   return wx * wy * wz;
+}
+[[gnu::always_inline]] inline Nodes weights(const LinearPlace& place, int i) {
+  return weights_at(place.f[0][i], place.f[1][i], place.f[2][i]);
 }
 
 /// The force on a node is minus the sum of V sigma times the weight's gradient. A gradient component is a
@@ -174,12 +180,12 @@ struct CellSums : MomentumSums<what> {
 
 /// Adds eight components of eight points, r[component], to the first eight doubles of the points' records of
 /// `width` doubles.
-template <int width>
+template <int width, NodeBlockShape shape = lattice_points>
 [[gnu::always_inline]] inline void add_to_corners(linear::Nodes r[8], double* lowest) {
   using Record = Lanes<8>;
   transpose(r);
   for (int n = 0; n < 8; ++n) {
-    double* at = lowest + width * corner_node(n);
+    double* at = lowest + width * corner_node<shape>(n);
     store(at, load<Record>(at) + r[n]);
   }
 }

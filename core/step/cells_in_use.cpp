@@ -58,7 +58,7 @@ CellsInUse::Cells CellsInUse::cells_of(Slot s) const {
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), brick.coord);
   constexpr int columns = static_cast<int>(Column::position_x) + 3;
-  Cells cells = 0;
+  Cells of_lanes[block_lanes] = {};
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
     const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
@@ -68,9 +68,12 @@ CellsInUse::Cells CellsInUse::cells_of(Slot s) const {
       const double* x = pool.block(tile.blocks[b]) + pool.layout().offset(Column::position_x);
       const auto p =
           locate_in_sites<Lanes<block_lanes>, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
-      for (int l = 0; l < tile.used_lanes(b); ++l) cells |= Cells{1} << p.node[l];
+      const int used = tile.used_lanes(b);
+      for (int l = 0; l < block_lanes; ++l) of_lanes[l] |= Cells{l < used} << p.node[l];
     }
   }
+  Cells cells = 0;
+  for (const Cells of_lane : of_lanes) cells |= of_lane;
   return cells;
 }
 
