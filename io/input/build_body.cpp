@@ -195,7 +195,9 @@ void check_rigid_expressions(const core::BodyInput& body, const Node& node, cons
   if (body.body_force) check("BodyForce", body.body_force->expressions);
   for (const core::Expression& e : body.initial_velocity_expressions)
     node.child("InitialVelocity")
-        ->report(context.diagnostics, e.attribute, "a rigid body moves as a whole: expected a number");
+        ->report(context.diagnostics, e.attribute,
+                 "a rigid body moves as a whole: expected a number; a spin comes from the angular part of "
+                 "PrescribedAcceleration");
 }
 
 /// Angular accelerations turn rigid bodies in contact only.

@@ -24,6 +24,8 @@ bool regression(const Place& at) {
   return at.scene.contact.enable && at.scene.contact.normal == core::ContactInput::Normal::regression;
 }
 
+bool is_law(const Place& at, std::string_view type) { return at.strength().type == type; }
+
 const MaterialInput& material_of(const Scene& scene, const core::BodyInput& body) {
   return scene.materials[body.material];
 }
@@ -136,6 +138,39 @@ bool step_is_given(const Place& at) {
   return at.scene.contact.enable && !steps_are_implicit(at) && (step.specified > 0 || step.constant);
 }
 
+/// The step does not follow the speed of sound.
+bool step_is_unestimated(const Place& at) {
+  return steps_are_implicit(at) || at.scene.solution.time_step.specified > 0;
+}
+bool has_free_rigid(const Place& at) {
+  return at.scene.contact.enable && any_body(at.scene, [&](const core::BodyInput& body) {
+           return core::is_rigid(material_of(at.scene, body)) && !body.prescribed_velocity &&
+                  !body.constrain_rigid_position;
+         });
+}
+/// No two components have these two materials.
+bool never_meet(const Place& at) {
+  const auto has = [&](const core::ComponentInput& component, std::string_view material) {
+    return std::ranges::any_of(component.bodies, [&](const core::BodyInput& body) {
+      return material_of(at.scene, body).name == material;
+    });
+  };
+  const std::string first = at.node.word("mat1"), second = at.node.word("mat2");
+  for (const core::ComponentInput& one : at.scene.components)
+    for (const core::ComponentInput& other : at.scene.components)
+      if (&one != &other && has(one, first) && has(other, second)) return false;
+  return true;
+}
+bool has_box(const Node& node) {
+  constexpr const char* faces[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+  return std::ranges::any_of(faces, [&](const char* face) { return node.find(face) != nullptr; });
+}
+/// Its first row is after the end of the run.
+template <class Points>
+bool begins_late(const Place& at, const Points& points) {
+  return !points.empty() && points.front().time >= at.scene.solution.end_time;
+}
+
 using Random = core::RandomFailureInput;
 const Random& random(const Place& at) { return at.material->random_failure; }
 
@@ -187,6 +222,10 @@ const std::vector<IdleRule>& idle_rules() {
        {"max_newton", "atol"},
        [](const Place& at) { return at.scene.solution.implicit->linearised(); },
        "type=\"semi\" solves one linear system per step, to rtol"},
+      {"Solution/Implicit",
+       {"gravity_ramp"},
+       [](const Place& at) { return at.scene.solution.gravity == core::Vec3<double>{}; },
+       "there is no Gravity"},
       {"Solution/TimeStep", {}, steps_are_implicit, "implicit steps take their length from Implicit"},
       {"Material", {}, unused_material, "no body is made of this material"},
       {"Material/StrengthModel",
@@ -202,6 +241,26 @@ const std::vector<IdleRule>& idle_rules() {
        no_damage_rule,
        "used only with Contact failure_to_component=\"1\", or with DamageToFail=\"1\" of "
        "HolmquistJohnsonCook"},
+      {"Material/StrengthModel",
+       {"mu"},
+       [](const Place& at) { return is_law(at, "Null") && at.strength().value_or("ck", 0) > 0; },
+       "with ck the viscosity is that of the power law alone"},
+      {"Material/StrengthModel",
+       {"nn"},
+       [](const Place& at) { return is_law(at, "Null") && !(at.strength().value_or("ck", 0) > 0); },
+       "the exponent of the power law, which ck switches on"},
+      {"Material/StrengthModel",
+       {"match"},
+       [](const Place& at) { return is_law(at, "DruckerPrager") && !at.strength().has("phi"); },
+       "used only with phi, c and psi"},
+      {"Material/StrengthModel",
+       {"Gauss_f0"},
+       [](const Place& at) { return is_law(at, "Gurson") && at.strength().value_or("Gauss_sn", 0) == 0; },
+       "without a scatter Gauss_sn every particle starts with f0"},
+      {"Material/StrengthModel",
+       {"VarSoundspeed"},
+       [](const Place& at) { return !core::is_rigid(*at.material) && step_is_unestimated(at); },
+       "the speed of sound does not decide the step"},
       {"Material/StrengthModel",
        {"PlasticWorkCoefficient"},
        [](const Place& at) { return !at.strength().has("SpecHeat"); },
@@ -298,9 +357,19 @@ const std::vector<IdleRule>& idle_rules() {
        [](const Place& at) { return random(at).enable && !has_damage(at); },
        "the law of this material has no damage"},
       {"Friction", {}, contact_is_off, no_contact},
+      {"Friction/Coefficient",
+       {},
+       [](const Place& at) { return !contact_is_off(at) && never_meet(at); },
+       "no two components have these materials"},
       {"WorkPlane", {}, unused_plane, "no body uses this work plane"},
       {"Component", {"normal_vector_weight"}, contact_is_off, no_contact},
       {"Component", {"normal_vector_weight"}, regression, no_weights},
+      {"Component",
+       {"normal_vector_weight"},
+       [](const Place& at) {
+         return at.scene.contact.enable && at.scene.contact.automatic_weights && !regression(at);
+       },
+       "auto_normal_vector_weight=\"1\" gives the weights"},
       {"Contact",
        {"auto_normal_vector_weight", "normal_vector_excluding_failure_particle"},
        regression,
@@ -314,6 +383,10 @@ const std::vector<IdleRule>& idle_rules() {
        {"failure_to_component"},
        nothing_fails,
        "no body has a material that can fail; give it a FailureModel"},
+      {"Contact",
+       {"normal_vector_excluding_failure_particle"},
+       [](const Place& at) { return nothing_fails(at) && !regression(at); },
+       "no body has a material that can fail"},
       {"Contact", {"contact_time_step"}, step_is_given, "TimeStep specified or const decides the step"},
       {"Contact", {"min_distance"}, gaps_at_nodes, "used only with distance_type=\"1\" or \"2\""},
       {"Component/Body",
@@ -345,6 +418,22 @@ const std::vector<IdleRule>& idle_rules() {
          return at.body->prescribed_acceleration->angular_amplitude == core::Vec3<double>{};
        },
        "multiplies arx, ary, arz, which are 0"},
+      {"Component/Body/PrescribedAcceleration",
+       {},
+       [](const Place& at) {
+         return !operand(at) && begins_late(at, at.body->prescribed_acceleration->points);
+       },
+       "its first Coefficient is after EndTime"},
+      {"Component/Body/HarmExcit/EndTime",
+       {},
+       [](const Place& at) {
+         return !operand(at) && at.node.real("x") < 0 && at.node.real("y") < 0 && at.node.real("z") < 0;
+       },
+       "the load ends before the run starts"},
+      {"Component/Body/Traction",
+       {"ramp"},
+       [](const Place& at) { return !has_box(at.node); },
+       "without a box there is no face across which the load falls to zero"},
       {"Component/Body/ConstrainRigidPosition",
        {},
        [](const Place& at) { return !at.body->constrain_rigid_position; },
@@ -379,13 +468,17 @@ const std::vector<IdleRule>& idle_rules() {
        {"factor", "const", "NotConsiderVisForCp"},
        [](const Place& at) { return at.scene.solution.time_step.specified > 0; },
        "the specified step is used instead"},
+      {"Solution/Volume", {}, all_rigid, "rigid bodies keep their volume"},
       {"Solution/LimitVelocity", {}, all_rigid, "it does not apply to rigid bodies"},
       {"Solution/Volumetric", {"averaging"}, all_rigid, "rigid bodies keep their volume"},
       {"Solution/Volumetric",
        {"relaxation"},
        [](const Place& at) { return at.scene.solution.averaging == core::VolumeAveraging::none; },
        "used only with averaging=\"cell\""},
-      {"Solution/DynamicRelax", {}, all_rigid, "it does not apply to rigid bodies"},
+      {"Solution/DynamicRelax",
+       {},
+       [](const Place& at) { return all_rigid(at) && !has_free_rigid(at); },
+       "it applies to deformable bodies, and with Contact to free rigid ones"},
       {"Solution/DynamicRelax",
        {},
        [](const Place& at) { return is_quasistatic(at) && !all_rigid(at); },

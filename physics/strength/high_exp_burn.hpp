@@ -56,7 +56,7 @@ struct HighExpBurn {
           .min = 0,
           .min_open = true,
           .dimension = "stress",
-          .meaning = "Chapman-Jouguet pressure, < density D^2; needed by beta burn"}},
+          .meaning = "Chapman-Jouguet pressure, < density D^2; used by beta burn, beta 0 or 1"}},
         {&P::mu,
          {.name = "mu",
           .default_value = 0,

@@ -30,7 +30,7 @@ struct Null {
           .default_value = 0,
           .min = 0,
           .dimension = "stress time",
-          .meaning = "dynamic viscosity"}},
+          .meaning = "dynamic viscosity of a Newtonian fluid, ck 0"}},
         {&Null::ck,
          {.name = "ck",
           .default_value = 0,

@@ -94,6 +94,34 @@ TEST_CASE("normals of contact: weights that tie, and weights that nothing uses")
                                "contact_normal=\"regression\" the particles of both bodies give the normal"});
 }
 
+TEST_CASE("settings of contact that others replace, or that meet no case") {
+  const auto notes = [](const std::string& contact, const std::string& friction) {
+    std::string text =
+        replaced(two_bodies(bar, 4.5, true), "name='other'", "name='other' normal_vector_weight='2'");
+    text = replaced(text, "<WorkPlane", friction + "<WorkPlane");
+    return notes_of(replaced(text, "<Solution>", "<Contact enable='1' " + contact + "/><Solution>"), true);
+  };
+  CHECK(notes("", "").empty());
+  CHECK(notes("auto_normal_vector_weight='1'", "") ==
+        std::vector<std::string>{"line 16: <Component normal_vector_weight=\"2\">: no effect: "
+                                 "auto_normal_vector_weight=\"1\" gives the weights"});
+  CHECK(notes("normal_vector_excluding_failure_particle='1'", "") ==
+        std::vector<std::string>{
+            "line 25: <Contact normal_vector_excluding_failure_particle=\"1\">: no effect: "
+            "no body has a material that can fail"});
+  const auto friction = [](const std::string& with) {
+    return "<Material name='pb'><ReferenceDensity value='1'/><StrengthModel type='IsoElastic' Young='1' "
+           "Poisson='0.3'/></Material><Friction><Coefficient value='0.3' mat1='cu' mat2='" +
+           with + "'/></Friction>";
+  };
+  const auto idle = [&](const std::string& with) {
+    return std::ranges::count(notes("", friction(with)),
+                              "line 10: <Coefficient>: no effect: no two components have these materials");
+  };
+  CHECK(idle("cu") == 0);
+  CHECK(idle("pb") == 1);
+}
+
 TEST_CASE("contact cannot part driven rigid bodies") {
   const std::string still = "<PrescribedVelocity vx='0' vy='0' vz='0'/>",
                     falls = "<PrescribedVelocity vx='0' vy='0' vz='-1'/>";

@@ -78,6 +78,15 @@ TEST_CASE("settings of materials without effect") {
       {"<StrengthModel type=\"IsoHarden\" Young=\"117e3\" Poisson=\".35\" Yield0=\"400\" TangMod=\"100\"",
        "<StrengthModel type='Null' Young='1'",
        "line 6: <StrengthModel Young=\"1\">: no effect: the equation of state determines the stiffness"},
+      {law, "<StrengthModel type='Null' mu='1' ck='2' nn='0.5'",
+       "line 6: <StrengthModel mu=\"1\">: no effect: with ck the viscosity is that of the power law alone"},
+      {law, "<StrengthModel type='Null' mu='1' nn='0.5'",
+       "line 6: <StrengthModel nn=\"0.5\">: no effect: the exponent of the power law, which ck switches on"},
+      {law, "<StrengthModel type='Null' mu='1'", ""},
+      {law,
+       "<StrengthModel type='DruckerPrager' Young='1' Poisson='0.3' qfai='0.3' kfai='1' qpsi='0' ten_f='1' "
+       "match='1'",
+       "line 6: <StrengthModel match=\"1\">: no effect: used only with phi, c and psi"},
       {"<EquationOfState type=\"Gruneisen\" C0=\"3940\" S1=\"1.49\" gamma0=\"1.96\"/>",
        "<EquationOfState type='PAlpha' Plock='1' Pcrush='0.1' n='3' rho0s='9e-3' EOSID='3' C0='1' S1='1' "
        "gamma0='1' c1='4'/>",
@@ -135,6 +144,18 @@ TEST_CASE("settings of features that are off") {
        "crz='0'/></PrescribedAcceleration><InitialVelocity",
        "line 14: <Coefficient crx=\"1\">: no effect: multiplies arx, ary, arz, which are 0 (and 1 more such "
        "cases)"},
+      {"<InitialVelocity",
+       "<PrescribedAcceleration ax='1' ay='0' az='0' arx='0' ary='0' arz='0'><Coefficient time='1' cx='1' "
+       "cy='0' cz='0' crx='0' cry='0' crz='0'/></PrescribedAcceleration><InitialVelocity",
+       "line 14: <PrescribedAcceleration>: no effect: its first Coefficient is after EndTime"},
+      {"<InitialVelocity",
+       "<HarmExcit><A x='1' y='0' z='0'/><Omega x='1' y='1' z='1'/><Theta x='0' y='0' z='0'/><EndTime x='-1' "
+       "y='-1' z='-1'/></HarmExcit><InitialVelocity",
+       "line 14: <EndTime>: no effect: the load ends before the run starts"},
+      {"<InitialVelocity", "<Traction pressure='1' ramp='0.5'/><InitialVelocity",
+       "line 14: <Traction ramp=\"0.5\">: no effect: without a box there is no face across which the load "
+       "falls to zero"},
+      {"<InitialVelocity", "<Traction pressure='1' ramp='0.5' zmin='10'/><InitialVelocity", ""},
       {"<InitialVelocity", "<ConstrainRigidPosition value='0'/><InitialVelocity",
        "line 14: <ConstrainRigidPosition>: no effect: 0 is equivalent to omitting the element: a rigid body "
        "follows PrescribedVelocity, or without it moves freely"},
@@ -181,6 +202,7 @@ TEST_CASE("settings of the run without effect") {
       {"<EndTime", "<TimeStep specified='1e-4' factor='0.5' const='1'/><EndTime",
        "line 25: <TimeStep>: factor, const have no effect: the specified step is used instead"},
       {"<EndTime", "<TimeStep specified='0' factor='0.5'/><EndTime", ""},
+      {law, std::string(law) + " VarSoundspeed='1'", ""},
       {"<EndTime", "<OpenMPSetting directionofdecomposition='2'/><EndTime",
        "line 25: <OpenMPSetting directionofdecomposition=\"2\">: no effect: bricks of cells are shared among "
        "the threads"},
@@ -215,13 +237,23 @@ TEST_CASE("rigid bodies by themselves") {
         std::vector<std::string>{
             "line 25: <Solution mass=\"consistent\">: no effect: it does not apply to rigid bodies"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<DynamicRelax damping='1'/><EndTime")) ==
-        std::vector<std::string>{"line 25: <DynamicRelax>: no effect: it does not apply to rigid bodies"});
+        std::vector<std::string>{"line 25: <DynamicRelax>: no effect: it applies to deformable bodies, and "
+                                 "with Contact to free rigid ones"});
+  CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<Volume erode='1'/><EndTime")) ==
+        std::vector<std::string>{"line 25: <Volume>: no effect: rigid bodies keep their volume"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<Volumetric averaging='cell'/><EndTime")) ==
         std::vector<std::string>{
             "line 25: <Volumetric averaging=\"cell\">: no effect: rigid bodies keep their volume"});
   CHECK(notes_of(replaced(rigid_bar(), "<EndTime", "<Volumetric relaxation='0.5'/><EndTime")) ==
         std::vector<std::string>{
             "line 25: <Volumetric relaxation=\"0.5\">: no effect: used only with averaging=\"cell\""});
+}
+
+TEST_CASE("a step that no speed of sound decides") {
+  const std::string constant = replaced(bar, law, std::string(law) + " VarSoundspeed='1'");
+  CHECK(notes_of(replaced(constant, "<EndTime", "<TimeStep specified='1e-4'/><EndTime")) ==
+        std::vector<std::string>{"line 6: <StrengthModel VarSoundspeed=\"1\">: no effect: the speed of sound "
+                                 "does not decide the step"});
 }
 
 TEST_CASE("parameters of another rule of implicit steps") {
@@ -240,6 +272,8 @@ TEST_CASE("parameters of another rule of implicit steps") {
   CHECK(with("spectral_radius='0.5'") == radius);
   CHECK(with("type='quasistatic' spectral_radius='0.5'") == radius);
   CHECK(with("type='semi' rtol='1e-4' time_step='0.1'").empty());
+  CHECK(with("gravity_ramp='0.1'") ==
+        std::vector<std::string>{"line 25: <Implicit gravity_ramp=\"0.1\">: no effect: there is no Gravity"});
   CHECK(with("type='semi' max_newton='5'") ==
         std::vector<std::string>{"line 25: <Implicit max_newton=\"5\">: no effect: type=\"semi\" solves one "
                                  "linear system per step, to rtol"});
