@@ -3,6 +3,8 @@
 // (1987) 1395):
 //   Phi = (q/M)^2 + 2 q1 f* cosh(3 q2 sigma_m/(2 M)) - 1 - (q1 f*)^2,   f* of f by (3.38)       (3.37)
 //   df = (1 - f) d eps_v + A(e) de,  A the normal distribution fN, eN, sN                       (3.39 - 3.42)
+//   Under pressure no voids nucleate: the manual does not say, but particles debond from the matrix and crack
+//   under tension, and pressure would close such voids at once.
 //   (1 - f) M de = sigma : d eps_p,   M(e) the stress of the matrix:
 //   TangMod: linear;  N_hard: Yield0 (1 + Young e/Yield0)^(1/N_hard);  B n C epso: Johnson-Cook without heat
 // The plastic increment has the direction of the final stress, with f* and M of the start in its proportions,
@@ -90,7 +92,7 @@ struct Gurson : MisesPlasticity {
              {.name = "fN",
               .min = 0,
               .max = 1,
-              .meaning = "void fraction that can nucleate",
+              .meaning = "void fraction that can nucleate, under tension",
               .group = "fN, sN, eN"}},
             {&P::sn,
              {.name = "sN",
@@ -180,8 +182,10 @@ struct Gurson : MisesPlasticity {
     point.porosity = end.f;
     point.yield_stress = end.matrix;
     point.plastic_work = end.work;
-    point.unresolved =
-        core::select((end.shrink > 0.0) & (core::abs(end.phi) > 1e6 * tolerance), T(1.0), T(0.0));
+    // Where pressure has closed the last voids, q < M is elastic.
+    const core::MaskOf<T> off =
+        (core::abs(end.phi) > 1e6 * tolerance) & ((end.f > 0.0) | (end.phi > 0.0) | (end.mean > 0.0));
+    point.unresolved = core::select((end.shrink > 0.0) & off, T(1.0), T(0.0));
     const T void_part = end.f * (1 / ff), strain_part = point.effective_plastic_strain * (1 / epmax);
     const T tepla = void_part * void_part + (epmax > 0 ? strain_part * strain_part : T(0.0));
     point.damage = core::max(point.damage, core::min(tepla, 1.0));
@@ -252,7 +256,8 @@ struct Gurson : MisesPlasticity {
     return 0.5 * (e + 1.0 / e);
   }
   static constexpr double largest_argument = 300;
-  static constexpr double closed = 1e-12;  ///< a smaller void fraction is set to zero
+  static constexpr double round_off = 1e-6;  ///< a smaller pressure, over M, is none
+  static constexpr double closed = 1e-12;    ///< a smaller void fraction is set to zero
 
   /// The root y of y + b sinh(y) = z for b, z >= 0. The function is convex and the start is above the root:
   /// Newton's method converges without a bracket.
@@ -286,7 +291,10 @@ struct Gurson : MisesPlasticity {
     end.work = end.mean * expansion + q * end.shear_strain;
     end.matrix_strain = matrix_increment(step, T(end.work / (1.0 - step.f)), dt);
     T grown = step.f + expansion;
-    if (fn > 0) grown += nucleation(step.strain + 0.5 * end.matrix_strain) * end.matrix_strain;
+    if (fn > 0) {
+      const T opened = nucleation(step.strain + 0.5 * end.matrix_strain) * end.matrix_strain;
+      grown += core::select(step.mean < -round_off * step.matrix, T(0.0), opened);
+    }
     const T f = core::min(grown / core::max(1.0 + expansion, 0.1), 0.999);
     end.f = core::select(f > closed, f, 0.0);
     end.matrix = matrix(step.strain, end.matrix_strain, dt).value;
