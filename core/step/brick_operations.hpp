@@ -250,21 +250,24 @@ template <ShapePolicy S, TransferPolicy T>
   const BodyMotion& motion = loads_.motion(body);
   const Vec3<double> weight = forces_.gravity + loads_.acceleration(body);
   const bool falls = weight != Vec3<double>{}, is_rigid = motion.kind == BodyMotion::Kind::rigid;
-  if (falls || is_rigid) std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
+  const bool damps = forces_.damping != 0;
+  if (falls || is_rigid || damps)
+    std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   take_velocities(frame, place, layout, block, at);
   if (is_rigid) integrate_rigid_velocities(layout, weight, velocity_dt, block, used, at);
   // Of a prescribed velocity the constraint supplies the change.
   if (falls && motion.kind != BodyMotion::Kind::prescribed)
     correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
-  if (is_rigid) return;
-  if (motion.kind == BodyMotion::Kind::prescribed)
-    prescribe_velocities(layout, motion, block, used, at);
-  else if (velocity_limit_ < std::numeric_limits<double>::infinity())
+  if (motion.kind == BodyMotion::Kind::prescribed) prescribe_velocities(layout, motion, block, used, at);
+  if (damps)
+    add_work_of_damping(forces_.damping * velocity_dt, motion.kind == BodyMotion::Kind::free, layout, block,
+                        used, at);
+  if (motion.kind == BodyMotion::Kind::free && velocity_limit_ < std::numeric_limits<double>::infinity())
     limit_velocities(layout, velocity_limit_, block, used, at);
 }
 
 /// x += dt v, with the grid's velocity or, for a body that keeps its own velocities, with those; and the work
-/// of weight and damping.
+/// of weight.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* block, int used, Scratch& at) {
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
@@ -275,14 +278,14 @@ void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* bl
   }
   if (const int number = rigid(body); number >= 0) return rigid_->move(number, layout, block);
   const Vec3<double> weight = forces_.gravity + loads_.acceleration(body);
-  const bool does_work = forces_.damping != 0 || weight != Vec3<double>{};
+  const bool does_work = weight != Vec3<double>{};
   if (does_work) std::copy_n(block + layout.offset(Column::position_x), 3 * block_lanes, at.old);
   if (loads_.motion(body).kind != BodyMotion::Kind::free)
     move_at_own_velocity(layout, dt, block);
   else
     motion.move(layout, dt, block);
   if constexpr (settles) motion.carry(layout, dt, block);
-  if (does_work) add_work_of_motion(weight, velocity_dt / dt * forces_.damping, layout, block, used, at);
+  if (does_work) add_work_of_motion(weight, layout, block, used, at);
 }
 
 /// The particles' domains: by the velocity gradient of the batch's block `b`, or as they have been carried.

@@ -54,7 +54,7 @@ Vec3<double> velocity_gained(const BodyInput& input, double time) {
       component = load->linear_amplitude[i] *
                   integral(load->points, time, [&](const auto& p) { return p.linear_factor[i]; });
     } else if (const auto& h = input.harmonic_excitation) {
-      const double t = std::min(time, h->end_time[i]), w = h->angular_frequency[i];
+      const double t = std::clamp(h->end_time[i], 0.0, time), w = h->angular_frequency[i];
       component = h->amplitude[i] * (w == 0 ? t * std::sin(h->phase[i])
                                             : (std::cos(h->phase[i]) - std::cos(w * t + h->phase[i])) / w);
     }

@@ -80,17 +80,25 @@ void correct_work_of_weight(const Vec3<double>& weight, double dt, double veloci
   }
 }
 
-void add_work_of_motion(const Vec3<double>& weight, double damping, const ColumnLayout& layout,
-                        const double* block, int used, ThreadScratch& at) {
+void add_work_of_damping(double damped, bool is_free, const ColumnLayout& layout, const double* block,
+                         int used, ThreadScratch& at) {
   const double* m = block + layout.offset(Column::mass);
-  const double* x = block + layout.offset(Column::position_x);
   const double* v = block + layout.offset(Column::velocity_x);
   for (int i = 0; i < used; ++i) {
     for (int a = 0; a < 3; ++a) {
-      const int at_a = block_lanes * a + i;
-      at.work += m[i] * (weight[a] - damping * v[at_a]) * (x[at_a] - at.old[at_a]);
+      const double now = v[block_lanes * a + i], old = at.old[block_lanes * a + i];
+      at.work -= m[i] * damped * old * (is_free ? 0.5 * (old + now) : now);
     }
   }
+}
+
+void add_work_of_motion(const Vec3<double>& weight, const ColumnLayout& layout, const double* block, int used,
+                        ThreadScratch& at) {
+  const double* m = block + layout.offset(Column::mass);
+  const double* x = block + layout.offset(Column::position_x);
+  for (int i = 0; i < used; ++i)
+    for (int a = 0; a < 3; ++a)
+      at.work += m[i] * weight[a] * (x[block_lanes * a + i] - at.old[block_lanes * a + i]);
 }
 
 void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_strain) {

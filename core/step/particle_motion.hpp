@@ -44,9 +44,13 @@ void move_at_own_velocity(const ColumnLayout& layout, double dt, double* block);
 void correct_work_of_weight(const Vec3<double>& weight, double dt, double velocity_dt,
                             const ColumnLayout& layout, const double* block, int used, ThreadScratch& at);
 
-/// Work of weight and damping (1/time) over a block's displacement from the positions in at.old.
-void add_work_of_motion(const Vec3<double>& weight, double damping, const ColumnLayout& layout,
-                        const double* block, int used, ThreadScratch& at);
+/// Work of the damping that has taken the part `damped` of the velocities in at.old: with the mean of these
+/// and the new ones, or, where a constraint gives the new ones, with them, as the constraint works.
+void add_work_of_damping(double damped, bool is_free, const ColumnLayout& layout, const double* block,
+                         int used, ThreadScratch& at);
+/// Work of weight over a block's displacement from the positions in at.old.
+void add_work_of_motion(const Vec3<double>& weight, const ColumnLayout& layout, const double* block, int used,
+                        ThreadScratch& at);
 
 /// USF takes the velocity gradient L at the particles' new positions, x = x_old + dt v(x_old), for the
 /// deformation of the motion that led there. Relative to the old positions, as the other schemes have it, it

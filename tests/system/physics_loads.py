@@ -64,6 +64,25 @@ class Loads(_mpm.Case):
         self.assertLess(np.abs(found.column("velocity_0") - 3).max(), 1e-12)  # 1 + 2 t
         self.assertLess(np.abs(found.column("x") - found.column("x", 0) - 2).max(), 0.02)
 
+    def test_a_load_that_ends_before_the_start(self):
+        for more in ("", '<ConstrainRigidPosition value="1"/>'):
+            with self.subTest(more=more):
+                load = ('<HarmExcit><A ax="1" ay="0" az="0"/><Omega x="1" y="0" z="0"/><Theta x="0" y="0" z="0"/>'
+                        f'<EndTime x="-1" y="9" z="9"/></HarmExcit>{more}')
+                found = self.block_under(load, 1.0, "MUSL")
+                self.assertLess(np.abs(found.column("velocity_0") - 1).max(), 1e-12)
+
+    def test_what_damping_does_not_reach(self):
+        """Without contact DynamicRelax leaves a rigid body alone, and so do the books."""
+        body = _mpm.block("body", (2, 2, 2), (2, 2, 2), of="iron")
+        text = _mpm.scene([body], _mpm.grid((0, 0, 0), (8, 8, 8)),
+                          _mpm.solution(1.0, more='<Gravity ax="1" ay="0" az="0"/><DynamicRelax damping="3"/>').replace(
+                              'factor="0.5"', 'specified="0.01"'), [_mpm.material("iron", 1.0, 'type="Rigid"')])
+        self.run_in("run", [self.write(text)])
+        found = _mpm.summary(self.folder / "run")
+        self.assertAlmostEqual(found["bodies"][0]["velocity"][0], 1, delta=1e-12)
+        self.assertLess(abs(found["energy"]["relative_drift"]), 1e-12)
+
     def test_held_under_gravity(self):
         # What holds a body carries its weight: no work where it rests, and that of the constraint where it moves.
         for velocity in (0, -1):
