@@ -115,7 +115,7 @@ std::string specification_beside(const char* program) {
 int run_check(int argc, char** argv, const Registry& registry) {
   if (apps::say_faults(registry, true)) return 2;
   Settings settings;
-  apps::CommandLine line("Checks input files of mpm_run.");
+  apps::CommandLine line("Checks input files of mpm_run.", "mpm_check");
   line.option("FILE", settings.files, "input files, with or without .xmp");
   line.option("--specification", settings.specification,
               "also check the files against this Specification.xml (manual, 5.1); default: the one beside "

@@ -161,7 +161,8 @@ int run_point(int argc, char** argv, const Registry& registry) {
       "grid.\n\n"
       "  mpm_point --library OFHC-Cu-JC --units \"mm g ms\" --path \"uniaxial_stress 0.2 rate 1000\" --plot "
       "cu.svg\n"
-      "  mpm_point case.xmp --material cu --path \"uniaxial_strain -0.1 rate 10\" -o cu.csv");
+      "  mpm_point case.xmp --material cu --path \"uniaxial_strain -0.1 rate 10\" -o cu.csv",
+      "mpm_point");
   line.option("INPUT", settings.input,
               "input file with the material, with or without .xmp; other elements may be missing");
   line.option("-m,--material", settings.material,

@@ -40,11 +40,10 @@ constexpr double default_smallest = 1.0 / 1024;
 
 double length_of(const ImplicitInput& input, const Model& model) {
   if (input.time_step) return *input.time_step;
-  if (input.max_step) return *input.max_step;
   const double explicit_step = default_ratio * model.clock.first_critical_dt;
-  const double end = model.scene->solution.end_time;
-  if (input.quasistatic() || !std::isfinite(explicit_step)) return end / default_load_steps;
-  return explicit_step;
+  const bool by_loads = input.quasistatic() || !std::isfinite(explicit_step);
+  const double length = by_loads ? model.scene->solution.end_time / default_load_steps : explicit_step;
+  return std::max(std::min(length, input.max_step.value_or(length)), input.min_step.value_or(0));
 }
 
 }  // namespace
@@ -474,15 +473,18 @@ void ImplicitIntegrator::move() {
   std::vector<double> gained(solution_.size()), lag_gained(lags_ ? solution_.size() : 0);
   for (std::size_t i = 0; i < state_.size(); ++i) {
     const NodeState& at = state_[i];
+    const bool touches = at.contact[0] != 0 || at.contact[1] != 0 || at.contact[2] != 0;
     double work = 0;
     for (int a = 0; a < 3; ++a) {
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
       const double u = solution_[k], force = at.mass > cutoff ? (at.force[a] + at.contact[a]) / at.mass : 0;
       work += at.external[a] * u;
-      if (moved(i, a) && rule_.dynamic())
-        work += at.impulse[a] * u / model_.clock.dt;
-      else if (held(i, a))
-        work += 0.5 * (at.reaction[a] - at.force[a]) * u;
+      if (rule_.dynamic()) {
+        if (moved(i, a)) work += at.impulse[a] * u / model_.clock.dt;
+      } else if (held(i, a) || !touches) {
+        // From equilibrium to equilibrium loads and reactions change in proportion: the work of their means.
+        work += 0.5 * ((held(i, a) ? at.reaction[a] : 0.0) - at.force[a]) * u;
+      }
       const double v = held(i, a)
                            ? u / model_.clock.dt
                            : rule_.gain * u + rule_.keep * at.velocity[a] + rule_.push * (force + at.lag[a]);
@@ -491,7 +493,7 @@ void ImplicitIntegrator::move() {
       const bool on_wall = held(i, a) && !moved(i, a);
       if (at.mass > cutoff && !on_wall) gained[k] = moved(i, a) ? at.drive[a] : v - at.velocity[a];
       if (lags_ && at.mass > cutoff && !on_wall) {
-        const bool led = held(i, a) || at.contact[0] != 0 || at.contact[1] != 0 || at.contact[2] != 0;
+        const bool led = held(i, a) || touches;
         const double at_end = rule_.force_at_end(u, at.velocity[a], force, at.lag[a]);
         const double lag = led ? 0 : rule_.fresh * (at_end - force) - rule_.fade * at.lag[a];
         lag_gained[k] = (lag - at.lag[a]) / model_.clock.dt;

@@ -436,6 +436,19 @@ class Far(_mpm.Case):
                 np.testing.assert_allclose(found["bodies"][0]["velocity"], (10.0, 5.0, 2.5), atol=1e-8)
                 np.testing.assert_allclose(found["bodies"][0]["centre"], (23.5, 13.5, 8.5), atol=1e-7)
 
+    def test_stop_of_a_body_that_leaves_in_one_step(self):
+        body = _mpm.block("body", (2, 2, 2), (3, 3, 3), (10.0, 0, 0))
+        solution = implicit(4.0, "dynamic", 1.0).replace("<Solution ", '<Solution near_boundary_stop="1" ')
+        self.run_in("run", [self.write(_mpm.scene([body], _mpm.grid((0, 0, 0), (8, 8, 8)), solution, [SOFT]))], code=_mpm.STOPPED)
+
+    def test_first_step_of_a_quasistatic_run(self):
+        """EndTime/20 where the input gives none, within its bounds; easy steps grow up to the largest."""
+        for bounds, fewest, most in (("", 20, 20), ('max_step="0.02"', 50, 50), ('min_step="0.25"', 4, 4), ('max_step="0.5"', 5, 12)):
+            with self.subTest(bounds=bounds):
+                self.run_in("run", [self.write(column().replace('time_step="0.1"', bounds))])
+                steps = _mpm.summary(self.folder / "run")["steps"]
+                self.assertTrue(fewest <= steps <= most, steps)
+
     def test_walls_and_bodies_are_not_passed(self):
         """A body that flies at a wall two cells away, or at another body, in steps of six cells."""
         flying = _mpm.block("ball", (1, 1, 4), (2, 2, 2), (0, 0, -6.0))

@@ -24,8 +24,8 @@ class Footing(study.Study):
     about = f"""Half of a strip of half width {HALF:g} on weightless soil, {WIDTH:g} wide and {DEPTH:g} deep, in plane
 strain (cohesion {COHESION:g}, friction 0, E = {YOUNG:g}, Poisson's ratio {POISSON:g}); a rigid body with
 `PrescribedVelocity` presses it by {PRESSED:g} in {STEPS} load steps. L. Prandtl's load is (2 + pi) c = {PRANDTL:.3f} over
-the width. The load is the mean over the depth of the vertical stress over the soil, which equilibrium makes the same at
-every depth. *load*: the largest over Prandtl's, less 1; *last*: at the end; *growth*: of the load over the
+the width. The load is the vertical stress over the lowest quarter of the soil, which bears it whole: layers near a body in
+contact bear less, as contact acts at nodes inside the soil. *load*: the largest over Prandtl's, less 1; *last*: at the end; *growth*: of the load over the
 last quarter, relative; a method that locks finds no limit load. *implicit, contact*: the body ends at the strip's edge and is in contact with the
 soil, with a coefficient of friction of {FRICTION:g} (*rough*) or without friction; both have Prandtl's load. *implicit, held*: without
 contact the body holds the nodes that its particles reach, and the surface's velocity falls from the body's to that of free soil over the cell behind the last of them; so
@@ -76,12 +76,12 @@ moves at the stated part of the speed of waves, {WAVE:.1f}."""
             text = scenes.two_components([soil], [footing], *parts, more='<Contact enable="1"/>' + rough)
 
         def measure(result):
-            mine = result.column("z", 0) < DEPTH
+            mine = result.column("z", 0) < DEPTH / 4
             first = result.column("density", 0)[mine]
 
             def load(which):
                 volume = first / result.column("density", which)[mine] * (h / 2) ** 3
-                return -(volume * result.column("SigmaZ", which)[mine]).sum() / (DEPTH * h * HALF)
+                return -(volume * result.column("SigmaZ", which)[mine]).sum() / (DEPTH / 4 * h * HALF)
 
             loads = np.array([load(i) for i in range(len(result.states.steps))])
             return {"load": loads.max() / PRANDTL - 1, "last": loads[-1] / PRANDTL - 1, "growth": loads[-1] / loads[-6] - 1}
