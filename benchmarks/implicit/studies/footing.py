@@ -77,11 +77,12 @@ moves at the stated part of the speed of waves, {WAVE:.1f}."""
 
         def measure(result):
             mine = result.column("z", 0) < DEPTH / 4
+            height = mine.sum() * (h / 2) ** 3 / (WIDTH * h)
             first = result.column("density", 0)[mine]
 
             def load(which):
                 volume = first / result.column("density", which)[mine] * (h / 2) ** 3
-                return -(volume * result.column("SigmaZ", which)[mine]).sum() / (DEPTH / 4 * h * HALF)
+                return -(volume * result.column("SigmaZ", which)[mine]).sum() / (height * h * HALF)
 
             loads = np.array([load(i) for i in range(len(result.states.steps))])
             return {"load": loads.max() / PRANDTL - 1, "last": loads[-1] / PRANDTL - 1, "growth": loads[-1] / loads[-6] - 1}
