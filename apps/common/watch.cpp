@@ -140,7 +140,9 @@ void Watch::check_energy(const core::Model& model, core::Reductions& ranks) cons
 bool Watch::near_boundary(const core::Model& model, core::Reductions& ranks) const {
   if (!scene_.solution.near_boundary_stop) return false;
   const core::GridGeometry& g = model.grid->geometry();
-  bool near = model.ledger.left_grid > 0;  // in one step from farther inside
+  // An implicit step may throw particles out from farther inside; explicit ones that are gone have left
+  // through other faces.
+  bool near = scene_.solution.integration == core::Integration::implicit && model.ledger.left_grid > 0;
   for (const core::ConstParticleBlock& block : core::blocks_of(model)) {
     for (const core::ConstParticle p : block) {
       const core::Vec3<double> x = p.vector(core::Column::position_x);
