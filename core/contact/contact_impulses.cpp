@@ -270,8 +270,7 @@ void Contact::book(const Node& at, ContactSums& sums) const {
     const double pressing = dot(impulse, pair.normal);
     const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
     sums.record.dissipated.add(pressing * dot(mean + stopped, pair.normal) + heat);
-    sums.record.friction_heat.add(heat);
-    if (at.recorded[p] >= 0) sums.record.add_impulse(at.recorded[p], impulse);
+    sums.record.add(at.recorded[p], impulse, heat);
     const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
       if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
       const double work = 0.5 * dot(on_it, at.start[f] + at.fields[f].velocity);
@@ -294,8 +293,7 @@ void Contact::book_rigid(const Node& at, ContactSums& sums) const {
     const Vec3<double> relative = mean - c.velocity;
     const double pressing = dot(impulse, c.normal) * dot(relative, c.normal), all = dot(impulse, relative);
     sums.record.dissipated.add(-all);
-    sums.record.friction_heat.add(pressing - all);
-    if (r.recorded >= 0) sums.record.add_impulse(r.recorded, r.is_first ? -1.0 * impulse : impulse);
+    sums.record.add(r.recorded, r.is_first ? -1.0 * impulse : impulse, pressing - all);
     const auto on = [&](int number, const Vec3<double>& on_it, const Vec3<double>& velocity) {
       sums.rigid[static_cast<std::size_t>(number)].add(on_it, c.place - rigid_->state(number).centre,
                                                        dot(on_it, velocity));
@@ -349,7 +347,7 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
 void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<FieldNodes> fields,
                       ContactSums& sums) const {
   const BoundaryFaces faces(grid, s);
-  sums.record.impulses.resize(3 * pairs_.size());
+  sums.record.pairs.resize(pairs_.size());
   if (rigid_ != nullptr) sums.rigid.resize(rigid_->count());
   const bool of_end = which == Velocity::of_end;
   if (of_end)

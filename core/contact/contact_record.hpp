@@ -1,8 +1,9 @@
-// What contact has done since time zero: the energy that it took from the nodes and the impulses between the
-// components. Sums are exact, so that they are the same on any ranks and threads.
+// What contact has done since time zero: the energy that it took from the nodes, and per pair of components
+// impulses and heat of friction. Sums are exact, so that they are the same on any ranks and threads.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,7 +13,7 @@
 
 namespace mpm::core {
 
-/// Numbers of the pairs of components whose impulses are recorded: all, or with more than `most_components`
+/// Numbers of the pairs of components that are recorded: all, or with more than `most_components`
 /// only that of the first two.
 class ContactPairs {
  public:
@@ -30,19 +31,37 @@ class ContactPairs {
 };
 
 struct ContactRecord {
-  ExactSum dissipated;             ///< energy
-  ExactSum friction_heat;          ///< the part of it that friction took
-  std::vector<ExactSum> impulses;  ///< of pair k in 3 k .. 3 k + 2: on its second component
+  /// Of a pair of components.
+  struct Pair {
+    std::array<ExactSum, 3> impulse;  ///< on the second
+    ExactSum friction_heat;
+  };
+  ExactSum dissipated;           ///< energy
+  ExactSum other_friction_heat;  ///< of pairs that are not recorded
+  std::vector<Pair> pairs;       ///< by ContactPairs::number
 
-  bool empty() const { return impulses.empty(); }
-  void add_impulse(int pair, const Vec3<double>& impulse) {
-    for (int a = 0; a < 3; ++a) impulses[static_cast<std::size_t>(3 * pair + a)].add(impulse[a]);
+  bool empty() const { return pairs.empty(); }
+  /// The part of the dissipated energy that friction took.
+  ExactSum friction_heat() const {
+    ExactSum sum = other_friction_heat;
+    for (const Pair& pair : pairs) sum += pair.friction_heat;
+    return sum;
+  }
+  /// `pair` -1: not recorded.
+  void add(int pair, const Vec3<double>& impulse, double friction_heat) {
+    if (pair < 0) return other_friction_heat.add(friction_heat);
+    Pair& to = pairs[static_cast<std::size_t>(pair)];
+    for (int a = 0; a < 3; ++a) to.impulse[static_cast<std::size_t>(a)].add(impulse[a]);
+    to.friction_heat.add(friction_heat);
   }
   ContactRecord& operator+=(const ContactRecord& other) {
     dissipated += other.dissipated;
-    friction_heat += other.friction_heat;
-    impulses.resize(std::max(impulses.size(), other.impulses.size()));
-    for (std::size_t i = 0; i < other.impulses.size(); ++i) impulses[i] += other.impulses[i];
+    other_friction_heat += other.other_friction_heat;
+    pairs.resize(std::max(pairs.size(), other.pairs.size()));
+    for (std::size_t i = 0; i < other.pairs.size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) pairs[i].impulse[a] += other.pairs[i].impulse[a];
+      pairs[i].friction_heat += other.pairs[i].friction_heat;
+    }
     return *this;
   }
 };

@@ -46,6 +46,7 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
       for (const ConstParticle p : block) {
         const Vec3<double> x = p.vector(Column::position_x);
         const double half = 0.5 * std::cbrt(p[Column::volume]);
+        const double reach = (1 + 1e-6) * half;  // lattices may be shifted by just half a spacing
         int lowest[3], highest[3];
         for (int a = 0; a < 3; ++a) {
           const auto cell = static_cast<int>(g.cell_index(x[a], a) - brick_cells * brick[a]);
@@ -56,7 +57,7 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
         others.for_each(lowest, highest, [&](const Vec3<double>& y, std::int32_t component) {
           const Vec3<double> d = x - y;
           const double apart = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-          if (component == tile.component || apart >= half) return;
+          if (component == tile.component || apart > reach) return;
           Overlap& overlap = found[pair_number(component, tile.component)];
           overlap.add(x, y, half);
           if (std::ranges::find(met, component) != met.end()) return;
@@ -75,7 +76,10 @@ std::vector<std::string> overlaps_in_words(const Model& model, Communication& co
   const BrickGrid& grid = *model.grid;
   const std::size_t components = scene.components.size();
   constexpr std::size_t most_components = 64;
-  if (components < 2 || components > most_components) return {};
+  if (components < 2) return {};
+  if (components > most_components)
+    return {fmt::format("{} components: whether any overlap at the start is found for {} at most", components,
+                        most_components)};
   const auto of_slot = components_by_slot(grid, communication.halo);
   const auto meets = [&](Slot s) {
     const std::int32_t* first = nullptr;

@@ -372,7 +372,7 @@ void ImplicitContact::find_start(std::span<const Vec3<double>> force_of_own) {
 }
 
 void ImplicitContact::end_step(StepStatistics& to) {
-  to.contact.impulses.resize(3 * pairs_.size());
+  to.contact.pairs.resize(pairs_.size());
   if (rigid_ != nullptr) impulses_.assign(rigid_->count(), {});
   for (std::size_t t = 0; t < touches_.size(); ++t) {
     const Touch& touch = touches_[t];
@@ -385,10 +385,9 @@ void ImplicitContact::end_step(StepStatistics& to) {
     if (impulse == Vec3<double>{}) continue;
     to.contact.dissipated.add(-dot(mean, d));
     to.contact.dissipated.add(-stop.gained);
-    to.contact.friction_heat.add(-dot(mean, across(d, touch.normal)));
     const auto [first, second] = std::minmax({a.component, b.component});
-    const int pair = pairs_.number(first, second);
-    if (pair >= 0) to.contact.add_impulse(pair, second == b.component ? impulse : -1.0 * impulse);
+    to.contact.add(pairs_.number(first, second), second == b.component ? impulse : -1.0 * impulse,
+                   -dot(mean, across(d, touch.normal)));
     if (a.rigid < 0) continue;
     const Vec3<double> way = a.displacement;
     impulses_[static_cast<std::size_t>(a.rigid)].add(-1.0 * impulse,

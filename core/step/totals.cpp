@@ -237,9 +237,18 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
   static_cast<Quantities&>(totals) = quantities_of(all.data());
 
   const Ledger& ledger = model.ledger;
-  std::array booked{ledger.external_work,    ledger.removed_mass,       ledger.removed_kinetic,
-                    ledger.removed_internal, ledger.contact.dissipated, ledger.contact.friction_heat,
-                    ledger.internal_lead};
+  std::vector booked{ledger.external_work,    ledger.removed_mass,       ledger.removed_kinetic,
+                     ledger.removed_internal, ledger.contact.dissipated, ledger.contact.friction_heat(),
+                     ledger.internal_lead};
+  const std::size_t first_of_pairs = booked.size();
+  if (model.scene->contact.enable)
+    totals.contact_pairs.resize(ContactPairs(component_count(*model.scene)).size());
+  for (std::size_t k = 0; k < totals.contact_pairs.size(); ++k) {
+    // A rank that has had no contact yet has no pairs.
+    const ContactRecord::Pair pair = ledger.contact.empty() ? ContactRecord::Pair{} : ledger.contact.pairs[k];
+    booked.insert(booked.end(), pair.impulse.begin(), pair.impulse.end());
+    booked.push_back(pair.friction_heat);
+  }
   std::array<std::int64_t, 3> count{ledger.eroded, ledger.left_grid, ledger.velocity_limited};
   ranks.sum(std::span<ExactSum>(booked));
   ranks.sum(std::span<std::int64_t>(count));
@@ -250,6 +259,11 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
   totals.dissipated_by_contact = booked[4].value();
   totals.friction_heat = booked[5].value();
   totals.internal_lead = booked[6].value();
+  auto of_pair = booked.begin() + static_cast<std::ptrdiff_t>(first_of_pairs);
+  for (Totals::ContactPair& pair : totals.contact_pairs) {
+    for (int a = 0; a < 3; ++a) pair.impulse[a] = (of_pair++)->value();
+    pair.friction_heat = (of_pair++)->value();
+  }
   totals.eroded = count[0];
   totals.left_grid = count[1];
   totals.velocity_limited = count[2];

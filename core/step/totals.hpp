@@ -43,6 +43,12 @@ struct Totals : Quantities {
   double external_work = 0;
   double dissipated_by_contact = 0;  ///< energy
   double friction_heat = 0;          ///< the part of it that friction took
+  /// Of contact since time zero, by ContactPairs::number.
+  struct ContactPair {
+    Vec3<double> impulse{};  ///< on the second component
+    double friction_heat = 0;
+  };
+  std::vector<ContactPair> contact_pairs;
   double removed_mass = 0;
   double removed_kinetic = 0;
   double removed_internal = 0;

@@ -31,7 +31,9 @@ std::string ContactForces::legend() const {
 }
 
 std::vector<double> ContactForces::impulses(const core::Model& model, core::Reductions& ranks) const {
-  std::vector<core::ExactSum> sums = model.ledger.contact.impulses;
+  std::vector<core::ExactSum> sums;
+  for (const core::ContactRecord::Pair& pair : model.ledger.contact.pairs)
+    sums.insert(sums.end(), pair.impulse.begin(), pair.impulse.end());
   sums.resize(order_.size());
   ranks.sum(std::span<core::ExactSum>(sums));
   std::vector<double> impulses;

@@ -1,5 +1,7 @@
 #include "io/output/status_file.hpp"
 
+#include <algorithm>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -17,13 +19,16 @@ constexpr int width = 24;
 /// The quantities that .sta lists for a body or a material.
 constexpr const char* group_columns[] = {"px", "py", "pz", "kinetic", "internal", "vx", "vy", "vz"};
 
+/// And for a rigid body in contact: its centre of mass and angular velocity.
+constexpr const char* rigid_columns[] = {"cx", "cy", "cz", "wx", "wy", "wz"};
+
 std::vector<ReactionColumns> all_reactions(const core::Model& model) {
   std::vector<ReactionColumns> columns;
   for (std::size_t r = 0; r < model.reactions.size(); ++r) columns.push_back({r});
   return columns;
 }
 
-std::string head_of(const core::Model& model, const Reactions& reactions) {
+std::string head_of(const core::Model& model, const Reactions& reactions, const ContactForces& forces) {
   std::string head = fmt::format("#{:>{}}", "step", width - 1);
   const auto add = [&](const std::string& name) { head += fmt::format(" {:>{}}", name, width); };
   for (const char* name :
@@ -43,6 +48,11 @@ std::string head_of(const core::Model& model, const Reactions& reactions) {
     add("contact_dissipation");
     add("friction_heat");
   }
+  const std::vector<std::string> body_names = distinct_names(bodies, "body");
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const char* column : rigid_columns)
+      if (model.bodies[b].rigid_state) add(fmt::format("{}[rigid:{}]", column, body_names[b]));
+  for (const std::string& column : forces.columns()) add(column);
   for (const std::string& column : reactions.names()) add(column);
   if (model.scene->output.statistics.memory) {
     add("memory_max");
@@ -75,11 +85,13 @@ double total_cells(const core::Model& model) {
 StatusFile::StatusFile(const std::string& path, const core::Model& model,
                        const std::optional<TableContinuation>& from, core::Reductions& ranks)
     : reactions_(all_reactions(model), model),
-      file_(path, to_text(provenance_of(*model.scene), "# ") + reactions_.legend(), {},
-            head_of(model, reactions_), from, ranks),
+      forces_(*model.scene),
+      file_(path, to_text(provenance_of(*model.scene), "# ") + reactions_.legend() + forces_.legend(), {},
+            head_of(model, reactions_, forces_), from, ranks),
       memory_(model.scene->output.statistics.memory),
       occupancy_(model.scene->output.statistics.cell_occupancy) {
   reactions_.begin(model, ranks);
+  forces_.begin(model, ranks);
 }
 
 void StatusFile::add(const core::Model& model, const core::Totals& totals, core::Reductions& ranks) {
@@ -104,6 +116,12 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
     add(totals.dissipated_by_contact);
     add(totals.friction_heat);
   }
+  for (const core::Body& body : model.bodies) {
+    if (!body.rigid_state) continue;
+    for (int a = 0; a < 3; ++a) add(body.rigid_state->centre[a]);
+    for (int a = 0; a < 3; ++a) add(body.rigid_state->spin[a]);
+  }
+  for (const double value : forces_.next(model, ranks)) add(value);
   for (const double value : reactions_.next(model, ranks)) add(value);
   if (memory_) {
     const MemoryUse use = peak_memory(ranks);
@@ -118,7 +136,8 @@ void StatusFile::add(const core::Model& model, const core::Totals& totals, core:
 
 std::string StatusFile::mark() const {
   std::string text = file_.mark().text();
-  for (const std::uint64_t word : reactions_.means().memory()) text += fmt::format(" {}", word);
+  for (const IntervalMeans* means : {&reactions_.means(), &forces_.means()})
+    for (const std::uint64_t word : means->memory()) text += fmt::format(" {}", word);
   return text;
 }
 
@@ -127,7 +146,12 @@ void StatusFile::recall(const std::string& mark) {
   if (TableMark of_table; !(words >> of_table)) return;
   std::vector<std::uint64_t> memory;
   for (std::uint64_t word = 0; words >> word;) memory.push_back(word);
-  reactions_.means().recall(memory);
+  std::span<const std::uint64_t> left = memory;
+  for (IntervalMeans* means : {&reactions_.means(), &forces_.means()}) {
+    const std::size_t size = std::min(means->memory().size(), left.size());
+    means->recall(left.first(size));
+    left = left.subspan(size);
+  }
 }
 
 }  // namespace mpm::io

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/step/totals.hpp"
+#include "io/output/contact_forces.hpp"
 #include "io/output/reactions.hpp"
 #include "io/output/table_file.hpp"
 
@@ -25,14 +26,16 @@ class StatusFile {
   std::int64_t rows_added() const { return rows_; }
   /// Syncs the rows to disk. Throws FileError. Collective.
   void sync(core::Reductions& ranks) { file_.sync(ranks); }
-  /// For restart files: the table's mark, then the memory of the reactions' means. The constructor takes the
-  /// first, recall() the second; without it, means begin at the state that the constructor had.
+  /// For restart files: the table's mark, then the memory of the means, first of the reactions. The
+  /// constructor takes the first, recall() the others; without these, means begin at the state that the
+  /// constructor had.
   std::string mark() const;
   void recall(const std::string& mark);
   const std::string& notice() const { return file_.notice(); }
 
  private:
   Reactions reactions_;
+  ContactForces forces_;
   TableFile file_;
   bool memory_;
   bool occupancy_;

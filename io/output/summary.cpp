@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/contact/contact_record.hpp"
 #include "core/version.hpp"
 #include "io/output/file.hpp"
 #include "io/output/provenance.hpp"
@@ -28,24 +29,50 @@ Json energy_json(const core::Model& model, const core::Totals& totals) {
           {"relative_drift", balance.relative_drift}};
 }
 
+/// What contact has done since time zero, in all and by pair of components.
+Json contact_json(const core::Scene& scene, const core::Totals& totals) {
+  const auto components = static_cast<std::int32_t>(core::component_count(scene));
+  const core::ContactPairs numbers(core::component_count(scene));
+  const auto name = [&](std::int32_t c) {
+    return c == core::failed_component(scene) ? std::string("failed particles")
+                                              : scene.components[static_cast<std::size_t>(c)].name;
+  };
+  Json pairs = Json::array();
+  for (std::int32_t b = 1; b < components; ++b) {
+    for (std::int32_t a = 0; a < b; ++a) {
+      const int number = numbers.number(a, b);
+      if (number < 0) continue;
+      const core::Totals::ContactPair& pair = totals.contact_pairs[static_cast<std::size_t>(number)];
+      pairs.push_back({{"components", {name(a), name(b)}},
+                       {"impulse", to_json(pair.impulse)},
+                       {"friction_heat", pair.friction_heat}});
+    }
+  }
+  return {{"dissipated", totals.dissipated_by_contact},
+          {"friction_heat", totals.friction_heat},
+          {"pairs", pairs}};
+}
+
 Json body_json(const core::Model& model, const core::Body& body, const core::BodyTotals& totals) {
   const core::Scene& scene = *model.scene;
-  return {{"name", body.name},
-          {"material", scene.materials[static_cast<std::size_t>(body.material)].name},
-          {"component", scene.components[static_cast<std::size_t>(body.component)].name},
-          {"particles", totals.particles},
-          {"active", totals.particles - totals.failed},
-          {"failed", totals.failed},
-          {"eroded", totals.eroded},
-          {"mass", totals.mass},
-          {"centre", to_json(totals.centre)},
-          {"velocity", to_json(totals.velocity)},
-          {"lower", to_json(totals.lower)},
-          {"upper", to_json(totals.upper)},
-          {"kinetic", totals.kinetic},
-          {"internal", totals.internal},
-          {"max_epef", totals.max_effective_plastic_strain},
-          {"max_temperature", totals.max_temperature}};
+  Json json{{"name", body.name},
+            {"material", scene.materials[static_cast<std::size_t>(body.material)].name},
+            {"component", scene.components[static_cast<std::size_t>(body.component)].name},
+            {"particles", totals.particles},
+            {"active", totals.particles - totals.failed},
+            {"failed", totals.failed},
+            {"eroded", totals.eroded},
+            {"mass", totals.mass},
+            {"centre", to_json(totals.centre)},
+            {"velocity", to_json(totals.velocity)},
+            {"lower", to_json(totals.lower)},
+            {"upper", to_json(totals.upper)},
+            {"kinetic", totals.kinetic},
+            {"internal", totals.internal},
+            {"max_epef", totals.max_effective_plastic_strain},
+            {"max_temperature", totals.max_temperature}};
+  if (body.rigid_state) json["angular_velocity"] = to_json(body.rigid_state->spin);
+  return json;
 }
 
 Json seconds_json(const RunReport& report) {
@@ -76,7 +103,7 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     bodies.push_back(body_json(model, model.bodies[b], totals.bodies[b]));
   }
-  const Json summary{
+  Json summary{
       {"job", scene.provenance.job_name},
       {"version", core::version},
       {"git", git_text()},
@@ -103,6 +130,7 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
         {"length", scene.header.length_unit},
         {"mass", scene.header.mass_unit}}},
   };
+  if (scene.contact.enable) summary["contact"] = contact_json(scene, totals);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -25,21 +25,30 @@ constexpr SumName sum_names[] = {{"external_work", &Ledger::external_work},
                                  {"removed_kinetic", &Ledger::removed_kinetic},
                                  {"removed_internal", &Ledger::removed_internal},
                                  {"internal_lead", &Ledger::internal_lead}};
-/// Only of scenes with contact; then its impulses follow.
-constexpr const char* contact_sums = "contact";
+/// Only of scenes with contact: dissipated energy, heat of friction that is not of a pair, and per pair
+/// impulse and heat of friction. In files of earlier versions all heat, and the impulses.
+constexpr const char *contact_sums = "contact_pairs", *earlier_contact_sums = "contact";
 
 std::vector<core::ExactSum> sums_of(const core::ContactRecord& contact) {
   if (contact.empty()) return {};
-  std::vector<core::ExactSum> sums{contact.dissipated, contact.friction_heat};
-  sums.insert(sums.end(), contact.impulses.begin(), contact.impulses.end());
+  std::vector<core::ExactSum> sums{contact.dissipated, contact.other_friction_heat};
+  for (const core::ContactRecord::Pair& pair : contact.pairs) {
+    sums.insert(sums.end(), pair.impulse.begin(), pair.impulse.end());
+    sums.push_back(pair.friction_heat);
+  }
   return sums;
 }
-core::ContactRecord contact_of(std::span<const core::ExactSum> sums) {
+constexpr std::size_t sums_of_pair = 4, earlier_sums_of_pair = 3;
+core::ContactRecord contact_of(std::span<const core::ExactSum> sums, std::size_t of_pair = sums_of_pair) {
   core::ContactRecord contact;
   if (sums.size() < 2) return contact;
   contact.dissipated = sums[0];
-  contact.friction_heat = sums[1];
-  contact.impulses.assign(sums.begin() + 2, sums.end());
+  contact.other_friction_heat = sums[1];
+  for (sums = sums.subspan(2); sums.size() >= of_pair; sums = sums.subspan(of_pair)) {
+    core::ContactRecord::Pair& pair = contact.pairs.emplace_back();
+    std::copy_n(sums.begin(), 3, pair.impulse.begin());
+    if (of_pair == sums_of_pair) pair.friction_heat = sums[3];
+  }
   return contact;
 }
 
@@ -119,7 +128,7 @@ Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::R
     counts.push_back(entry(ledger.body_left, b));
   }
   if (model.scene->contact.enable) {
-    ledger.contact.impulses.resize(3 * core::ContactPairs(core::component_count(*model.scene)).size());
+    ledger.contact.pairs.resize(core::ContactPairs(core::component_count(*model.scene)).size());
     for (const core::ExactSum& sum : sums_of(ledger.contact)) sums.push_back(sum);
   }
   const std::size_t of_ledger = sums.size();
@@ -201,9 +210,11 @@ Ledger read_ledger(hid_t file) {
     if (limbs.size() != raw.size()) throw FileError("an exact sum has the wrong number of limbs");
     std::copy(limbs.begin(), limbs.end(), raw.begin());
   }
-  if (hdf5::has_link(group, contact_sums)) {
+  if (hdf5::has_link(group, contact_sums))
     ledger.contact = contact_of(sums_from(hdf5::read_all_int64(group, contact_sums)));
-  }
+  else if (hdf5::has_link(group, earlier_contact_sums))
+    ledger.contact =
+        contact_of(sums_from(hdf5::read_all_int64(group, earlier_contact_sums)), earlier_sums_of_pair);
   for (const auto& [name, count] : count_names) {
     // Files of earlier versions do not have all of them.
     if (hdf5::has_attribute(group, name)) ledger.*count = hdf5::read_int64(group, name);
@@ -401,7 +412,7 @@ std::uint64_t expected_bytes(const RestartContents& c) {
   std::uint64_t bytes =
       262144 + c.extra.scene_text.size() + sizeof(TileRecord) * c.tiles.size() + 8 * c.extra.tracked.size();
   for (const auto& [name, mark] : c.extra.marks) bytes += 2048 + mark.size();
-  bytes += sizeof(core::ExactSum) * (2 + c.ledger.contact.impulses.size());
+  bytes += sizeof(core::ExactSum) * (2 + sums_of_pair * c.ledger.contact.pairs.size());
   for (const BodyRecord& b : c.bodies)
     bytes += 16384 + (b.reaction ? 2048 + sizeof(core::ReactionSums) : 0) +
              8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);

@@ -430,9 +430,10 @@ class Contact(_mpm.Case):
                 halfway = min(_mpm.restarts(self.folder / "whole"), key=lambda path: int(path.stem.rpartition("_")[2]))
                 again = self.run_in("again", [halfway])
                 self.assertEqual(again.state, state)
-                table, rest = (rows(self.folder / folder / "case_curv.dat") for folder in ("whole", "again"))
-                self.assertLess(len(rest), len(table))
-                self.assertEqual(rest, table[len(table) - len(rest):])
+                for file in ("case.sta", "case_curv.dat"):
+                    table, rest = (rows(self.folder / folder / file) for folder in ("whole", "again"))
+                    self.assertLess(len(rest), len(table))
+                    self.assertEqual(rest, table[len(table) - len(rest):])
                 time, force = self.forces("whole")
                 impulse = (force[1:] * np.diff(_cases.impulse_time(time))[:, None]).sum(axis=0)
                 change = np.array([status[f"p{a}[body:{second}]"][-1] - status[f"p{a}[body:{second}]"][0] for a in "xyz"])
@@ -441,6 +442,17 @@ class Contact(_mpm.Case):
                 self.assertLess(error, 1e-10)
                 self.assertGreater(np.count_nonzero(force[:, 0]), 20)
                 self.assertGreater(status["friction_heat"][-1], 0)
+                names = [f"contact_{a}[1,2]" for a in "xyz"]
+                means = np.array([status[name][1:] for name in names]).T
+                upto = np.interp(status["time"], time, _cases.impulse_time(time))  # .sta has some of the steps' rows
+                in_sta = (means * np.diff(upto)[:, None]).sum(axis=0)
+                [pair] = summary["contact"]["pairs"]
+                self.assertEqual(pair["components"], [body["component"] for body in summary["bodies"]])
+                for other in (in_sta, pair["impulse"]):
+                    self.assertLess(np.abs(other - change).max() / np.abs(change).max(), 1e-10)
+                for heat in (pair["friction_heat"], summary["contact"]["friction_heat"]):
+                    self.assertEqual(heat, status["friction_heat"][-1])
+                self.assertEqual(summary["contact"]["dissipated"], summary["energy"]["dissipated_by_contact"])
 
     def test_oblique_faces_in_flat_cells(self):
         """Two blocks whose faces stand at an angle to the axes collide without friction: the impulse is normal to the faces, whatever

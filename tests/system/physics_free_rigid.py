@@ -56,6 +56,13 @@ class FreeRigid(_mpm.Case):
         self.assertGreater(energy[0], 100)
         self.assertLess(np.ptp(energy), 2e-3 * energy[0])
         self.assertLess(abs(summary["energy"]["dissipated_by_contact"]), 2e-3 * energy[0])
+        body = summary["bodies"][1]
+        spin, centre = (np.array([status[f"{name}{a}[rigid:brick]"] for a in "xyz"]).T for name in "wc")
+        np.testing.assert_array_equal(spin[-1], body["angular_velocity"])
+        np.testing.assert_allclose(centre[-1], body["centre"], rtol=1e-9)
+        rotational = 0.5 * body["mass"] / 12 * np.array([3**2 + 4**2, 2**2 + 4**2, 2**2 + 3**2])  # about the brick's own axes
+        self.assertGreater(energy[-1], rotational.min() * spin[-1] @ spin[-1])
+        self.assertLess(energy[-1], rotational.max() * spin[-1] @ spin[-1])
 
     def test_on_a_fixed_body(self):
         """A brick falls on a fixed plate: contact is inelastic, the books close, and it lies still."""

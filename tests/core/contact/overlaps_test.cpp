@@ -37,6 +37,8 @@ TEST_CASE("Overlaps at the start: with their size, place and number of particles
   CHECK(words(0).empty());                             // the faces touch
   CHECK(words(0, 0.25).empty());                       // also with lattices that do not fit
   CHECK(words(-0.2).empty());                          // particles are 0.3 apart
+  CHECK(words(-3.75).size() == 1);                     // lattices shifted by half a spacing, on one axis ...
+  CHECK(words(-3.75, 0.25).size() == 1);               // ... and on two
   const std::vector<std::string> found = words(-0.3);  // 0.2, in two layers of 64
   REQUIRE(found.size() == 1);
   CHECK(found[0] ==
