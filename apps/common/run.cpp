@@ -286,6 +286,8 @@ class Run {
     report.output = communication_.reductions.spread(outputs_->seconds() + save_seconds_);
     for (const core::Phase& p : stepper_->phases())
       report.phases.emplace_back(p.name, communication_.reductions.spread(p.seconds));
+    for (const core::PartOfPhase& p : stepper_->parts())
+      report.parts.push_back({p.phase, p.name, communication_.reductions.spread(p.seconds)});
     report.particle_steps =
         communication_.reductions.spread(particle_steps_).mean * communication_.reductions.size();
     const core::Totals totals = core::compute_totals(model_, communication_);

@@ -72,6 +72,10 @@ ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communicatio
   contact_ = make_implicit_contact(model, rigid_.get(), unknowns_);
 }
 
+const char* ImplicitIntegrator::name_of_solution() const {
+  return input_.linearised() ? "linear system" : "Newton's method";
+}
+
 std::vector<Phase> ImplicitIntegrator::phases() {
   std::vector<Phase> step;
   if (cells_) {
@@ -79,7 +83,7 @@ std::vector<Phase> ImplicitIntegrator::phases() {
     step.push_back({"exchange cells", [this] { cells_->finish_exchange(); }});
   }
   step.push_back({"particles to grid", [this] { prepare(); }});
-  step.push_back({input_.linearised() ? "linear system" : "Newton's method", [this] { solve(); }});
+  step.push_back({name_of_solution(), [this] { solve(); }});
   step.push_back({"grid to particles", [this] { move(); }});
   return step;
 }
@@ -374,13 +378,17 @@ void ImplicitIntegrator::solve() {
 
 std::string ImplicitIntegrator::words_of_run() const {
   if (solves_ == 0) return {};
-  return fmt::format(
-      "{}; {} Newton iterations and {} linear ones in {} solutions, {} of them rejected; seconds of Newton's "
-      "method on this rank: matrix structure {:.2f}, residuals {:.2f}, Jacobians {:.2f}, preconditioner or "
-      "factors {:.2f}, linear systems {:.2f}",
-      solver_.description(), total_.iterations, total_.linear_iterations, solves_, cuts_,
-      total_.structure_seconds, total_.residual_seconds, total_.jacobian_seconds, total_.setup_seconds,
-      total_.linear_seconds);
+  return fmt::format("{}; {} Newton iterations and {} linear ones in {} solutions, {} of them rejected",
+                     solver_.description(), total_.iterations, total_.linear_iterations, solves_, cuts_);
+}
+
+std::vector<PartOfPhase> ImplicitIntegrator::parts() const {
+  const std::string phase = name_of_solution();
+  return {{phase, "structure of the matrix", total_.structure_seconds},
+          {phase, "residuals", total_.residual_seconds},
+          {phase, "Jacobians", total_.jacobian_seconds},
+          {phase, "preconditioner or factors", total_.setup_seconds},
+          {phase, "linear systems", total_.linear_seconds}};
 }
 
 /// " of bodies a, b": those with particles within a cell and a half of a place. Collective.

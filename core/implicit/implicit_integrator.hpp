@@ -42,8 +42,12 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::vector<std::vector<DepartingParticle>>& departing() override { return passes_->departing(); }
   std::string words_of_step() const override { return words_; }
   std::string words_of_run() const override;
+  std::vector<PartOfPhase> parts() const override;
 
  private:
+  /// Of its phase.
+  const char* name_of_solution() const;
+
   /// State of an own node in the step; vectors of three.
   struct NodeState {
     double mass;

@@ -23,6 +23,12 @@ struct Phase {
   double seconds = 0;  ///< wall-clock time of this rank since the run began
 };
 
+/// Where the time of a phase goes.
+struct PartOfPhase {
+  std::string phase, name;
+  double seconds = 0;
+};
+
 /// A particle that leaves its brick or its component.
 struct DepartingParticle {
   int tile = 0;
@@ -64,6 +70,8 @@ class Integrator {
   virtual StepStatistics take_statistics() = 0;
   /// The particles of each brick that have left it or been eroded in the step just completed, by slot.
   virtual std::vector<std::vector<DepartingParticle>>& departing() = 0;
+  /// In the order of the time table, where an integrator knows more than its phases tell.
+  virtual std::vector<PartOfPhase> parts() const { return {}; }
   /// What the log says of the step; empty where there is nothing beyond the time table.
   virtual std::string words_of_step() const { return {}; }
   /// And at the end of the run.

@@ -38,6 +38,8 @@ class Stepper {
   /// What the integrator has to say of the last step, for the log; empty for explicit steps.
   std::string words_of_step() const { return integrator_->words_of_step(); }
   std::string words_of_run() const { return integrator_->words_of_run(); }
+  /// Of the phases.
+  std::vector<PartOfPhase> parts() const { return integrator_->parts(); }
 
   /// Requests that the run stops; any rank may, at any time.
   void request_stop() { stop_requested_ = true; }

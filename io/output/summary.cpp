@@ -145,6 +145,7 @@ void write_summary(const std::string& path, const core::Model& model, const core
 std::string timing_table(const RunReport& report) {
   std::size_t widest = 5;
   for (const auto& [name, spread] : report.phases) widest = std::max(widest, name.size());
+  for (const RunReport::Part& part : report.parts) widest = std::max(widest, part.name.size() + 2);
   std::string text = fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>8} {:>10}\n", "phase", widest, "min s",
                                  "mean s", "max s", "share", "imbalance");
   const auto add = [&](const std::string& name, const core::Spread& s) {
@@ -157,6 +158,8 @@ std::string timing_table(const RunReport& report) {
   for (const auto& [name, spread] : report.phases) {
     add(name, spread);
     rest -= spread.mean;
+    for (const RunReport::Part& part : report.parts)
+      if (part.phase == name) add("  " + part.name, part.seconds);
   }
   add("output", report.output);
   text += fmt::format("{:<{}} {:>10} {:>10.3f} {:>10} {:>7.1f}%\n", "other", widest, "", rest, "",

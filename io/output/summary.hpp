@@ -23,6 +23,12 @@ struct RunReport {
   core::Spread output;  ///< seconds of tables, pictures and restart files, over the ranks
   /// Per phase of the step, in its order: seconds over the ranks.
   std::vector<std::pair<std::string, core::Spread>> phases;
+  /// Parts of the phases: phase, name, seconds over the ranks.
+  struct Part {
+    std::string phase, name;
+    core::Spread seconds;
+  };
+  std::vector<Part> parts;
   /// Sum over the steps of this run of the particles in each.
   double particle_steps = 0;
 };
@@ -35,8 +41,8 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
 void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,
                    const RunReport& report, core::Reductions& ranks);
 
-/// Seconds per phase over the ranks, shares of the loop and imbalance (max over mean, less one), one line
-/// each.
+/// Seconds per phase and part of a phase over the ranks, shares of the loop and imbalance (max over mean,
+/// less one), one line each.
 std::string timing_table(const RunReport& report);
 
 }  // namespace mpm::io

@@ -19,6 +19,36 @@ LAWS = {"DruckerPrager": f'type="DruckerPrager" qfai="0" kfai="{COHESION}" qpsi=
         "ElaPlastic": f'type="ElaPlastic" Yield0="{3**0.5 * COHESION!r}" bq1="0" bq2="0"'}
 
 
+def pressed(shape, h, soil, speed, strength, solution, held=False, rough=False):
+    """The input of soil of this width and depth under the footing."""
+    width, depth = soil
+    body = scenes.block("soil", (0, 0, 0), (width, h, depth), h / 2)
+    footing = scenes.block("footing", (0, 0, depth), (HALF - h / 2 if held else HALF, h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
+    parts = (scenes.grid(shape, (0, 0, 0), (width, h, depth + 4 * h), "222210", h), solution,
+             [scenes.material("solid", 1.0, strength), scenes.rigid()])
+    if held:
+        return scenes.scene([body, footing], *parts)
+    friction = f'<Friction><Coefficient mat1="solid" mat2="rigid" value="{FRICTION}"/></Friction>' if rough else ""
+    return scenes.two_components([body], [footing], *parts, more='<Contact enable="1"/>' + friction)
+
+
+def against(limit, h, rows, averaged=1):
+    """The measured loads, of a status file, over the limit load per width; `averaged`: over so many rows."""
+    force = np.abs(next(rows[name] for name in ("fz[contact:footing]", "fz[drive:footing]") if name in rows))
+    loads = np.convolve(force, np.ones(averaged) / averaged, "valid") / (h * HALF * limit)
+    return {"load": loads.max() - 1, "last": loads[-1] - 1, "growth": loads[-1] / loads[3 * len(loads) // 4 - 1] - 1}
+
+
+def loads_table(rows, labels, measured):
+    """A line for each run."""
+    lines = [[*(f"{r[n]:g}" if isinstance(r[n], float) else r[n] for n in labels), *(study.shown(r, n, ".2f", 100) for n in measured),
+              *("–" if r[name] == "" else f"{r[name]:g}" for name in ("steps", "newton", "cuts")), f"{r['seconds']:.2g}"]
+             for r in rows if study.done(r)]
+    text = study.table([*labels, *(f"{n}, %" for n in measured), "steps", "Newton iterations", "cuts", "seconds"], lines)
+    failed = study.failures(rows)
+    return text + (f"\n\nNot done:\n\n{failed}" if failed else "")
+
+
 class Footing(study.Study):
     name = "footing"
     title = "Strip footing"
@@ -65,24 +95,11 @@ moves at the stated part of the speed of waves, {WAVE:.1f}."""
         speed = PRESSED if is_implicit else float(by.split()[1]) * WAVE
         end = PRESSED / speed
         solution = scenes.implicit(end, end / STEPS) if is_implicit else scenes.explicit(end)
-        soil = scenes.block("soil", (0, 0, 0), (WIDTH, h, DEPTH), h / 2)
-        footing = scenes.block("footing", (0, 0, DEPTH), (HALF - h / 2 if is_held else HALF, h, 2 * h), h / 2, "rigid", scenes.moved(vz=-speed))
         strength = f'{LAWS[law]} Young="{YOUNG}" Poisson="{POISSON}"'
-        parts = (scenes.grid(shape, (0, 0, 0), (WIDTH, h, DEPTH + 4 * h), "222210", h), solution,
-                 [scenes.material("solid", 1.0, strength), scenes.rigid()])
-        rough = f'<Friction><Coefficient mat1="solid" mat2="rigid" value="{FRICTION}"/></Friction>' if by.endswith("rough") else ""
-        if is_held:
-            text = scenes.scene([soil, footing], *parts)
-        else:
-            text = scenes.two_components([soil], [footing], *parts, more='<Contact enable="1"/>' + rough)
+        text = pressed(shape, h, (WIDTH, DEPTH), speed, strength, solution, held=is_held, rough=by.endswith("rough"))
 
         def measure(result):
-            rows = result.energies
-            force = np.abs(next(rows[name] for name in ("fz[contact:footing]", "fz[drive:footing]") if name in rows))
-            if not is_implicit:  # of single steps
-                force = np.convolve(force, np.ones(AVERAGED) / AVERAGED, "valid")
-            loads = force / (h * HALF * PRANDTL)
-            return {"load": loads.max() - 1, "last": loads[-1] - 1, "growth": loads[-1] / loads[3 * len(loads) // 4 - 1] - 1}
+            return against(PRANDTL, h, result.energies, 1 if is_implicit else AVERAGED)
 
         return Run({"steps by": by, "law": law, "shape": shape, "cells": cells}, text, measure, quick)
 
@@ -90,13 +107,8 @@ moves at the stated part of the speed of waves, {WAVE:.1f}."""
         kinds = [[r for r in rows if (r["steps by"] == "implicit, held") == is_held] for is_held in (True, False)]
         text = ["*last*, per cent, over the cells along the half width"]
         text += [study.convergence(mine, "last", "cells", ("steps by", "law", "shape"), ".2f", 100) for mine in kinds if mine]
-        lines = [[r["steps by"], r["law"], r["shape"], f"{r['cells']:g}", *(study.shown(r, n, ".2f", 100) for n in self.measured),
-                  *("–" if r[name] == "" else f"{r[name]:g}" for name in ("steps", "newton", "cuts")), f"{r['seconds']:.2g}"]
-                 for r in rows if study.done(r)]
-        heads = ["steps by", "law", "shape", "cells", *(f"{n}, %" for n in self.measured), "steps", "Newton iterations", "cuts", "seconds"]
-        text.append(study.table(heads, lines))
-        failed = study.failures(rows)
-        return "\n\n".join(text) + (f"\n\nNot done:\n\n{failed}" if failed else "")
+        text.append(loads_table(rows, self.labels, self.measured))
+        return "\n\n".join(text)
 
 
 STUDY = Footing()

@@ -28,6 +28,7 @@ io::RunReport report() {
   r.seconds_loop = 10;
   r.output = {0.5, 1, 1};
   r.phases = {{"particles to grid", {1, 2, 3}}, {"migrate", {4, 4, 4}}};
+  r.parts = {{"migrate", "sending", {1, 1, 1}}};
   r.particle_steps = 601e3;
   return r;
 }
@@ -106,6 +107,9 @@ TEST_CASE("The timing table names every phase, the rest and the loop") {
              Catch::Contains("particles to grid      1.000      2.000      3.000    20.0%      50.0%"));
   CHECK_THAT(table,
              Catch::Contains("output                 0.500      1.000      1.000    10.0%       0.0%"));
+  CHECK_THAT(table,
+             Catch::Contains("migrate                4.000      4.000      4.000    40.0%       0.0%\n"
+                             "  sending              1.000      1.000      1.000    10.0%       0.0%\n"));
   CHECK_THAT(table, Catch::Contains("other                             3.000               30.0%"));
   CHECK_THAT(table, Catch::Contains("loop                             10.000"));
 }

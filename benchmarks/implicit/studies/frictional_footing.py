@@ -1,0 +1,47 @@
+"""A strip footing on weightless soil with cohesion and friction: the limit load of Prandtl and Reissner."""
+
+import numpy as np
+
+import scenes
+import study
+from run_one import Run
+from studies.footing import HALF, against, loads_table, pressed
+
+WIDTH, DEPTH = 8.0, 4.0  # the mechanism is 6.1 wide and 2.3 deep
+COHESION, ANGLE, YOUNG, POISSON = 1.0, 20.0, 2000.0, 0.3
+TANGENT = np.tan(np.radians(ANGLE))
+SURCHARGE = np.exp(np.pi * TANGENT) * np.tan(np.radians(45 + ANGLE / 2)) ** 2  # Reissner's N_q
+LIMIT = COHESION * (SURCHARGE - 1) / TANGENT  # Prandtl's c N_c
+PRESSED, STEPS = 0.1, 40
+APEX = 0.999 * COHESION / TANGENT  # largest mean tension
+
+
+class FrictionalFooting(study.Study):
+    name = "frictional_footing"
+    title = "Strip footing on soil with friction"
+    about = f"""Half of a rough strip of half width {HALF:g} on weightless soil, {WIDTH:g} wide and {DEPTH:g} deep, in plane strain: DruckerPrager
+with cohesion {COHESION:g}, friction and dilation of {ANGLE:g} degrees and the cone inscribed in Mohr and Coulomb's pyramid (`match="3"`), with which
+the limit theorems give the load of Prandtl and Reissner exactly, (N_q - 1) c cot phi = {LIMIT:.2f} over the width, N_q = exp(pi tan phi)
+tan^2(45 deg + phi/2) (E = {YOUNG:g}, Poisson's ratio {POISSON:g}). The body is in contact, as [above](#strip-footing), and is pressed by {PRESSED:g} in
+{STEPS} load steps; while it sinks the soil heaves beside it, and the load goes on growing. *load*: the largest over the limit load, less 1; *last*: at the
+end; *growth*: over the last quarter, relative."""
+    labels = ("shape", "cells")
+    measured = ("load", "last", "growth")
+
+    def runs(self):
+        return [self.one(shape, cells) for shape in ("SGMP", "QuadraticBSpline") for cells in (2, 3, 4, 6)]
+
+    @staticmethod
+    def one(shape, cells):
+        h = HALF / cells
+        strength = (f'type="DruckerPrager" phi="{ANGLE:g}" c="{COHESION:g}" psi="{ANGLE:g}" match="3" ten_f="{APEX!r}" '
+                    f'Young="{YOUNG}" Poisson="{POISSON}"')
+        text = pressed(shape, h, (WIDTH, DEPTH), PRESSED, strength, scenes.implicit(1.0, 1 / STEPS), rough=True)
+        return Run({"shape": shape, "cells": cells}, text, lambda result: against(LIMIT, h, result.energies), False)
+
+    def block(self, rows):
+        return "\n\n".join(("*last*, per cent, over the cells along the half width",
+                            study.convergence(rows, "last", "cells", ("shape",), ".2f", 100), loads_table(rows, self.labels, self.measured)))
+
+
+STUDY = FrictionalFooting()
