@@ -34,11 +34,13 @@ class UserInputs(_mpm.Case):
         self.assertLess(abs(row["largest"]), 0.001)
 
     def test_sand_stays_on_the_ground_with_usl(self):
-        """The first 2 % of the time. A column whose feet USL drives out of their cells is thrown into the air."""
-        row, folder = self.measure("sand_column", scheme="USL", share=0.02)
+        """The first 8 % of the time. With a longer step than today's USL threw the column into the air within 1 % of the time, with a
+        drift of 113 %."""
+        row, folder = self.measure("sand_column", scheme="USL", share=0.08)
         self.assertLess(abs(row["largest"]), 0.01)
         states = _cases.States(folder)
-        self.assertLessEqual(np.max(states.column("z") - states.column("z", 0)), 1e-4)  # of a cell of 0.025
+        for picture in range(1, len(states.times)):
+            self.assertLess(np.max(states.column("z", picture) - states.column("z", 0)), 1e-4)  # of a cell of 0.025
 
 
 if __name__ == "__main__":
