@@ -208,7 +208,7 @@ def name_of_transfer(row):
 def of_transfers(rows):
     """Shapes and schemes in rows, transfers in columns: what the fluid bears, and the program's limit."""
     by_method = {}
-    for row in rows:
+    for row in sorted(rows, key=lambda row: methods.shapes().index(row["shape"])):
         by_method.setdefault((row["shape"], row["scheme"]), {})[name_of_transfer(row)] = row
 
     def of(transfer):

@@ -65,7 +65,7 @@ COLUMNS = {"input": (lambda r: f"[{r['input']}](../benchmarks/stability/inputs/{
            "shape": (lambda r: f"`{r['shape']}`", ""), "scheme": (lambda r: r["scheme"], ""),
            "of its time, %": (lambda r: 100 * r["share"], "g"), "exit code": (lambda r: r["code"], "g"),
            "steps": (lambda r: r["steps"], ".0f"), "largest drift, %": (lambda r: 100 * r["largest"], "+.2g"),
-           "drift at the end, %": (lambda r: 100 * r["last"], "+.2g")}
+           "drift at the end, %": (lambda r: r["last"] and 100 * r["last"], "+.2g")}
 
 
 def tables(rows):
