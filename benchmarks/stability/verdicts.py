@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """Scenes that strain a material point method, and a verdict on each: which end, how much energy, how fast.
 
-  verdicts.py                      every scene with every method; a few minutes on one core
+  verdicts.py                      every scene with three shapes and every scheme; a few minutes on one core
   verdicts.py --scene NAME ...     these scenes; --shape, --scheme, --averaging choose methods alike
   verdicts.py --fracture           the stretch at which each shape tears a bar
-  verdicts.py --docs               everything, and the tables of docs/stability.md
+  verdicts.py --course             the error of the energy of a vibrating block in eighths of 16 units of time
+  verdicts.py --docs               with any of these: also its table of docs/stability.md. Verdicts and the block's are kept in
+                                   docs/stability/verdicts.csv and course.csv, where those that were not asked for stay
+  verdicts.py --tables             the tables of these two from the files, without a run
 
 stable: the run completes, its energy balance is within 1 % in the mean of the last quarter of the rows of the status file,
 and no particle is faster at the end than the scene's bound. drift: it completes, but the balance is not, or a particle is too fast. stopped: exit code 3 with a message that says what failed, at
@@ -13,6 +16,7 @@ where the scene says nothing else."""
 
 import argparse
 import dataclasses
+import functools
 import pathlib
 import sys
 import tempfile
@@ -25,7 +29,8 @@ import _mpm  # noqa: E402
 import bits_laws  # noqa: E402
 import numpy as np  # noqa: E402
 
-PAGE = results.ROOT / "docs/stability.md"
+PAGE, TABLE = results.ROOT / "docs/stability.md", results.ROOT / "docs/stability/verdicts.csv"
+COURSE_TABLE = results.ROOT / "docs/stability/course.csv"
 SHAPES, AVERAGING = ("linear", "SGMP", "QuadraticBSpline"), ("none", "cell")
 WITHIN = 0.01  # of the energy
 JWL = '<EquationOfState type="JWL" A="371.2e3" B="3.23e3" R1="4.15" R2="0.95" w="0.3" E0="7e3"/>'
@@ -59,11 +64,11 @@ def collision(about, first, second, end, fastest):
     return Scene(about, _mpm.scene(bodies, box((14, 9, 9)), solution(end), [first, second]), fastest)
 
 
-def wave(about, material, end, dp=0.5, cell=1, factor=0.9, fastest=3.0):
+def wave(about, material, end, dp=0.5, cell=1, factor=0.9, fastest=3.0, room=12):
     """A block that vibrates in its longest mode while it drifts across cells."""
     speed = [f"{drift}+0.5*cos(pi*({axis}-{low})/6)" for drift, axis, low in zip((0.4, 0.3, 0.2), "xyz", (2.1, 2.2, 2.3))]
     body = _mpm.block("block", (2.1, 2.2, 2.3), (6, 6, 6), speed, dp, "soft")
-    return Scene(about, _mpm.scene([body], box((12, 12, 12), cell), solution(end, factor=factor), [material]), fastest)
+    return Scene(about, _mpm.scene([body], box((room,) * 3, cell), solution(end, factor=factor), [material]), fastest)
 
 
 def narrow_cells():
@@ -228,40 +233,124 @@ FRACTURE_COLUMNS = {"shape": (lambda r: f"`{r['shape']}`", ""),
                     "torn at": (lambda r: f"{r['stretch']:.2f}" if np.isfinite(r["stretch"]) else f"not up to {LONGEST}", "")}
 
 
-COLUMNS = {"scene": (lambda r: SCENES[r["scene"]].about, ""), "shape": (lambda r: f"`{r['shape']}`", ""),
-           "scheme": (lambda r: r["scheme"], ""), "averaging": (lambda r: r["averaging"], ""),
-           "verdict": (lambda r: r["verdict"], ""), "energy drift, %": (lambda r: r["drift"] and 100 * r["drift"], "+.2g"),
-           "speed": (lambda r: r["speed"], ".3g"), "bound": (lambda r: SCENES[r["scene"]].fastest, "g"),
-           "steps": (lambda r: r["steps"], "")}
+def course(shape, scheme, dp, folder, factor=0.9):
+    """The error of the energy balance of a block that vibrates while it drifts, in the mean of each eighth of 16 units of time, some
+    45 periods, and the kinetic energy of its vibration in the second eighth over that at the start; a row of the table."""
+    text = wave("", SOFT, 16.0, dp=dp, factor=factor, room=18).text.replace("<Grid>", f'<Grid shape="{shape}">')
+    (folder / "case.xmp").write_text(text.replace('algorithm="MUSL"', f'algorithm="{scheme}"'))
+    done = _mpm.run([folder / "case.xmp", "--output-dir", folder])
+    if done.code != 0:
+        raise SystemExit(f"course, {shape}: {done}")
+    rows = {name: np.array(values) for name, values in _mpm.table(folder / "case.sta").items()}
+    eighths = np.minimum(rows["time"] // 2, 7)
+    carried = sum(rows[f"p{axis}"] ** 2 for axis in "xyz") / (2 * 6**3)  # by the mass centre
+    vibration = (rows["kinetic"] - carried) / (rows["kinetic"] - carried)[0]
+    return {"shape": shape, "scheme": scheme, "particles": round(1 / dp**3), "steps": _mpm.summary(folder)["steps"],
+            "vibration": float(np.mean(vibration[eighths == 1])),
+            **{f"{i + 1}/8": float(np.mean(rows["relative_drift"][eighths == i])) for i in range(8)}}
+
+
+COURSE_SHAPES = ("linear", "SGMP", "QuadraticBSpline", "CubicBSpline")
+COURSES = [*((shape, scheme, 0.5) for scheme in ("MUSL", "USF", "USL") for shape in COURSE_SHAPES),
+           *(("linear", scheme, 1.0) for scheme in ("MUSL", "USF", "USL"))]
+EIGHTHS = [f"{i}/8" for i in range(1, 9)]
+COURSE_COLUMNS = {"shape": (lambda r: f"`{r['shape']}`", ""), "scheme": (lambda r: r["scheme"], ""),
+                  "particles in a cell": (lambda r: r["particles"], "g"), "steps": (lambda r: r["steps"], ".0f"),
+                  "vibration, %": (lambda r: 100 * r["vibration"], ".2g"),
+                  **{name: (lambda r, name=name: 100 * r[name], "+.2g") for name in EIGHTHS}}
+
+KEYS, COURSE_KEYS = ("scene", "shape", "scheme", "averaging"), ("particles", "scheme", "shape")
+
+
+def on_file(path):
+    return results.read(path)[1] if path.exists() else []
+
+
+def merged(old, new):
+    """The rows on file with these in the place of the same ones, in the order of the scenes and the program's lists."""
+    rows = {tuple(row[key] for key in KEYS): row for row in [*old, *new]}
+    lists = list(SCENES), methods.shapes(), methods.schemes(), AVERAGING
+    return [rows[key] for key in sorted(rows, key=lambda key: [names.index(word) for names, word in zip(lists, key)])]
+
+
+def merged_courses(old, new):
+    """Alike, in the order of COURSES."""
+    rows = {tuple(row[key] for key in COURSE_KEYS): row for row in [*old, *new]}
+    order = [(round(1 / dp**3), scheme, shape) for shape, scheme, dp in COURSES]
+    return [rows[key] for key in order if key in rows]
+
+
+def words(row):
+    """Verdict and drift in one cell."""
+    if row is None:
+        return None
+    drift = "" if row["drift"] == "" else f" {100 * row['drift']:+.2g}"
+    fast = ", too fast" if row["speed"] != "" and row["speed"] > SCENES[row["scene"]].fastest else ""
+    verdict = row["verdict"] if row["verdict"] == "stable" else f"**{row['verdict']}**"
+    return verdict + drift + fast
+
+
+def table(rows):
+    """Scenes and shapes in rows, schemes in columns."""
+    by_method = {}
+    for row in rows:
+        if row["averaging"] == "none":
+            by_method.setdefault((row["scene"], row["shape"]), {})[row["scheme"]] = row
+    columns = {"scene": (lambda m: SCENES[m[0][0]].about, ""), "shape": (lambda m: f"`{m[0][1]}`", ""),
+               **{scheme: (lambda m, scheme=scheme: words(m[1].get(scheme)), "") for scheme in methods.schemes()}}
+    return results.markdown(list(by_method.items()), columns)
+
+
+def tables():
+    """The blocks of the page that files keep."""
+    return {"verdicts": table(on_file(TABLE)), "course": results.markdown(on_file(COURSE_TABLE), COURSE_COLUMNS)}
+
+
+def measured(points, function):
+    """Rows of the points, each in a folder of its own; printed as they come."""
+    for point in points:
+        with tempfile.TemporaryDirectory() as folder:
+            row = function(*point, pathlib.Path(folder))
+        print(", ".join(f"{v:.3g}" if isinstance(v, float) else str(v) for v in row.values()), flush=True)
+        yield row
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
-    parser.add_argument("--shape", nargs="+", choices=methods.shapes(), default=SHAPES)
-    parser.add_argument("--scheme", nargs="+", choices=methods.schemes(), default=("MUSL",))
+    parser.add_argument("--shape", nargs="+", choices=methods.shapes())
+    parser.add_argument("--scheme", nargs="+", choices=methods.schemes(), default=methods.schemes())
     parser.add_argument("--averaging", nargs="+", choices=AVERAGING, default=("none",))
-    parser.add_argument("--fracture", action="store_true", help="only the stretch at which each of the shapes tears a bar")
-    parser.add_argument("--docs", action="store_true", help="refresh the tables of docs/stability.md; fracture with every shape")
+    parser.add_argument("--fracture", action="store_true", help="the stretch at which each of the shapes tears a bar instead")
+    parser.add_argument("--course", action="store_true", help="the energy of a vibrating block over 16 units of time instead")
+    parser.add_argument("--factor", type=float, default=0.9, help="of the critical step, with --course and without --docs")
+    parser.add_argument("--docs", action="store_true", help="write the table of docs/stability.md, and docs/stability/verdicts.csv")
+    parser.add_argument("--tables", action="store_true", help="write the tables of verdicts and of the block from the files")
     options = parser.parse_args()
-    torn_at = []
-    if options.fracture or options.docs:
-        for shape in methods.shapes() if options.docs else options.shape:
-            with tempfile.TemporaryDirectory() as folder:
-                torn_at.append({"shape": shape, "stretch": fracture(shape, pathlib.Path(folder))})
-            print(f"{shape}, torn at {torn_at[-1]['stretch']:.3g}", flush=True)
-    if options.fracture and not options.docs:
+    if options.docs and options.factor != 0.9:
+        parser.error("--docs: the table is that of a factor of 0.9")
+    if options.tables:
+        return results.refresh(PAGE, tables())
+    if options.fracture:
+        shapes = [(shape,) for shape in options.shape or methods.shapes()]
+        rows = list(measured(shapes, lambda shape, folder: {"shape": shape, "stretch": fracture(shape, folder)}))
+        if options.docs:
+            results.refresh(PAGE, {"fracture": results.markdown(rows, FRACTURE_COLUMNS)})
         return
+    if options.course:
+        points = [c for c in COURSES if c[0] in (options.shape or COURSE_SHAPES) and c[1] in options.scheme]
+        function, path, join = functools.partial(course, factor=options.factor), COURSE_TABLE, merged_courses
+    else:
+        points = [(name, shape, scheme, averaging) for name in options.scene for shape in options.shape or SHAPES
+                  for scheme in options.scheme for averaging in options.averaging]
+        function, path, join = judge, TABLE, merged
     rows = []
-    for name in options.scene:
-        for shape in options.shape:
-            for scheme in options.scheme:
-                for averaging in options.averaging:
-                    with tempfile.TemporaryDirectory() as folder:
-                        rows.append(judge(name, shape, scheme, averaging, pathlib.Path(folder)))
-                    print(", ".join(f"{v:.3g}" if isinstance(v, float) else str(v) for v in rows[-1].values()), flush=True)
+    for row in measured(points, function):
+        rows.append(row)
+        if options.docs:
+            results.write(path, join(on_file(path), rows))
     if options.docs:
-        results.refresh(PAGE, {"verdicts": results.markdown(rows, COLUMNS), "fracture": results.markdown(torn_at, FRACTURE_COLUMNS)})
+        results.refresh(PAGE, tables())
 
 
 if __name__ == "__main__":
