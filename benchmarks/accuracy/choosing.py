@@ -26,12 +26,13 @@ class Use:
     averaging: tuple = ()
     particles: tuple = ()
     factor: tuple = ()  # (case, study over the factor, error)
+    least: float = 0.0  # difference of errors that means something: a reference has an error of its own
 
 
 USES = {
     "impact": Use("impact, penetration",
                   (("taylor_bar", "cells", "mean"), ("colliding_discs", "cells", "loss"), ("plane_shock", "cells", "energy")),
-                  ("taylor_bar", "cells", "averaged", "mean"), ("taylor_bar", "cells", "particles", "mean"), ("taylor_bar", "time", "mean")),
+                  ("taylor_bar", "cells", "averaged", "mean"), ("taylor_bar", "cells", "particles", "mean"), ("taylor_bar", "time", "mean"), least=0.005),
     "blast": Use("blast, gases, explosives",
                  (("detonation", "two particles", "pressure"), ("riemann", "sod", "density"), ("riemann", "ratio 10", "density"),
                   ("sedov", "cells", "density")),
@@ -160,9 +161,8 @@ class Compared:
     varied: float
     where: str
 
-    @property
-    def gains(self):
-        return self.varied * SIGNIFICANT < self.plain
+    def gains(self, least):
+        return self.varied * SIGNIFICANT < self.plain and self.plain - self.varied > least
 
 
 def candidates(rows_of, use):
@@ -224,7 +224,13 @@ def heading_of(cases, measure):
 def cell_of(cases, measure, value):
     """The error in the units of its heading, which say what it is."""
     spec = cases[measure[0]].errors[measure[-1]]
-    return f"{spec.factor * value:.2g}{' %' if spec.factor == 100 else ''}"
+    shown = spec.factor * value
+    return f"{shown:{'.0f' if shown >= 100 else '.2g'}}{' %' if spec.factor == 100 else ''}"
+
+
+def numbers_of(cases, measure, of):
+    plain, varied = (cell_of(cases, measure, value) for value in (of.plain, of.varied))
+    return f"{of.where} with {written(of.method)}: {plain} without, {varied} with"
 
 
 def choice(cases, rows_of, use):
@@ -239,10 +245,14 @@ def choice(cases, rows_of, use):
         if of is None:
             evidence.append(f"**{words}** were not measured here: the default stays")
             continue
-        found[name] = values[of.gains]
+        gains = of.gains(u.least)
+        found[name] = values[gains]
+        little = 0 < of.plain - of.varied < u.least
+        verdict = "gain" if gains else f"gain less than the {100 * u.least:g} % that mean something" if little else "do not gain"
         title, error = cases[measure[0]].title, heading_of(cases, measure)
-        evidence.append(f"**{words}** {'gain' if of.gains else 'do not gain'}: {title}, {error} {of.where} with {written(of.method)}: "
-                        f"{cell_of(cases, measure, of.plain)} without, {cell_of(cases, measure, of.varied)} with")
+        line = f"**{words}** {verdict}: {title}, {error} {numbers_of(cases, measure, of)}"
+        default = compared(rows_of, [BASE], measure)
+        evidence.append(f"{line}; {numbers_of(cases, measure, default)}" if default and of.method != BASE else line)
     method, by_factor = factors(rows_of, leaders, u.factor) if u.factor else (None, {})
     if by_factor:
         best = longest(by_factor)

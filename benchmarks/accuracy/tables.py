@@ -233,11 +233,17 @@ def pressure_block(rows_of):
     """What runs with little scatter of the pressure cost: energy, and what else is off."""
     lines = []
     for name, (case, study) in PRESSURE.items():
-        low = [(m, r) for m, r in finest_done(rows_of.get(case, []), study).items() if value(r, "scatter") < LOW_SCATTER]
+        done = finest_done(rows_of.get(case, []), study)
+        if not done:
+            continue
+        low = [(m, r) for m, r in done.items() if value(r, "scatter") < LOW_SCATTER]
         low.sort(key=lambda pair: abs(pair[1]["drift"]))
         lines += [{"case": name, "method": str(m), "of": f"{len(low)}" if i == 0 else "", **r} for i, (m, r) in enumerate(low[:LEAST_DRIFTS])]
         if not low:
             lines.append({"case": name, "method": "–", "of": "0"})
+
+    if not lines:
+        return "Not measured."
 
     def part(column, how, factor=1):
         return (lambda r: factor * r[column] if is_number(r.get(column)) else None, how)
