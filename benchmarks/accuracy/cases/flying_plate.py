@@ -14,7 +14,7 @@ from cases import rest, support
 CHARGE, PLATE = 50.0, 9.0
 LATE = 3  # of the last pictures
 PICTURES = 12
-FINE = {"fine": (75, 100), "fine_methods": tuple(methods.flip())}  # the plate of 9 mm is whole particles thick with multiples of 25
+FINE = {"fine": (75, 100), "fine_methods": tuple(methods.leading())}  # the plate of 9 mm is whole particles thick with multiples of 25
 
 
 @functools.cache
