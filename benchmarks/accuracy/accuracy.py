@@ -1,6 +1,6 @@
 """Error against run time: cases with exact or converged solutions, over shapes, transfers, schemes and resolutions.
 
-  accuracy.py run                     every case; about an hour on two cores
+  accuracy.py run                     every case; more than an hour on two free cores with --jobs 2
   accuracy.py run --case riemann      this case only; --shape, --transfer, --scheme, --study choose alike
   accuracy.py run --every             with every shape, transfer and scheme: many hours
   accuracy.py run --quick             a minute: the coarse grids of some studies
@@ -9,8 +9,8 @@
   accuracy.py tables                  tables and plots from the CSV files alone
 
 For each case OUT/CASE.csv and CASE.png, and all tables in OUT/accuracy.md. Measured rows replace those of the same point
-and leave the others. --docs: the CSV files are those of docs/accuracy, and the tables of docs/accuracy.md and
-docs/choosing.md are renewed."""
+and leave the others. --docs: the CSV files are those of docs/accuracy, and the tables of docs/accuracy.md,
+docs/choosing.md and docs/methods.md are renewed."""
 
 import argparse
 import concurrent.futures
@@ -33,6 +33,7 @@ from common import results  # noqa: E402: from benchmarks
 DOCS = results.ROOT / "docs/accuracy"
 PAGE = results.ROOT / "docs/accuracy.md"
 CHOICE = results.ROOT / "docs/choosing.md"
+METHODS = results.ROOT / "docs/methods.md"
 
 
 def machine():
@@ -147,6 +148,7 @@ def blocks_of(folder):
         if path.exists():
             head, rows_of[name] = tables.read(path)
             blocks[name] = tables.case_block(case, rows_of[name]) + f"\n\nMeasured on {'; '.join(head)}."
+    blocks["pressure"] = tables.pressure_block(rows_of)
     blocks["refused"] = tables.refusal_block(rows_of)
     return blocks, rows_of
 
@@ -160,11 +162,12 @@ def render(options):
     if options.docs:
         results.refresh(PAGE, blocks)
         results.refresh(CHOICE, choosing.blocks(CASES, rows_of))
-        print(PAGE, CHOICE, sep="\n")
+        results.refresh(METHODS, {"scatter": tables.scatter_block(rows_of)})
+        print(PAGE, CHOICE, METHODS, sep="\n")
         return
     text = "# Accuracy\n"
     for name, block in blocks.items():
-        text += f"\n## {CASES[name].title if name in CASES else 'Refused'}\n\n{block}\n"
+        text += f"\n## {CASES[name].title if name in CASES else name.capitalize()}\n\n{block}\n"
         if (options.plots / f"{name}.png").exists():
             text += f"\n![]({name}.png)\n"
     (options.out / "accuracy.md").write_text(text)

@@ -25,7 +25,9 @@ def shapes():
 
 CONSISTENT = "consistent"  # FLIP with the consistent mass matrix
 # What the tables show as transfers of their own: {name: attributes of Solution}.
-VARIANTS = {"FMPM(5)": {"transfer": "FMPM", "xpic_order": "5"}, CONSISTENT: {"mass": "consistent"}}
+VARIANTS = {"FMPM(5)": {"transfer": "FMPM", "xpic_order": "5"}, CONSISTENT: {"mass": "consistent"},
+            "FMPM(16)": {"transfer": "FMPM", "xpic_order": "16"}}
+FEW = ("FMPM(16)",)  # those that only the cases that name them measure
 
 
 def transfers():
@@ -59,8 +61,12 @@ def every_scheme():
     return product(some_schemes=schemes())
 
 
+def usual_transfers():
+    return tuple(t for t in transfers() if t not in FEW)
+
+
 def every_transfer(some_shapes=None, some_schemes=("MUSL",)):
-    return product(some_shapes, transfers(), some_schemes)
+    return product(some_shapes, usual_transfers(), some_schemes)
 
 
 def every():
@@ -76,7 +82,12 @@ def quick():
 def short():
     """Every shape with FLIP and MUSL; the other schemes and transfers with few shapes."""
     return list(dict.fromkeys([*flip(), *product(("linear", "QuadraticBSpline"), some_schemes=schemes()),
-                               *product(("QuadraticBSpline",), transfers()), *product(("cpGIMP",), ("APIC", "AFLIP"))]))
+                               *product(("QuadraticBSpline",), usual_transfers()), *product(("cpGIMP",), ("APIC", "AFLIP"))]))
+
+
+def leading():
+    """Those that lead the tables of docs/choosing.md, and linear functions: what more particles, averages and steps do to them."""
+    return product(("linear", "cpGIMP", "QuadraticBSpline", "CubicBSpline", "SGMP"))
 
 
 def choose(root, method):

@@ -14,7 +14,7 @@ import runner
 from case import order
 
 STYLES = {"FLIP": "-", "APIC": "--", "TPIC": "-.", "AFLIP": ":", "PIC": (0, (1, 4)), "XPIC": (0, (5, 1, 1, 1)),
-          "FMPM": (0, (3, 3)), "FMPM(5)": (0, (3, 1, 1, 1, 1, 1)), methods.CONSISTENT: (0, (8, 2))}
+          "FMPM": (0, (3, 3)), "FMPM(5)": (0, (3, 1, 1, 1, 1, 1)), "FMPM(16)": (0, (1, 1)), methods.CONSISTENT: (0, (8, 2))}
 MARKERS = {"MUSL": "o", "USF": "s", "USL": "^"}
 
 
@@ -40,6 +40,11 @@ def part_of(rows, among):
     return f"{len(mine)} of the rows"
 
 
+def written(number):
+    """Four digits; all of them of whole numbers, which are counts that were read from a file."""
+    return f"{number:.0f}" if number.is_integer() else f"{number:.4g}"
+
+
 def write(case, path, rows, head, earlier):
     """Rows of this run, and those of the `earlier` ones (as `read` gives them) that it did not measure, in the order of the
     case's points. The head says where each was measured."""
@@ -63,7 +68,7 @@ def write(case, path, rows, head, earlier):
         out = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
         out.writeheader()
         for row in rows:
-            out.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
+            out.writerow({k: written(v) if isinstance(v, float) else v for k, v in row.items()})
     return rows
 
 
@@ -201,6 +206,72 @@ def case_block(case, rows):
             left_out.setdefault(case.excluded(method), []).append(method.transfer)
     text += [f"Left out: {', '.join(dict.fromkeys(names))}: {why}." for why, names in left_out.items()]
     return "\n\n".join(text)
+
+
+LOW_SCATTER = 0.1  # asked for: of the mean pressure
+LEAST_DRIFTS = 4  # rows of a study shown
+PRESSURE = {"water": ("rest", "water"), "water, averaged": ("rest", "water_averaged"), "water, relaxed": ("rest", "water_relaxed"),
+            "sand": ("rest", "sand"), "sand, averaged": ("rest", "sand_averaged"), "sand, relaxed": ("rest", "sand_relaxed"),
+            "plate": ("flying_plate", "plate"), "plate, averaged": ("flying_plate", "plate_averaged"),
+            "plate, relaxed 0.5": ("flying_plate", "plate_relaxed"), "plate, relaxed 1": ("flying_plate", "plate_relaxed_1")}
+COMPARED = (("linear", "FLIP"), ("SGMP", "FLIP"), ("QuadraticBSpline", "FLIP"), ("QuadraticBSpline", "AFLIP"), ("CubicBSpline", "AFLIP"),
+            ("CubicBSpline", "APIC"))
+
+
+def finest_done(rows, study):
+    """{method: its row on the finest grid that every method of the study has, where the run was done}."""
+    mine = [r for r in rows if r["study"] == study]
+    grids = {}
+    for row in mine:
+        grids.setdefault(row["cells"], set()).add(method_of(row))
+    every = {m for found in grids.values() for m in found}
+    common = max((n for n, found in grids.items() if found == every), default=None)
+    return {method_of(r): r for r in mine if r["cells"] == common and r["status"] == runner.DONE}
+
+
+def pressure_block(rows_of):
+    """What runs with little scatter of the pressure cost: energy, and what else is off."""
+    lines = []
+    for name, (case, study) in PRESSURE.items():
+        done = finest_done(rows_of.get(case, []), study)
+        if not done:
+            continue
+        low = [(m, r) for m, r in done.items() if value(r, "scatter") < LOW_SCATTER]
+        low.sort(key=lambda pair: abs(pair[1]["drift"]))
+        lines += [{"case": name, "method": str(m), "of": f"{len(low)}" if i == 0 else "", **r} for i, (m, r) in enumerate(low[:LEAST_DRIFTS])]
+        if not low:
+            lines.append({"case": name, "method": "–", "of": "0"})
+
+    if not lines:
+        return "Not measured."
+
+    def part(column, how, factor=1):
+        return (lambda r: factor * r[column] if is_number(r.get(column)) else None, how)
+
+    return results.markdown(lines, {
+        "case": (lambda r: r["case"], ""), "methods below 10 %": (lambda r: r["of"] or " ", ""), "method": (lambda r: r["method"], ""),
+        "scatter, % of the mean": part("scatter", ".2f", 100), "energy drift, %": part("drift", "+.1f", 100),
+        "off the hydrostatic pressure, %": part("hydrostatic", ".1f", 100),
+        "velocity left (plate: its error)": part("velocity", ".1e")})
+
+
+def scatter_block(rows_of):
+    """For docs/methods.md: scatter and energy drift without averages, with them and with relaxation."""
+    lines = []
+    for matter in ("water", "sand"):
+        found = [finest_done(rows_of.get("rest", []), f"{matter}{what}") for what in ("", "_averaged", "_relaxed")]
+        for shape, transfer in COMPARED:
+            rows = [f.get(methods.Method(shape, transfer)) for f in found]
+            lines.append({"case": f"{matter}, `{shape}` {transfer}", "rows": rows})
+
+    def part(which, column, how):
+        return (lambda r: None if r["rows"][which] is None else 100 * r["rows"][which][column], how)
+
+    columns = {"": (lambda r: r["case"], "")}
+    for column, word, how in (("scatter", "scatter, %", ".3g"), ("drift", "energy drift, %", "+.2f")):
+        for which, what in enumerate(("none", "averages", "and relaxation")):
+            columns[f"{word}: {what}"] = part(which, column, how)
+    return results.markdown(lines, columns)
 
 
 def refusal_block(rows_of):

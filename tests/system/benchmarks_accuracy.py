@@ -15,11 +15,13 @@ SCRIPT = "benchmarks/accuracy/accuracy.py"
 sys.path[:0] = [str(_mpm.SOURCE / "benchmarks/accuracy"), str(_mpm.SOURCE / "benchmarks")]
 
 import accuracy  # noqa: E402: found by the line above
+import choosing  # noqa: E402
 import methods  # noqa: E402
 import plane_strain  # noqa: E402
 from cases import CASES, column, crossing, expanding_ring, incompressible, manufactured_cube, sedov, vortex  # noqa: E402
 from common import results  # noqa: E402
 
+STALE = "run accuracy.py tables --docs"
 STEP = 1e-4  # of differences: their error is about the square, 1e-8, and 1e-16/1e-8 of round-off in second ones
 
 
@@ -257,10 +259,71 @@ class Document(_mpm.Case):
     def test_tables_are_those_of_the_csv_files(self):
         document = accuracy.PAGE.read_text()
         blocks, _ = accuracy.blocks_of(accuracy.DOCS)
-        self.assertEqual(set(blocks), {*CASES, "refused"})
+        self.assertEqual(set(blocks), {*CASES, "pressure", "refused"})
         path = self.write(document, "accuracy.md")
         results.refresh(path, blocks)
-        self.assertEqual(path.read_text(), document, "run accuracy.py tables --docs")
+        self.assertEqual(path.read_text(), document, STALE)
+
+
+class Choice(_mpm.Case):
+    """docs/choosing.md and the table of docs/methods.md against the CSV files."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.rows_of = accuracy.blocks_of(accuracy.DOCS)[1]
+
+    def test_tables_are_those_of_the_csv_files(self):
+        for page, blocks in ((accuracy.CHOICE, choosing.blocks(CASES, self.rows_of)),
+                             (accuracy.METHODS, {"scatter": accuracy.tables.scatter_block(self.rows_of)})):
+            document = page.read_text()
+            path = self.write(document, page.name)
+            results.refresh(path, blocks)
+            self.assertEqual(path.read_text(), document, STALE)
+
+    def test_every_block_is_generated(self):
+        marks = re.findall(r"<!-- begin (.*?) -->", accuracy.CHOICE.read_text())
+        self.assertEqual(sorted(marks), sorted(choosing.blocks(CASES, self.rows_of)))
+
+    def test_advice_follows_the_rankings(self):
+        for use in choosing.USES:
+            ranked = choosing.ranking(self.rows_of, use)
+            leaders = choosing.advised(self.rows_of, use)
+            sound = [r for r in ranked if r[0].scheme == "MUSL" and not r[3]]
+            self.assertEqual(leaders[0], sound[0], use)
+            self.assertGreater(ranked[0][1] * choosing.SIGNIFICANT, sound[0][1], f"{use}: another scheme is better than the page says")
+            self.assertGreater(len(ranked), 10, f"{use}: too few methods have all columns")
+
+    def test_words_name_no_method_that_the_ranking_does_not(self):
+        """Sections of a use, without what is generated: linear functions, and shapes that lead its ranking."""
+        text = re.sub(r"<!-- begin .*?<!-- end .*? -->", "", accuracy.CHOICE.read_text(), flags=re.DOTALL)
+        sections = dict(zip(re.findall(r"^## (.*)$", text, re.MULTILINE), re.split(r"^## .*$", text, flags=re.MULTILINE)[1:]))
+        for use in choosing.USES:
+            words = sections[use.capitalize()]
+            allowed = {r[0].shape for r in choosing.advised(self.rows_of, use)} | {"linear"}
+            for shape in methods.shapes():
+                if shape not in allowed:
+                    self.assertNotIn(f"`{shape}`", words, use)
+
+    def test_time_up_to_which_methods_are_compared(self):
+        """Linear functions fail on their third grid: the others are compared where all that do not fail were measured."""
+        def row(shape, cells, status, seconds, error):
+            return {"shape": shape, "transfer": "FLIP", "scheme": "MUSL", "cells": cells, "factor": 0.4, "status": status,
+                    "seconds": seconds, "error": error}
+
+        rows = [row("linear", 4, "done", 1.0, 0.4), row("linear", 8, "failed", "", ""), row("SGMP", 4, "done", 1.0, 0.4),
+                row("SGMP", 8, "done", 4.0, 0.1), row("uGIMP", 4, "done", 2.0, 0.3), row("uGIMP", 8, "done", 8.0, 0.8)]
+        found, failed = choosing.ratios(rows, "error")
+        self.assertEqual({m.shape for m in failed}, {"linear"})
+        ratio = {m.shape: value for m, value in found.items()}
+        self.assertAlmostEqual(ratio["linear"], 1)
+        self.assertAlmostEqual(ratio["SGMP"], 0.25)
+        self.assertAlmostEqual(ratio["uGIMP"], 0.3 / 0.4 * (0.8 / 0.3) ** 0.5)
+        found, _ = choosing.ratios(rows[:1] + rows[2:], "error")
+        self.assertAlmostEqual({m.shape: value for m, value in found.items()}["SGMP"], 1)
+
+    def test_counts_are_written_in_full(self):
+        self.assertEqual([accuracy.tables.written(v) for v in (12912.0, 0.00197444, float("nan"))], ["12912", "0.001974", "nan"])
 
 
 class Merged(_mpm.Case):

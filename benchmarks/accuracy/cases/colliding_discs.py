@@ -9,6 +9,12 @@ SOLID = derive.Solid(1000.0, 0.3, 1000.0)
 RADIUS, SPEED, END, ROOM = 0.2, 0.1, 3.0, 1.0
 
 
+def published():
+    """Those whose rebound or loss J. A. Nairn gives, and the same with the quadratic spline."""
+    return [*methods.product(("linear",), some_schemes=methods.schemes()), methods.Method("QuadraticBSpline"),
+            *methods.product(("linear", "QuadraticBSpline"), methods.FEW)]
+
+
 class CollidingDiscs(Case):
     name = "colliding_discs"
     title = "Colliding discs"
@@ -18,10 +24,13 @@ the law `NeoHookean` and without artificial viscosity. They touch through the sh
 the first. *Rebound*: the relative velocity of the centres after and before, which converges to the share that is not left in
 vibrations."""
     errors = {"loss": Error("energy lost or gained, %", ".2f", 100, order=False), "rebound": Error("rebound", ".3f", order=False)}
-    studies = {"cells": Study("cells along the box of length 1, factor 0.5.", (10, 20, 40, 80), 0.5)}
+    studies = {"cells": Study("cells along the box of length 1, factor 0.5.", (10, 20, 40, 80), 0.5),
+               "four particles": Study("the same with four particles along a cell.", (10, 20, 40), 0.5, splits=(4,), methods=published),
+               "time": Study("20 cells, time step falling.", (20,), (0.5, 0.2, 0.1), axis="factor", methods=published)}
+    plotted = ("cells",)
 
     def methods(self):
-        return methods.short()
+        return [*methods.short(), *methods.product(("linear", "QuadraticBSpline"), methods.FEW)]  # Nairn's order
 
     def scene(self, point):
         h = ROOM / point.cells

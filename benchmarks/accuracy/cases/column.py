@@ -46,7 +46,11 @@ height; *stress*: of the vertical stress, over its largest value; *velocity*: th
 waves: what particles that rest ought not to have."""
     errors = {"place": Error("error of place"), "stress": Error("error of stress"),
               "velocity": Error("velocity left", ".1e", order=False)}
-    studies = {"cells": Study("cells along the first height, factor 0.4.", (8, 16, 32, 64), 0.4)}
+    studies = {"cells": Study("cells along the first height, factor 0.4.", (8, 16, 32, 64), 0.4),
+               "particles": Study("four particles along a cell.", (8, 16, 32), 0.4, splits=(4,), methods=methods.leading),
+               "averaged": Study('with `Volumetric averaging="cell"`.', (8, 16, 32, 64), 0.4, methods=methods.leading),
+               "time": Study("32 cells, time step falling.", (32,), (0.9, 0.4, 0.2), axis="factor", methods=methods.leading)}
+    plotted = ("cells",)
 
     def methods(self):
         return methods.short()
@@ -55,7 +59,7 @@ waves: what particles that rest ought not to have."""
         h = HEIGHT / point.cells
         weight = f'<BodyForce bz="-{gravity()!r}*if(t&lt;{RAMP},(t/{RAMP})^2*(3-2*t/{RAMP}),1)"/>'
         column = support.block("column", (0, 0, 0), (h, h, HEIGHT), h / point.split, "solid", weight)
-        more = f'<DynamicRelax damping="{DAMPING}"/>'
+        more = f'<DynamicRelax damping="{DAMPING}"/>' + ('<Volumetric averaging="cell"/>' if point.study == "averaged" else "")
         return support.scene([column], support.grid((0, 0, 0), (h, h, HEIGHT), "222220", h),
                              support.solution(END, point.factor, more), [support.material("solid", SOLID.density, SOLID.law)],
                              support.pictures(END, ["SigmaZ"]))

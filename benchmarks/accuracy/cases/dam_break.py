@@ -33,7 +33,12 @@ faster, and the error does not go to zero."""
               "last": Error("front at the end, over a (experiment 4.11)", ".2f", order=False),
               "scatter": Error("pressure noise at half time, % of rho g a", ".1f", 100, order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"cells": Study("cells along the column's width, factor 0.4.", (4, 8, 12, 16), 0.4, fine=(32,), fine_methods=tuple(methods.product(("linear", "SGMP", "QuadraticBSpline"))))}
+    studies = {"cells": Study("cells along the column's width, factor 0.4.", (4, 8, 12, 16), 0.4, fine=(32,),
+                              fine_methods=tuple(methods.product(("linear", "SGMP", "QuadraticBSpline")))),
+               "particles": Study("four particles along a cell.", (4, 8, 12), 0.4, splits=(4,), methods=methods.leading),
+               "averaged": Study('with `Volumetric averaging="cell"`.', (4, 8, 12, 16), 0.4, methods=methods.leading),
+               "time": Study("12 cells, time step falling.", (12,), (0.9, 0.4, 0.2), axis="factor", methods=methods.leading)}
+    plotted = ("cells",)
 
     def methods(self):
         return methods.short()
@@ -41,7 +46,7 @@ faster, and the error does not go to zero."""
     def scene(self, point):
         h = SIDE / point.cells
         water = support.block("water", (0, 0, 0), (SIDE, h, 2 * SIDE), h / point.split, "water")
-        more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/>'
+        more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/>' + ('<Volumetric averaging="cell"/>' if point.study == "averaged" else "")
         return support.scene([water], support.grid((0, 0, 0), (8 * SIDE, h, 3 * SIDE), "202220", h),
                              support.solution(TIMES[-1] * UNIT, point.factor, more),
                              [WATER],

@@ -24,7 +24,10 @@ cell), over the mean exact pressure."""
     studies = {"two particles": Study("two particles along a cell, factor 0.4.", (50, 100, 200, 400), 0.4),
                "four particles": Study("four particles along a cell, factor 0.4.", (25, 50, 100, 200), 0.4, splits=(4,),
                                        methods=lambda: [*methods.flip(), *methods.product(("QuadraticBSpline",), ("APIC", "AFLIP"),
-                                                                                          ("MUSL", "USF"))])}
+                                                                                          ("MUSL", "USF"))]),
+               "averaged": Study('two particles along a cell, with `Volumetric averaging="cell"`.', (50, 100, 200), 0.4,
+                                 methods=methods.leading),
+               "time": Study("100 cells, time step falling.", (100,), (0.9, 0.4, 0.2), axis="factor", methods=methods.leading)}
     plotted = ("two particles",)
 
     def methods(self):
@@ -36,7 +39,8 @@ cell), over the mean exact pressure."""
         h = LENGTH / point.cells
         charge = support.block("charge", (0, 0, 0), (LENGTH, h, h), h / point.split, "TNT")
         end = 0.9 * LENGTH / TNT["D"]
-        text = support.scene([charge], _blast.column(0, LENGTH + 4 * h, h, "20"), support.solution(end, point.factor),
+        averages = '<Volumetric averaging="cell"/>' if point.study == "averaged" else ""
+        text = support.scene([charge], _blast.column(0, LENGTH + 4 * h, h, "20"), support.solution(end, point.factor, averages),
                              [_blast.explosive()], support.pictures(end / 8, ["pres", "density"]))
         return text.replace("</PeneBlast>", _blast.lit_at(0.0) + "</PeneBlast>")
 

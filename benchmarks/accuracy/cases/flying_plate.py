@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 
+import methods
 from case import Case, Error, Study  # first: it says where the next ones are
 
 import _blast
@@ -13,6 +14,7 @@ from cases import rest, support
 CHARGE, PLATE = 50.0, 9.0
 LATE = 3  # of the last pictures
 PICTURES = 12
+FINE = {"fine": (75, 100), "fine_methods": tuple(methods.leading())}  # the plate of 9 mm is whole particles thick with multiples of 25
 
 
 @functools.cache
@@ -42,10 +44,10 @@ from its momentum (0.6 GPa). *Velocity*: of the plate, against zones that move w
 [Pressure at rest](#pressure-at-rest)."""
     errors = {"scatter": Error("pressure inside a cell, % of the mean", ".1f", 100, order=False),
               "velocity": Error("velocity, %", "+.1f", 100, order=False), "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"plate": Study("cells along the explosive, factor 0.5.", (50,), 0.5),
-               "plate_averaged": Study("the same, averaged.", (50,), 0.5),
-               "plate_relaxed": Study("averaged and relaxed.", (50,), 0.5),
-               "plate_relaxed_1": Study('with `relaxation="1"`.', (50,), 0.5)}
+    studies = {"plate": Study("cells along the explosive, factor 0.5.", (25, 50), 0.5, **FINE),
+               "plate_averaged": Study("the same, averaged.", (25, 50), 0.5, **FINE),
+               "plate_relaxed": Study("averaged and relaxed.", (25, 50), 0.5, **FINE),
+               "plate_relaxed_1": Study('with `relaxation="1"`.', (25, 50), 0.5, **FINE)}
 
     def methods(self):
         return rest.CASE.methods()

@@ -17,6 +17,7 @@ RELAXATION = 0.5
 PRECISION = 1e-7  # of the numbers in pictures
 FULL = 4  # particles of a cell that counts
 COVERED = 2  # cells above it
+FINE = (*methods.flip(), *methods.product(("QuadraticBSpline", "CubicBSpline"), ("APIC",)))
 
 
 def averages(point, relaxation=RELAXATION):
@@ -39,12 +40,12 @@ below the surface, count. *velocity*: root mean square of what is left, over the
               "hydrostatic": Error("off the hydrostatic pressure, %", ".1f", 100, order=False),
               "velocity": Error("velocity left", ".1e", order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
-    studies = {"water": Study("water, cells along the square, factor 0.9.", (8, 16), 0.9),
-               "water_averaged": Study("the same, averaged.", (8, 16), 0.9),
-               "water_relaxed": Study("averaged and relaxed.", (8, 16), 0.9),
-               "sand": Study("sand, cells along the column's foot, factor 0.9.", (10, 20), 0.9),
-               "sand_averaged": Study("the same, averaged.", (10, 20), 0.9),
-               "sand_relaxed": Study("averaged and relaxed.", (10, 20), 0.9)}
+    studies = {"water": Study("water, cells along the square, factor 0.9.", (6, 8, 16), 0.9, fine=(12,), fine_methods=FINE),
+               "water_averaged": Study("the same, averaged.", (6, 8, 16), 0.9, fine=(12,), fine_methods=FINE),
+               "water_relaxed": Study("averaged and relaxed.", (6, 8, 16), 0.9, fine=(12,), fine_methods=FINE),
+               "sand": Study("sand, cells along the column's foot, factor 0.9.", (8, 10, 20), 0.9, fine=(15,), fine_methods=FINE),
+               "sand_averaged": Study("the same, averaged.", (8, 10, 20), 0.9, fine=(15,), fine_methods=FINE),
+               "sand_relaxed": Study("averaged and relaxed.", (8, 10, 20), 0.9, fine=(15,), fine_methods=FINE)}
 
     def methods(self):
         return list(dict.fromkeys([*methods.short(), *methods.product(("CubicBSpline", "uGIMP"), ("APIC", "AFLIP"))]))

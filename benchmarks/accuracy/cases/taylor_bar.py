@@ -25,7 +25,11 @@ error is not known; differences below half a per cent mean little."""
               "D": Error("D mm", ".2f", order=False), "W": Error("W mm", ".2f", order=False),
               "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {"cells": Study("cells along the bar, factor 0.4.", (12, 17, 23, 33), 0.4,
-                              fine=(46,), fine_methods=tuple(methods.product(("linear", "SGMP", "cpGIMP", "QuadraticBSpline"))))}
+                              fine=(46,), fine_methods=tuple(methods.product(("linear", "SGMP", "cpGIMP", "QuadraticBSpline")))),
+               "particles": Study("four particles along a cell.", (8, 12, 17), 0.4, splits=(4,), methods=methods.leading),
+               "averaged": Study('with `Volumetric averaging="cell"`.', (12, 17, 23, 33), 0.4, methods=methods.leading),
+               "time": Study("17 cells, time step falling.", (17,), (0.9, 0.4, 0.2), axis="factor", methods=methods.leading)}
+    plotted = ("cells",)
 
     def methods(self):
         return methods.short()
@@ -41,6 +45,8 @@ error is not known; differences below half a per cent mean little."""
             root.find(".//DCell").set(f"d{axis.lower()}", repr(cell))
         root.find(".//Name").set("value", "case")
         root.find(".//TimeStep").set("factor", repr(point.factor))
+        if point.study == "averaged":
+            ElementTree.SubElement(root.find("Solution"), "Volumetric", averaging="cell")
         output = root.find("Output")
         output.remove(output.find("Restart"))
         output.find("PostProcessing").attrib.update(vtk_data="0", time_interval=root.find(".//EndTime").get("value"))
