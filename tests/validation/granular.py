@@ -32,6 +32,10 @@ STEPS = [("linear, FLIP, inscribed cone", {".//Grid": {"shape": "linear"}, ".//S
          ("APIC", {".//Solution": {"transfer": "APIC"}})]
 
 
+def without(*names):
+    return {key: how for key, how in SAND.items() if key not in names}
+
+
 def sand_run(options, a, cells, name, changes):
     folder = options.out / f"sand-{a:g}-{cells}-{name.split(',')[0].split()[0]}"
     seconds = _common.run(folder, _granular.sand_column(a, cells, changes), "sand_column")
@@ -65,12 +69,12 @@ def floors(options):
         folder = options.out / f"floor-{friction}"
         seconds = _common.run(folder, _granular.sand_column(1, options.floors, friction=friction), "sand_column")
         rows.append({"floor": floor, "a": 1, "cells": options.floors, **_granular.measure_sand_column(folder, 1), "cpu_seconds": seconds})
-    _common.write(options.out, "floors", rows, {"floor": ("floor", ""), **SAND})
+    _common.write(options.out, "floors", rows, {"floor": ("floor", ""), **without("lajeunesse", "height_error")})
 
 
 def settings(options):
     rows = [sand_run(options, 1, options.settings, name, changes) for name, changes in STEPS]
-    _common.write(options.out, "settings", rows, {"name": ("setting", ""), **{key: how for key, how in SAND.items() if key not in ("two", "most")}})
+    _common.write(options.out, "settings", rows, {"name": ("setting", ""), **without("two", "most", "lajeunesse", "height_error")})
 
 
 def rods(options, verdict):
