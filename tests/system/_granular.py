@@ -23,7 +23,7 @@ def lube_run_out(a):
 def lajeunesse(a):
     """Run-out and height at the end over the foot of a column in a rectangular channel. E. Lajeunesse, J. B. Monnier and G. M. Homsy, Physics of
     Fluids 17 (2005) 103302: 1.2 a below 2.3 and 1.9 a^(2/3) above; a below 0.7 and a^(1/3) above. Quoted after K. Kumar's thesis (Cambridge,
-    2.3.1; github.com/kks32/phd-thesis)."""
+    chapter 2; github.com/kks32/phd-thesis), which has Lube's constants for the run-out."""
     return 1.2 * a if a <= 2.3 else 1.9 * a ** (2 / 3), a if a <= 0.7 else a ** (1 / 3)
 
 
