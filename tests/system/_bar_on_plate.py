@@ -55,7 +55,7 @@ def measure(folder):
     the plate, and the row before the last mean force."""
     bar, status = Bar(folder), _cases.status(folder, JOB)
     relative, mean = taylor.errors(bar.sizes)
-    forces = np.flatnonzero(status["fz[contact:plate]"])
+    forces = _gallery.acting(status["fz[contact:plate]"])
     return {"particles": len(bar.now), "steps": bar.summary["steps"], **{name: float(size) for name, size in bar.sizes.items()},
             "error_LD": 50 * float(abs(relative["L"]) + abs(relative["D"])), "mean_error": 100 * float(mean),
             "parted": 1e3 * float(status["time"][forces[-1] - 1]), "speed": float(status["vz[body:bar]"][-1]),

@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ElementTree
 import _cases
 import _mpm
 import numpy as np
+from scipy.spatial import cKDTree
 
 # Units of the balls: m, kg, s.
 RADIUS, DENSITY, YOUNG, POISSON = 1.6, 1000.0, 4.2e6, 0.4
@@ -40,26 +41,52 @@ def forces(folder, job):
     return np.array(found["time"]), np.column_stack([found[f"contact_{a}[1,2]"] for a in "xyz"])
 
 
+def acting(force):
+    """The rows with a force above round-off, which can be 1e-15 of the largest one."""
+    size = np.abs(force).reshape(len(force), -1).max(axis=1)
+    return np.flatnonzero(size > 1e-9 * size.max())
+
+
 def first_and_last(time, force):
     """The start of the step with the first force, and the end of that with the last one."""
-    on = np.flatnonzero(np.abs(force).max(axis=1))
+    on = acting(force)
     return time[on[0] - 1], time[on[-1]]
 
 
+def face_gap(near, far, along, spacing):
+    """The smallest gap along `along` between the faces of particles of two bodies, `far` beyond `near`, that are within two spacings of
+    each other across it. Particles keep their first size."""
+    across = np.linalg.svd(along[None])[2][1:].T
+    front = [places[way * (places @ along) > (way * (places @ along)).max() - 8 * spacing] for places, way in ((near, 1), (far, -1))]
+    pairs = cKDTree(front[0] @ across).query_ball_tree(cKDTree(front[1] @ across), 2 * spacing)
+    return min((front[1][others] @ along).min() - place @ along for place, others in zip(front[0], pairs) if others) - spacing
+
+
 def two_balls(cell, shape, normal, kind=0):
-    return text(scene("two_balls"), resolution(cell, shape, normal, kind))
+    changes = resolution(cell, shape, normal, kind)
+    changes[".//PostProcessing"] |= {"time_interval": 0.0025, "var": "body"}
+    return text(scene("two_balls"), changes)
 
 
 def measure_two_balls(folder, cell):
-    """Gap at the first force in cells, the time of the last one, the largest momentum over m v, the angular momentum at the
-    end over m v R, the energy drift, and the restitution: the balls' velocity over what it was."""
+    """Gap at the first force in cells, that when the last step with a force began (`last_gap`, between the states before and after it), the
+    time of the last force, the largest momentum over m v, the angular momentum at the end over m v R, the energy drift, and the
+    restitution: the balls' velocity over what it was."""
     time, force = forces(folder, "two_balls")
     first, last = first_and_last(time, force)
     summary, status = _mpm.summary(folder, "two_balls"), _cases.status(folder, "two_balls")
     along = np.array([math.cos(math.radians(30)), 0, 0.5])
     momentum = summary["bodies"][0]["mass"] * 15
+    states, last_step = _cases.States(folder, "two_balls"), time[acting(force)[-1] - 1]
+    left = states.column("body", 0) == states.column("body", 0).min()
+    after_it = np.searchsorted(states.times, last_step)
+    gaps = []
+    for which in (after_it - 1, after_it):
+        places = np.column_stack([states.column(axis, which) for axis in "xyz"])
+        gaps.append(face_gap(places[left], places[~left], along, cell / 2) / cell)
     after = np.array([status[f"v{a}[body:right]"][-1] for a in "xyz"]) @ along
     return {"particles": summary["particles"], "steps": summary["steps"], "gap": (0.8 - 30 * first) / cell, "parted": last,
+            "last_gap": float(np.interp(last_step, states.times[after_it - 1:after_it + 1], gaps)),
             "force": np.abs(force @ along).max() / 1e6,
             "momentum": max(np.abs(status[name]).max() for name in ("px", "py", "pz")) / momentum,
             "angular": 100 * np.linalg.norm(summary["angular_momentum"]) / (momentum * RADIUS),
@@ -134,7 +161,8 @@ def measure_slow_quarter_ball(folder, cell, speed):
     approach = np.cumsum((velocity[1:] + velocity[:-1]) / 2 * steps) - 0.1 * cell
     near = approach >= 0.9 * approach.max()
     over_hertz = force[near].mean() / (stiffness() * approach[near] ** 1.5).mean()
-    first, last = time[np.flatnonzero(force)[0]], time[np.flatnonzero(force)[-1] + 1]
+    on = acting(force)
+    first, last = time[on[0]], time[on[-1] + 1]
     times, exact = impact(speed, finite_ball)
     wide = max(1, len(force) // 60)
     smooth, expected = (np.convolve(f, np.ones(wide) / wide, "same")

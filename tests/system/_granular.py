@@ -20,6 +20,13 @@ def lube_run_out(a):
     return 1.2 * a if a <= 1.8 else 1.9 * a ** (2 / 3)
 
 
+def lajeunesse(a):
+    """Run-out and height at the end over the foot of a column in a rectangular channel. E. Lajeunesse, J. B. Monnier and G. M. Homsy, Physics of
+    Fluids 17 (2005) 103302: 1.2 a below 2.3 and 1.9 a^(2/3) above; a below 0.7 and a^(1/3) above. Quoted after K. Kumar's thesis (Cambridge,
+    chapter 2; github.com/kks32/phd-thesis), which has Lube's constants for the run-out."""
+    return 1.2 * a if a <= 2.3 else 1.9 * a ** (2 / 3), a if a <= 0.7 else a ** (1 / 3)
+
+
 FRICTION = 0.6009  # of the sand, tan 31 degrees
 
 
@@ -114,15 +121,16 @@ class Heap:
 
 
 def measure_sand_column(folder, a, d0=0.1):
-    """Run-out over d0, to where the heap is thinner than 1 % of d0 (a grain of the experiments), 2 or 5 %, the error of the first; the place
-    within which 98 % of the sand is, the height over d0, the kinetic energy over what gravity released, of all and of the heap alone, and the density."""
+    """Run-out over d0, to where the heap is thinner than 1 % of d0 (a grain of the experiments), 2 or 5 %, the errors of the first
+    by Lube's and Lajeunesse's laws; the place within which 98 % of the sand is, the height over d0, its error by Lajeunesse's law, the kinetic energy over what gravity released, of all and of the heap alone, and the density."""
     heap, summary = Heap(folder, "sand_column", 1600), _mpm.summary(folder, "sand_column")
     run_out, two, thick = ((heap.front(thin * d0) - d0) / d0 for thin in (0.01, 0.02, 0.05))
-    released = summary["energy"]["external_work"]
+    released, height = summary["energy"]["external_work"], (heap.z.max() + heap.spacing / 2) / d0
     pressed = heap.pressure > 1e-3 * 1600 * 9.81 * a * d0
     return {"particles": summary["particles"], "steps": summary["steps"], "run_out": run_out, "two": two, "thick": thick,
             "most": (np.quantile(heap.x, 0.98) - d0) / d0,
-            "error": 100 * (run_out / lube_run_out(a) - 1), "height": (heap.z.max() + heap.spacing / 2) / d0,
+            "error": 100 * (run_out / lube_run_out(a) - 1), "height": height, "lajeunesse": 100 * (run_out / lajeunesse(a)[0] - 1),
+            "height_error": 100 * (height / lajeunesse(a)[1] - 1),
             "farthest": (heap.x.max() - d0) / d0, "kinetic": summary["energy"]["kinetic"] / released,
             "heap": heap.kinetic(d0 * (1 + run_out)) / released, "density": heap.density.mean(),
             "pressed": heap.density[pressed].min(), "loose": 100 * (heap.density < 0.8).mean(),

@@ -13,7 +13,8 @@ COLUMNS = {"cell": ("cell mm", ".3g"), "radius": ("plate's radius mm", "d"), "sh
            "ratio": ("h/D", ".2f"), "torn": ("h/D with torn edge", ".2f"), "failed": ("failed of the ball %", ".2f"), "drift": ("energy drift %", "+.2f"),
            "cpu_seconds": ("processor s", ".0f")}
 CASES = [{"cell": 1.0}, {}, {"contact": False}, {"kind": 0}, {"normal": "mass_gradient"}, {"distance": 0, "normal": "mass_gradient", "end": 0.12},
-         {"radius": 40, "end": 0.2}, {"radius": 89, "end": 0.2}, {"cell": 1 / 3}, {"distance": 1, "gap": 0.5}, {"gap": 0.5, "end": 0.2}]
+         {"radius": 40, "end": 0.2}, {"radius": 89, "end": 0.2}, {"cell": 1 / 3}, {"distance": 1, "gap": 0.5}, {"gap": 0.5, "end": 0.2},
+         {"gap": 0.5, "radius": 40, "end": 0.2}]
 
 
 def main():

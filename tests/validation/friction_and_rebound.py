@@ -33,7 +33,7 @@ def row(options, job, text, measure, *words, **names):
 
 def slope(options, verdict):
     cases = [*itertools.product(("rolling", "sliding"), ("rigid", "elastic"), ("mass_gradient",), (1,), (0.4, 0.2)),
-             *itertools.product(("rolling",), ("rigid",), ("mass_gradient",), (1,), options.finest),
+             *itertools.product(("rolling", "sliding"), ("rigid",), ("mass_gradient", "regression"), (1,), options.finest),
              *itertools.product(("rolling", "sliding"), ("rigid",), ("regression",), (1, 0), (0.4, 0.2))]
     rows = []
     for motion, plane, normal, kind, cell in cases:
@@ -44,7 +44,9 @@ def slope(options, verdict):
         if r["cell"] <= 0.2:
             verdict.expect(abs(r["centre"]) < 2, f"{name}: {r['centre']:+.2f} %, asked for 2 %")
         coarse = [c for c in rows if c["cell"] == 2 * r["cell"] and all(c[key] == r[key] for key in ("motion", "plane", "normal", "kind"))]
-        for c in coarse:
+        for c in coarse:  # below 0.2 % it may grow
+            if abs(c["centre"]) < abs(r["centre"]) < 0.2:
+                print(f"BELOW 0.2 % {name}: the error grows, {c['centre']:+.2f} to {r['centre']:+.2f} %", flush=True)
             verdict.expect(abs(r["centre"]) < max(abs(c["centre"]), 0.2), f"{name}: the error grows, {c['centre']:+.2f} to {r['centre']:+.2f} %")
     return rows
 
@@ -87,6 +89,7 @@ def discs(options, verdict):
     for offset, shape, normal, kind, cell in [
             *itertools.product((0.0, 5.0, 8.0), ("linear",), ("regression",), (0,), (1.0, 0.5, 0.25)),
             *itertools.product((0.0, 8.0), ("uGIMP", "QuadraticBSpline", "SGMP"), ("regression",), (0,), (1.0,)),
+            *itertools.product((0.0,), ("QuadraticBSpline",), ("regression",), (0,), (0.5, 0.25)),
             *itertools.product((0.0, 8.0), ("linear",), ("regression",), (1,), (1.0, 0.5)),
             *itertools.product((0.0, 8.0), ("linear",), ("mass_gradient",), (0,), (1.0, 0.5))]:
         case = {"cell": cell, "offset": offset / _friction.RADIUS, "shape": shape, "normal": normal, "kind": kind}
@@ -108,7 +111,7 @@ def main():
     parser = _common.arguments(__doc__, "friction_and_rebound")
     parts = {"slope": (slope, SLOPE), "block": (block, BLOCK), "cube": (cube, CUBE), "discs": (discs, DISCS)}
     parser.add_argument("--parts", nargs="+", default=list(parts), choices=parts)
-    parser.add_argument("--finest", nargs="*", type=float, default=[], help="cells of further balls that roll, for example 0.1")
+    parser.add_argument("--finest", nargs="*", type=float, default=[], help="cells of further balls on the rigid slope, for example 0.1")
     options = parser.parse_args()
     verdict = _common.Verdict()
     print(_common.machine(), "\n", flush=True)

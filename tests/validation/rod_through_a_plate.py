@@ -8,14 +8,14 @@ import _common  # first: it says where the next one is
 import _rod_through_plate as rod
 
 COLUMNS = {"speed": ("striking m/s", "d"), "cells": ("cells through the plate", "d"), "half_width": ("plate's half width mm", "d"),
-           "rings": ("rod of", ""), "heat": ("specific heat mJ/(g K)", ".3g"), "contact": ("contact", ""), "particles": ("particles", "d"), "steps": ("steps", "d"),
+           "rings": ("rod of", ""), "heat": ("specific heat mJ/(g K)", ".3g"), "friction": ("friction", "g"), "contact": ("contact", ""), "particles": ("particles", "d"), "steps": ("steps", "d"),
            "residual": ("residual m/s", ".1f"), "error": ("over the experiment %", "+.1f"), "turned": ("turned, degrees", "+.1f"),
            "failed": ("failed of the plate %", ".2f"), "drift": ("energy drift %", "+.2f"), "cpu_seconds": ("processor s", ".0f")}
-DEFAULT = {"speed": 400, "cells": 13, "half_width": 46, "kind": 1, "normal": "regression", "contact": True, "heat": 890, "rings": 0}
+DEFAULT = {"speed": 400, "cells": 13, "half_width": 46, "kind": 1, "normal": "regression", "contact": True, "heat": 890, "rings": 0, "friction": 0}
 SPEEDS = [{"speed": 340, "path": 247.6}, *({"speed": speed} for speed in (400, 446, 575, 730))]
 SMALL = {"half_width": 36}
 CASES = [*SPEEDS, {"half_width": 61}, SMALL, SMALL | {"rings": 1}, SMALL | {"cells": 18}, SMALL | {"contact": False}, SMALL | {"kind": 0},
-         SMALL | {"normal": "mass_gradient"}, SMALL | {"heat": 1e9}]
+         SMALL | {"normal": "mass_gradient"}, SMALL | {"heat": 1e9}, *(SMALL | {"friction": friction} for friction in (0.05, 0.1))]
 
 
 def main():

@@ -19,7 +19,8 @@ COLUMNS = {"layers": ("particles along a rod", "d"), "shape": ("shape", ""), "co
            "speed": ("velocity at 140 us, m/s", ".1f"), "gap": ("gap at 140 us, mm", ".2f"), "drift": ("energy drift %", "+.2f"),
            "cpu_seconds": ("processor s", ".1f")}
 ELEMENTS = {"across": ("elements over the radius", "d"), "yields": ("yield stress MPa", "g"), "steps": ("steps", "d"), "L": ("L mm", ".2f"), "D": ("D mm", ".2f"),
-            "error": ("mean error %", ".2f"), "speed": ("velocity at 140 us, m/s", ".1f"), "gap": ("gap at 140 us, mm", ".2f"),
+            "error": ("mean error %", ".2f"), "released": ("force below 1 %, us", ".0f"), "parted": ("last force, us", ".0f"),
+            "speed": ("velocity at 140 us, m/s", ".1f"), "gap": ("gap at 140 us, mm", ".2f"),
             "strain": ("largest plastic strain", ".2f"), "cpu_seconds": ("processor s", ".0f")}
 WIDE = 6.79  # mm: 21,600 particles in a rod of 60 layers; the thesis has 21,840, and a cylinder of 6.35 mm holds 18,960
 
