@@ -178,7 +178,7 @@ void ImplicitIntegrator::prepare() {
 
 /// Nodes go on with their velocity; those of a linearised step begin at their place, where it is linearised.
 /// What walls hold is there, and with products by differences of residuals everything that is held.
-std::vector<double> ImplicitIntegrator::first_guess() const {
+std::vector<double> ImplicitIntegrator::first_guess(bool at_rest) const {
   std::vector<double> u(3 * state_.size());
   for (std::size_t i = 0; i < state_.size(); ++i) {
     for (int a = 0; a < 3; ++a) {
@@ -187,10 +187,17 @@ std::vector<double> ImplicitIntegrator::first_guess() const {
       if (held(i, a) && (to == 0 || input_.matrix_free))
         u[at] = to;
       else
-        u[at] = input_.linearised() ? 0 : free_motion(state_[i], a);
+        u[at] = at_rest ? 0 : free_motion(state_[i], a);
     }
   }
   return u;
+}
+
+bool ImplicitIntegrator::overstrains(std::span<const double> u) {
+  if (ranks_.any(!map_forces(u))) return true;
+  StepMotion motion = passes_->motion_of(displacements_);
+  motion.combine(ranks_);
+  return motion.overstrains();
 }
 
 bool ImplicitIntegrator::map_forces(std::span<const double> u) {
@@ -348,10 +355,12 @@ void ImplicitIntegrator::solve() {
   const double no_force = rounding * held_diagonal_ * model_.grid->geometry().smallest_cell();
   const NewtonOptions options{input_.relative_tolerance, input_.absolute_tolerance.value_or(no_force),
                               input_.max_newton, input_.matrix_free, input_.linearised()};
-  const double planned = next_step(model_.clock);  // but that EndTime may cut it
+  const double planned = next_step(model_.clock), first = model_.clock.dt;  // which EndTime may have cut
+  const double smallest = input_.min_step.value_or(default_smallest * length);
   std::string cuts;
+  bool at_rest = input_.linearised();
   for (;;) {
-    std::vector<double> u = first_guess();
+    std::vector<double> u = first_guess(at_rest);
     NewtonReport report = solve_once(u, options);
     if (contact_ && contact_->rubs()) settle_friction(u, options, report);
     const std::string why = objection(report, u);
@@ -365,13 +374,20 @@ void ImplicitIntegrator::solve() {
                       report.linear_iterations, cuts);
       double& next = model_.clock.next_dt;
       next = report.iterations <= easy ? std::min(dt * growth, input_.max_step.value_or(length)) : dt;
-      if (cuts.empty() && dt < planned) next = planned;
+      if (dt == first && dt < planned) next = planned;
       return;
     }
-    cuts += fmt::format("; shortened from {:.4g}: {} (residual {})", dt, why, norms);
-    if (0.5 * dt < input_.min_step.value_or(default_smallest * length)) fail(why + ", residual " + norms);
-    ++cuts_;
-    model_.clock.dt = 0.5 * dt;
+    ++rejected_;
+    if (!at_rest && rule_.dynamic() && overstrains(first_guess(false))) {
+      cuts += fmt::format("; begun again at rest: {} (residual {})", why, norms);
+      at_rest = true;
+    } else {
+      const double shorter = std::max(0.5 * dt, smallest);
+      if (!(shorter < dt)) fail(why + ", residual " + norms, u);
+      cuts += fmt::format("; shortened from {:.4g}: {} (residual {})", dt, why, norms);
+      at_rest = input_.linearised();
+      model_.clock.dt = shorter;
+    }
     prepare();
   }
 }
@@ -379,7 +395,7 @@ void ImplicitIntegrator::solve() {
 std::string ImplicitIntegrator::words_of_run() const {
   if (solves_ == 0) return {};
   return fmt::format("{}; {} Newton iterations and {} linear ones in {} solutions, {} of them rejected",
-                     solver_.description(), total_.iterations, total_.linear_iterations, solves_, cuts_);
+                     solver_.description(), total_.iterations, total_.linear_iterations, solves_, rejected_);
 }
 
 std::vector<PartOfPhase> ImplicitIntegrator::parts() const {
@@ -413,17 +429,17 @@ std::string ImplicitIntegrator::bodies_around(const std::array<double, 3>& place
   return fmt::format(" of {} {}", names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "));
 }
 
-/// Names the node of the largest residual, and the bodies with particles around it.
-void ImplicitIntegrator::fail(const std::string& why) {
-  OffendingParticle worst;
+/// Names the node of the largest residual of the last iteration, at `u`, and the bodies with particles around
+/// it.
+void ImplicitIntegrator::fail(const std::string& why, std::span<const double> u) {
+  std::vector<double> r(u.size());
+  residual(u, r);
   double largest = 0;
   std::size_t at = 0;
-  for (std::size_t i = 0; i < state_.size(); ++i) {
-    for (int a = 0; a < 3; ++a) {
-      if (held(i, a) || !(std::abs(state_[i].reaction[a]) > largest)) continue;
-      largest = std::abs(state_[i].reaction[a]);
-      at = i;
-    }
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    if (!(std::abs(r[k]) > largest)) continue;
+    largest = std::abs(r[k]);
+    at = k / 3;
   }
   const double of_all = ranks_.largest(largest);
   const bool mine = largest > 0 && largest == of_all;

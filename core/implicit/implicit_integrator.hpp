@@ -7,7 +7,9 @@
 // for the method; AMPLE, Coombs and Augarde, Adv. Eng. Softw. 139 (2020) 102748, for the quasi-static form).
 //
 // A step that does not converge or that step_motion.hpp refuses is taken again with half its length; steps
-// that were cut grow again.
+// that were cut grow again. Where free flight itself would invert or overstrain a particle, Newton's method
+// begins at rest instead: with a rule whose velocity at the end depends on the forces at the start, which are
+// mapped anew, stiff nodes keep velocities that a step of a thousand explicit ones turns into such strains.
 //
 // Held nodes are led to their places: Newton's method begins with the motion of free flight at all nodes, and
 // what is left of the way of held ones enters the residual of the others by its derivative, R + dR/du_h du_h,
@@ -96,7 +98,10 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   /// Sets the nodes' contact forces at the displacements distributed.
   void find_contact_forces();
   void stop_contacts(std::span<double> gained);
-  std::vector<double> first_guess() const;
+  /// Of free flight, or of nodes at rest.
+  std::vector<double> first_guess(bool at_rest) const;
+  /// Whether a state strains particles more than a step may, or inverts them. Collective.
+  bool overstrains(std::span<const double> u);
   /// Why the solution cannot be accepted; empty if it can. The same on all ranks.
   std::string objection(const NewtonReport& report, std::span<const double> u);
   /// Maps the forces for displacements `u` and exchanges them. False where a state cannot be evaluated.
@@ -113,8 +118,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   bool moved(std::size_t node, int axis) const {
     return moves_bodies_ && (unknowns_.moved()[node] >> axis & 1) != 0;
   }
-  void shorten(const std::string& why);
-  [[noreturn]] void fail(const std::string& why);
+  [[noreturn]] void fail(const std::string& why, std::span<const double> u);
   std::string bodies_around(const std::array<double, 3>& place);
 
   Model& model_;
@@ -141,7 +145,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   std::string words_;
   /// Of all steps.
   NewtonReport total_;
-  std::int64_t solves_ = 0, cuts_ = 0;
+  std::int64_t solves_ = 0, rejected_ = 0;
 };
 
 }  // namespace mpm::core

@@ -45,6 +45,7 @@ class StepMotion {
   /// Collective.
   void combine(Reductions& ranks);
 
+  bool overstrains() const { return strain_ > largest_strain; }
   /// Why the step cannot be accepted; empty if it can. `names`: of the bodies.
   std::string objection(const std::vector<std::string>& names) const;
 

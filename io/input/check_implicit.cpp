@@ -48,6 +48,26 @@ void check_faces(const Node& root, const core::GridInput& grid, const BuildConte
         "(fixed) or 2 (symmetry)");
 }
 
+/// A particle that is deleted takes its forces out of a step that has been solved with them.
+void check_erosion(const Node& root, const core::Scene& scene, const BuildContext& context) {
+  const std::vector<Node> materials = root.children("Material");
+  for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m) {
+    const bool used = std::ranges::any_of(scene.components, [&](const core::ComponentInput& component) {
+      return std::ranges::any_of(component.bodies, [&](const core::BodyInput& b) { return b.material == m; });
+    });
+    if (!used) continue;
+    const auto refuse = [&](const Node& node, std::string_view attribute) {
+      node.report(context.diagnostics, attribute,
+                  "particles are not deleted in implicit steps: set it to 0, or remove Solution@Integration");
+    };
+    for (const Node& failure : materials[m].children("FailureModel"))
+      if (failure.boolean("Erosion")) refuse(failure, "Erosion");
+    const auto strength = materials[m].child("StrengthModel");
+    for (const char* attribute : {"ErosionByDamage", "ErosionByPressure"})
+      if (strength && scene.materials[m].strength.value_or(attribute, 0) != 0) refuse(*strength, attribute);
+  }
+}
+
 /// core/implicit/implicit_contact.hpp.
 void check_implicit_contact(const Node& root, const core::Scene& scene, const BuildContext& context) {
   const auto contact = root.child("Contact");
@@ -79,6 +99,7 @@ void check_implicit(const Node& root, const core::Scene& scene, const BuildConte
   if (!solution || scene.solution.integration != core::Integration::implicit) return;
   check_settings(*solution, scene.solution, context);
   check_faces(root, scene.grid, context);
+  check_erosion(root, scene, context);
   if (scene.contact.enable) check_implicit_contact(root, scene, context);
 }
 

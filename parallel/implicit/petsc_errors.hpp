@@ -2,16 +2,26 @@
 // rank.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 #include <petscsys.h>
 
 namespace mpm::parallel {
 
+class PetscError : public std::runtime_error {
+ public:
+  PetscError(const std::string& what, PetscErrorCode code) : runtime_error(what), code_(code) {}
+  PetscErrorCode code() const { return code_; }
+
+ private:
+  PetscErrorCode code_;
+};
+
 /// From now on PETSc's errors are kept for the functions below; PetscPopErrorHandler ends it.
 void keep_petsc_errors();
 
-/// Throws std::runtime_error with PETSc's description of the first error.
+/// Throws PetscError with PETSc's description of the first error.
 void check_petsc(PetscErrorCode code);
 inline void check_mpi(int code) { check_petsc(static_cast<PetscErrorCode>(code)); }
 

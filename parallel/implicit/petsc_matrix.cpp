@@ -136,8 +136,8 @@ void MatrixValues::find_parts() {
   check_petsc(MatGetType(matrix_, &type));
   const std::string_view format = type;
   blocks_ = format == MATSEQBAIJ || format == MATMPIBAIJ;
-  direct_ = blocks_ || format == MATSEQAIJ || format == MATMPIAIJ;
-  if (!direct_) return;
+  if (!blocks_ && format != MATSEQAIJ && format != MATMPIAIJ)
+    throw std::logic_error("a matrix of an unknown format");
   const std::int64_t first = places_.first(), beyond = first + static_cast<std::int64_t>(places_.own());
   inner_.first.assign(1, 0);
   outer_.first.assign(1, 0);
@@ -151,10 +151,6 @@ void MatrixValues::find_parts() {
 }
 
 void MatrixValues::begin() {
-  if (!direct_) {
-    check_petsc(MatZeroEntries(matrix_));
-    return;
-  }
   // Anew each time: PETSc makes other ones when it copies a matrix of blocks.
   PetscBool alone = PETSC_FALSE;
   check_petsc(
@@ -171,12 +167,6 @@ void MatrixValues::begin() {
 }
 
 void MatrixValues::add(std::span<const std::int64_t> nodes, const double* values) {
-  if (!direct_) {
-    numbers_.assign(nodes.begin(), nodes.end());
-    const auto n = static_cast<PetscInt>(numbers_.size());
-    check_petsc(MatSetValuesBlocked(matrix_, n, numbers_.data(), n, numbers_.data(), values, ADD_VALUES));
-    return;
-  }
   sorted_.clear();
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes[i] >= 0) sorted_.push_back({nodes[i], i});
@@ -223,10 +213,9 @@ void MatrixValues::add_row(std::size_t own_node, std::size_t row, const double* 
 }
 
 void MatrixValues::end() {
-  if (direct_)
-    for (Part* part : {&inner_, &outer_})
-      if (part->matrix != nullptr)
-        check_petsc((blocks_ ? MatSeqBAIJRestoreArray : MatSeqAIJRestoreArray)(part->matrix, &part->values));
+  for (Part* part : {&inner_, &outer_})
+    if (part->matrix != nullptr)
+      check_petsc((blocks_ ? MatSeqBAIJRestoreArray : MatSeqAIJRestoreArray)(part->matrix, &part->values));
   check_petsc(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
   check_petsc(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
 }

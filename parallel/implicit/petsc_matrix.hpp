@@ -5,8 +5,7 @@
 // rows (192 with CPDI2): with that, the assembly took three quarters of the time of an implicit run. Here the
 // rows of a node are found by 3 x 3 blocks: its columns are sorted, those of the dense matrix too, and one
 // walk through both finds all places. Rows of other ranks' nodes go through PETSc's stash.
-// Another format that the user chooses is filled by MatSetValuesBlocked. Shown by
-// tests/system/physics_implicit_systems.py.
+// Other formats are refused (petsc_options.hpp). Shown by tests/system/physics_implicit_systems.py.
 #pragma once
 
 #include <cstdint>
@@ -81,7 +80,6 @@ class MatrixValues final : public core::BlockMatrix {
 
   MatrixPlaces places_;
   Mat matrix_ = nullptr;
-  bool direct_ = false;  ///< the format is known
   bool blocks_ = false;  ///< it is BAIJ, whose blocks are stored column by column
   Part inner_, outer_;
   struct Column {

@@ -149,6 +149,12 @@ PetscErrorCode search(SNESLineSearch steps, void* context) {
 
 }  // namespace
 
+bool is_small(double norm, const NewtonSolve& solve) {
+  const core::NewtonOptions& options = *solve.options;
+  return norm <= options.relative_tolerance * solve.problem->force_scale() ||
+         norm <= options.absolute_tolerance;
+}
+
 void set_functions(SNES snes, Vec r, NewtonSolve& solve) {
   check_petsc(SNESSetFunction(snes, r, residual, &solve));
   check_petsc(SNESSetConvergenceTest(snes, converged, &solve, nullptr));
@@ -163,6 +169,17 @@ void choose_full_steps(SNES snes, NewtonSolve& solve) {
   check_petsc(SNESGetLineSearch(snes, &steps));
   check_petsc(SNESLineSearchSetType(steps, SNESLINESEARCHSHELL));
   check_petsc(SNESLineSearchShellSetUserFunc(steps, search, &solve));
+}
+
+bool takes_full_steps(SNES snes) {
+  SNESType method = nullptr;
+  SNESLineSearch steps = nullptr;
+  SNESLineSearchType search = nullptr;
+  check_petsc(SNESGetType(snes, &method));
+  check_petsc(SNESGetLineSearch(snes, &steps));
+  check_petsc(SNESLineSearchGetType(steps, &search));
+  return std::string(method) == SNESNEWTONLS && search != nullptr &&
+         std::string(search) == SNESLINESEARCHSHELL;
 }
 
 bool choose_line_search(SNES snes) {

@@ -28,9 +28,13 @@ void set_functions(SNES snes, Vec residual, NewtonSolve& solve);
 /// `action`: the matrix itself, or its product with a vector by differences.
 void set_jacobian(SNES snes, Mat action, Mat matrix, NewtonSolve& solve);
 
+/// Whether `norm`, of the last residual, is within the tolerances.
+bool is_small(double norm, const NewtonSolve& solve);
+
 /// Full steps: a residual that grows once, as in bending, is no harm to them, but stops a search that lets it
 /// fall alone.
 void choose_full_steps(SNES snes, NewtonSolve& solve);
+bool takes_full_steps(SNES snes);
 /// A search, where full steps failed. False: the user has chosen how steps are taken.
 bool choose_line_search(SNES snes);
 

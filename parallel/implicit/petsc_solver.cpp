@@ -18,6 +18,7 @@
 #include "parallel/implicit/petsc_linear.hpp"
 #include "parallel/implicit/petsc_matrix.hpp"
 #include "parallel/implicit/petsc_newton.hpp"
+#include "parallel/implicit/petsc_options.hpp"
 #include "parallel/implicit/solver_library.hpp"
 
 namespace mpm::parallel {
@@ -65,7 +66,8 @@ class PetscSolver final : public core::NewtonSolver {
     check_mpi(MPI_Comm_dup(comm, &comm_));
     PETSC_COMM_WORLD = comm_;
     words_.push_back("mpm");
-    words_.insert(words_.end(), options.begin(), options.end());
+    wrong_words_ = fault_of_words(comm_, options);
+    if (wrong_words_.empty()) words_.insert(words_.end(), options.begin(), options.end());
     for (std::string& w : words_) pointers_.push_back(w.data());
     pointers_.push_back(nullptr);
     int argc = static_cast<int>(words_.size());
@@ -89,10 +91,12 @@ class PetscSolver final : public core::NewtonSolver {
   std::string description() const override { return description_; }
 
  private:
+  NewtonReport solve_with_options(NonlinearProblem& problem, std::span<double> u,
+                                  const NewtonOptions& options);
   void set_up(NonlinearProblem& problem, bool linear);
   bool try_otherwise(SNES snes, bool linear);
-  void refuse_unused_options();
-  [[noreturn]] void refuse_options();
+  bool meets_tolerance(SNES snes, SNESConvergedReason reason);
+  [[noreturn]] void refuse_options(const std::string& why);
 
   /// What solves with the same places of entries share: PETSc keeps the symbolic part of a factorisation.
   struct SetUp {
@@ -110,6 +114,7 @@ class PetscSolver final : public core::NewtonSolver {
   std::vector<std::string> words_;
   std::vector<char*> pointers_;
   std::string description_;
+  std::string wrong_words_;  ///< what is wrong with the options; the first solve says it
   bool given_ = false, looked_ = false;
 };
 
@@ -150,43 +155,10 @@ bool PetscSolver::try_otherwise(SNES snes, bool linear) {
   return true;
 }
 
-/// Ours is the test of convergence, which does not read PETSc's tolerances of Newton's method.
-void refuse_idle_tolerances() {
-  PetscBool own_test = PETSC_FALSE;
-  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-snes_convergence_test", &own_test));
-  if (own_test == PETSC_TRUE) return;
-  for (const char* name : {"-snes_rtol", "-snes_atol", "-snes_stol"}) {
-    PetscBool given = PETSC_FALSE;
-    check_petsc(PetscOptionsHasName(nullptr, nullptr, name, &given));
-    if (given == PETSC_TRUE)
-      throw WrongSolverOptions(
-          fmt::format("option {} of PETSc after -- has no effect: rtol and atol of Implicit decide; set them "
-                      "instead, or add -snes_convergence_test default",
-                      name));
-  }
-}
-
-/// After the first solve all options that PETSc knows have been read.
-void PetscSolver::refuse_unused_options() {
-  if (!given_ || looked_) return;
-  looked_ = true;
-  PetscInt n = 0;
-  char **names = nullptr, **values = nullptr;
-  check_petsc(PetscOptionsLeftGet(nullptr, &n, &names, &values));
-  std::string unused;
-  for (PetscInt i = 0; i < n; ++i)
-    if (std::string(names[i]) != "options_left" && std::string(names[i]) != "no_signal_handler")
-      unused += fmt::format("{}-{}", unused.empty() ? "" : ", ", names[i]);
-  check_petsc(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
-  if (!unused.empty())
-    throw WrongSolverOptions("unknown or unused options of PETSc after --: " + unused +
-                             "; check their spelling, or remove them");
-}
-
-void PetscSolver::refuse_options() {
+void PetscSolver::refuse_options(const std::string& why) {
   throw WrongSolverOptions(
       fmt::format("options of PETSc after -- ({}): {}; check their values, or remove them",
-                  fmt::join(words_.begin() + 1, words_.end(), " "), take_petsc_error()));
+                  fmt::join(words_.begin() + 1, words_.end(), " "), why));
 }
 
 /// An error that no shorter step changes: the options ask for what PETSc cannot do.
@@ -207,7 +179,8 @@ bool is_of_options(PetscErrorCode code) {
 
 std::string why_not_converged(SNES snes, PetscErrorCode code, SNESConvergedReason reason, bool linear) {
   if (code != 0) return take_petsc_error();
-  if (reason > 0) return "a particle inverts";
+  if (reason > 0 && linear) return "a particle inverts";
+  if (reason > 0) return "Newton's method stops above the tolerance";
   std::string why =
       fmt::format("{}: {}", linear ? "linear system" : "Newton's method", SNESConvergedReasons[reason]);
   if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
@@ -220,9 +193,32 @@ std::string why_not_converged(SNES snes, PetscErrorCode code, SNESConvergedReaso
   return why;
 }
 
+/// Whether the residual of the solution is as small as it has to be, whatever ended the iteration.
+bool PetscSolver::meets_tolerance(SNES snes, SNESConvergedReason reason) {
+  // The last residual of full steps, which our own test has seen, is that of the solution.
+  if (takes_full_steps(snes))
+    return reason == SNES_CONVERGED_FNORM_RELATIVE || reason == SNES_CONVERGED_FNORM_ABS;
+  PetscReal norm = 0;
+  if (SNESComputeFunction(snes, of_->solution, of_->residual) != 0) return false;
+  check_petsc(VecNorm(of_->residual, NORM_2, &norm));
+  return now_.usable && is_small(norm, now_);
+}
+
 NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
                                 const NewtonOptions& options) {
+  if (!wrong_words_.empty()) throw WrongSolverOptions(wrong_words_);
+  try {
+    return solve_with_options(problem, u, options);
+  } catch (const PetscError& error) {
+    if (!given_ || looked_ || !is_of_options(error.code())) throw;
+    refuse_options(error.what());
+  }
+}
+
+NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::span<double> u,
+                                             const NewtonOptions& options) {
   const double start = MPI_Wtime();
+  if (!looked_) refuse_unsuitable_options(options.linear, options.matrix_free);
   set_up(problem, options.linear);
   now_ = {&problem, &options, of_->values.get(), of_->grids.get(), {}, nullptr};
   NewtonReport& report = now_.report;
@@ -236,16 +232,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
     check_petsc(VecRestoreArray(solution, &to));
   };
   start_from_guess();
-  if (given_ && !looked_) refuse_idle_tolerances();
-  if (options.matrix_free && of_->action.object == nullptr) {
-    // It would change the type of the product by differences.
-    PetscBool named = PETSC_FALSE;
-    check_petsc(PetscOptionsHasName(nullptr, nullptr, "-mat_type", &named));
-    if (named == PETSC_TRUE)
-      throw WrongSolverOptions(
-          "option -mat_type of PETSc after -- does not go with jacobian=\"matrixfree\"; remove it");
-    check_petsc(MatCreateSNESMF(snes, &of_->action));
-  }
+  if (options.matrix_free && of_->action.object == nullptr) check_petsc(MatCreateSNESMF(snes, &of_->action));
   set_jacobian(snes, options.matrix_free ? of_->action.object : matrix, matrix, now_);
   check_petsc(SNESSetTolerances(snes, 0, 0, 0, options.max_iterations, 100 * options.max_iterations));
   if (options.linear) {
@@ -255,12 +242,12 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
                          of_->grids.get());
     choose_full_steps(snes, now_);
   }
-  if (SNESSetFromOptions(snes) != 0) refuse_options();
+  if (SNESSetFromOptions(snes) != 0) refuse_options(take_petsc_error());
   description_ = description_of(snes);
   report.structure_seconds = MPI_Wtime() - start;
 
   PetscErrorCode code = SNESSolve(snes, nullptr, solution);
-  if (given_ && !looked_ && !now_.failure && is_of_options(code)) refuse_options();
+  if (given_ && !looked_ && !now_.failure && is_of_options(code)) refuse_options(take_petsc_error());
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   check_petsc(SNESGetConvergedReason(snes, &reason));
   PetscInt linear = 0, iterations = 0;
@@ -277,6 +264,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   }
   // What the linearisation leaves; and whether the state can be taken at all.
   if (options.linear && code == 0 && reason > 0) code = SNESComputeFunction(snes, solution, r);
+  const bool met = code == 0 && reason > 0 && (options.linear ? now_.usable : meets_tolerance(snes, reason));
   if (now_.failure) {
     take_petsc_error();
     std::rethrow_exception(now_.failure);
@@ -285,7 +273,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   check_petsc(SNESGetIterationNumber(snes, &iterations));
   report.iterations += static_cast<int>(iterations);
   report.linear_iterations += linear;
-  report.converged = code == 0 && reason > 0 && (now_.usable || !options.linear);
+  report.converged = met;
   if (!report.converged) report.reason = why_not_converged(snes, code, reason, options.linear);
   const PetscScalar* from = nullptr;
   check_petsc(VecGetArrayRead(solution, &from));
@@ -293,7 +281,8 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   check_petsc(VecRestoreArrayRead(solution, &from));
   report.linear_seconds = MPI_Wtime() - start - report.structure_seconds - report.residual_seconds -
                           report.jacobian_seconds - report.setup_seconds;
-  refuse_unused_options();
+  if (given_ && !looked_) refuse_unused_options();
+  looked_ = true;
   return report;
 }
 

@@ -511,6 +511,13 @@ class Refused(_mpm.Case):
         failing = _mpm.material("soft", 1.0, 'type="ElaPlastic" Young="1000" Poisson="0.3" Yield0="20"',
                                 '<FailureModel type="PlaStrain" epmax="0.3"/>')
         self.refused(column(material=failing), "soft", "not available with implicit steps", "FailureModel")
+        eroding = failing.replace("epmax=", 'Erosion="1" epmax=')
+        crushed = _mpm.material("soft", 1.0, 'type="HolmquistJohnsonCook" Young="1000" Poisson="0.3" A="1" B="2" N="0.6" C="0.01" '
+                                'fc="48" SMax="7" D1="0.04" D2="1" EFMin="0.01" T="4" epso="1" {}="1"')
+        for more in ("", 'jacobian="differences"'):
+            self.refused(column(material=eroding, more=more), "case.xmp:3:", "Erosion", "not deleted in implicit steps", "set it to 0")
+            for attribute in ("ErosionByDamage", "ErosionByPressure"):
+                self.refused(column(material=crushed.format(attribute), more=more), attribute, "not deleted in implicit steps")
         fluid = _mpm.material("soft", 1.0, 'type="Null"', '<EquationOfState type="Gruneisen" C0="37" S1="1.5" gamma0="2" E0="0"/>')
         explosive = _mpm.material("soft", 1.0, 'type="HighExpBurn" D="100" beta="0" PCJ="2000"',
                                   '<EquationOfState type="JWL" A="371e3" B="3200" R1="4.2" R2="0.95" w="0.3" E0="7000"/>')
@@ -524,54 +531,6 @@ class Refused(_mpm.Case):
             self.assertNotIn("differences", _mpm.run([self.folder / "case.xmp"], program="mpm_check").err)
         self.refused(column(more='newmark_beta="0.1"').replace("quasistatic", "dynamic"), "newmark_beta")
         self.refused(column(more='min_step="1"'), "time_step")
-
-    def test_options_of_petsc(self):
-        path = self.write(column(steps=2))
-        explicit = self.write(_mpm.bounce(0.1), "explicit.xmp")
-        for job, options, code in ((path, ("-ksp_type", "gmres", "-pc_type", "bjacobi"), _mpm.DONE),
-                                   (path, ("-pc_factor_mat_solver_type", "mumps"), _mpm.DONE),
-                                   (path, ("-ksp_typo", "gmres"), _mpm.INPUT_ERROR),
-                                   (path, ("-ksp_type", "gmrez"), _mpm.INPUT_ERROR),
-                                   (path, ("-snes_rtol", "1e-3"), _mpm.INPUT_ERROR),
-                                   (path, ("-pc_factor_mat_solver_type", "nosuch"), _mpm.INPUT_ERROR),
-                                   (explicit, ("-ksp_type", "cg"), _mpm.INPUT_ERROR)):
-            with self.subTest(options=options, job=job.name):
-                outcome = _mpm.run([job, "--output-dir", self.folder / "out", "--", *options])
-                self.assertEqual(outcome.code, code, outcome)
-                if code != _mpm.DONE:
-                    self.assertIn(options[0], outcome.err)
-
-    def test_a_trust_region_finds_the_same_equilibrium(self):
-        """PETSc's trust region in place of full steps, with a law without and one with plastic flow."""
-        metal = _mpm.material("soft", 1.0, 'type="IsoHarden" Young="1000" Poisson="0.3" Yield0="20" TangMod="100"')
-        for name, material in (("elastic", SOFT), ("plastic", metal)):
-            with self.subTest(name):
-                text = column("QuadraticBSpline", 0.8, 4, material, 'rtol="1e-9"',
-                              '<PostProcessing time_interval="1" h5part="1" var="pres"/>')
-                places = []
-                for method in ("newtonls", "newtontr"):
-                    outcome = _mpm.run([self.write(text), "--output-dir", self.folder / method, "--", "-snes_type", method])
-                    self.assertEqual(outcome.code, _mpm.DONE, outcome)
-                    self.assertRegex(outcome.out, f"PETSc [^:]*: {method}, " if method != "newtonls" else "PETSc [^:]*: preonly")
-                    places.append(np.array([_cases.States(self.folder / method).column(axis) for axis in "xyz"]))
-                # Places are in single precision: two units in the last place at 8.
-                self.assertLess(np.abs(places[1] - places[0]).max(), 2e-6)
-
-    def test_without_equilibrium_the_state_is_kept(self):
-        """Dead weight far beyond what the column bears: no equilibrium, and a restart of the last one."""
-        weak = _mpm.material("soft", 1.0, 'type="ElaPlastic" Young="1000" Poisson="0.3" Yield0="1"')
-        text = _mpm.scene([_mpm.block("column", (1, 1, 0), (2, 2, 6))], _mpm.grid((0, 0, 0), (4, 4, 8), "000010"),
-                          implicit(1.0, step=0.1, more='min_step="0.05" max_newton="8" gravity_ramp="1"',
-                                   extra='<Gravity ax="0" ay="0" az="-20"/>'), [weak])
-        for ranks in (1, 2):
-            with self.subTest(ranks=ranks):
-                folder = f"failed{ranks}"
-                outcome = self.run_in(folder, [self.write(text)], ranks=ranks, code=_mpm.NUMERICAL_FAILURE)
-                self.assertIn("no equilibrium", outcome.err)
-                self.assertRegex(outcome.err, r'residual force, [\d.e+-]+, is at node \([\d, ]+\) of body "column"')
-                self.assertEqual(outcome.err.count("no equilibrium"), 1)  # not from every rank
-                self.assertTrue(_mpm.restarts(self.folder / folder))
-                self.assertEqual(_mpm.summary(self.folder / folder)["status"], "failed")
 
 
 if __name__ == "__main__":
