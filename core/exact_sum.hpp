@@ -20,6 +20,9 @@ class ExactSum {
   /// After a NaN or an infinity value() is NaN.
   void add(double x);
   ExactSum& operator+=(const ExactSum& other);
+  void negate() {
+    for (int i = 0; i < limbs; ++i) limb_[static_cast<std::size_t>(i)] *= -1;
+  }
   /// The sum, rounded once.
   double value() const;
 

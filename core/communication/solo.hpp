@@ -12,7 +12,9 @@ class SoloReductions final : public Reductions {
   bool any(bool mine) override { return mine; }
   void minimum(std::span<double>) override {}
   void sum(std::span<std::int64_t>) override {}
-  void sum(std::span<ExactSum>) override {}
+  void sum(std::span<ExactSum> sums) override {
+    for (ExactSum& sum : sums) sum.normalise();
+  }
   StepStatus combine(const StepStatus& mine) override { return mine; }
   std::vector<std::string> gather(const std::string& mine) override { return {mine}; }
   Spread spread(double mine) override { return {mine, mine, mine}; }

@@ -37,12 +37,11 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
     weight_[c] = std::max(weight_[c], normal_weight(scene, c, static_cast<std::size_t>(body.material)));
   }
   if (rigid != nullptr) {
-    const std::vector<const BodyInput*> inputs = active_bodies(scene);
     full_mass_.assign(scene.components.size(), 0.0);
-    for (std::size_t b = 0; b < std::min(inputs.size(), model.bodies.size()); ++b)
-      if (rigid->of_body(static_cast<int>(b)) >= 0)
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+      if (const int number = rigid->of_body(static_cast<int>(b)); number >= 0)
         full_mass_[static_cast<std::size_t>(model.bodies[b].component)] =
-            inputs[b]->density * model.grid->geometry().cell_volume();
+            rigid->density(number) * model.grid->geometry().cell_volume();
     if (std::ranges::count_if(full_mass_, [](double m) { return m > 0; }) < 2) full_mass_.clear();
     if (!full_mass_.empty() && has_failed_component(scene)) full_mass_.push_back(0);
   }

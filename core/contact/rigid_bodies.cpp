@@ -63,13 +63,14 @@ RigidBodies::RigidBodies(Model& model, Reductions& ranks) : model_(model), ranks
       bodies_[static_cast<std::size_t>(of_body(reaction.body))].reaction = &reaction.since_start;
   node_mass_.resize(bodies_.size());
   find_states(ranks);
+  find_densities(ranks);
 }
 
 void RigidBodies::find_states(Reductions& ranks) {
   const bool known = std::ranges::all_of(bodies_, [&](const Rigid& r) {
     return model_.bodies[static_cast<std::size_t>(r.body)].rigid_state.has_value();
   });
-  if (known) return;
+  if (known) return;  // all of them: the sums are collective
   // First mass, centre and momentum, then inertia and angular momentum about the centre.
   constexpr std::size_t first_sums = 7, second_sums = 9;
   std::vector<ExactSum> sums(first_sums * bodies_.size());
@@ -119,6 +120,9 @@ void RigidBodies::find_states(Reductions& ranks) {
   });
   ranks.sum(std::span<ExactSum>(sums));
   for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    std::optional<RigidState>& of_model =
+        model_.bodies[static_cast<std::size_t>(bodies_[r].body)].rigid_state;
+    if (of_model) continue;  // a restart may add bodies
     const ExactSum* s = &sums[second_sums * r];
     RigidState& state = found[r];
     state.inertia = {s[0].value(), s[1].value(), s[2].value(), s[3].value(), s[4].value(), s[5].value()};
@@ -130,7 +134,22 @@ void RigidBodies::find_states(Reductions& ranks) {
       state.mass = input.rigid_inertia->mass;
       state.inertia = input.rigid_inertia->tensor.value_or(state.inertia);
     }
-    model_.bodies[static_cast<std::size_t>(bodies_[r].body)].rigid_state = state;
+    of_model = state;
+  }
+}
+
+void RigidBodies::find_densities(Reductions& ranks) {
+  std::vector<ExactSum> sums(2 * bodies_.size());  // mass and volume
+  for (const ConstParticleBlock& block : blocks_of(std::as_const(model_))) {
+    const int number = of_body(block.body);
+    if (number < 0) continue;
+    ExactSum* s = &sums[2 * static_cast<std::size_t>(number)];
+    for (const ConstParticle p : block) s[0].add(p[Column::mass]), s[1].add(p[Column::volume]);
+  }
+  ranks.sum(std::span<ExactSum>(sums));
+  for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    const double volume = sums[2 * r + 1].value();
+    density_.push_back(volume > 0 ? sums[2 * r].value() / volume : 0);
   }
 }
 
@@ -322,6 +341,21 @@ void RigidBodies::move(int number, const ColumnLayout& layout, double* block) co
         centre + rigid.turn * (Vec3<double>{x[i], x[block_lanes + i], x[2 * block_lanes + i]} - s.centre);
     for (int a = 0; a < 3; ++a) x[block_lanes * a + i] = at[a];
   }
+  // The vectors of the particles' domains: edges, or corners from the particle.
+  const auto turn = [&](Column first, int vectors) {
+    if (!layout.has(first)) return;
+    double* columns = block + layout.offset(first);
+    for (int v = 0; v < vectors; ++v) {
+      double* u = columns + 3 * block_lanes * v;
+      for (int i = 0; i < block_lanes; ++i) {
+        const Vec3<double> turned =
+            rigid.turn * Vec3<double>{u[i], u[block_lanes + i], u[2 * block_lanes + i]};
+        for (int a = 0; a < 3; ++a) u[block_lanes * a + i] = turned[a];
+      }
+    }
+  };
+  turn(Column::edge_1x, 3);
+  turn(Column::corner_0x, 8);
 }
 
 std::uint32_t RigidBodies::faces_reached(const RigidState& s, const Vec3<double>& x, double edge) const {

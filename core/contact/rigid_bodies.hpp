@@ -49,6 +49,8 @@ class RigidBodies {
   int of_body(int body) const { return by_body_[static_cast<std::size_t>(body)]; }
   /// With the motion without contact until end_step().
   const RigidState& state(int number) const;
+  /// Mass over volume of the particles: with a given mass (RigidInertia) not the material's.
+  double density(int number) const { return density_[static_cast<std::size_t>(number)]; }
   bool is_free(int number) const { return !bodies_[static_cast<std::size_t>(number)].driven; }
   bool any_free() const {
     return std::ranges::any_of(bodies_, [](const Rigid& r) { return !r.driven; });
@@ -98,6 +100,7 @@ class RigidBodies {
     std::uint32_t reached = 0;
   };
   void find_states(Reductions& ranks);
+  void find_densities(Reductions& ranks);
   void move_without_contact(const Loads& loads, const Vec3<double>& gravity, const StepLength& length);
   /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
   Vec3<double> symmetry_planes_at(int number);
@@ -115,6 +118,7 @@ class RigidBodies {
   Reductions& ranks_;
   StepLength length_;
   std::vector<Rigid> bodies_;
+  std::vector<double> density_;  ///< density()
   std::vector<double> node_mass_;
   std::vector<int> by_component_, by_body_;
   std::vector<RigidContact> contacts_;  ///< of all ranks in this step, in their order

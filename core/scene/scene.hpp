@@ -90,6 +90,11 @@ void for_each_active_body(const Scene& scene, F f) {
     }
   }
 }
+inline bool has_surface_loads(const Scene& scene) {
+  bool found = false;
+  for_each_active_body(scene, [&](int, const BodyInput& b) { found = found || !b.surface_loads.empty(); });
+  return found;
+}
 inline std::vector<const BodyInput*> active_bodies(const Scene& scene) {
   std::vector<const BodyInput*> bodies;
   for_each_active_body(scene, [&](int, const BodyInput& b) { bodies.push_back(&b); });

@@ -289,10 +289,12 @@ void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* bl
 }
 
 /// The particles' domains: by the velocity gradient of the batch's block `b`, or as they have been carried.
+/// Those of a rigid body in contact have turned with it.
 template <ShapePolicy S, TransferPolicy T>
 [[gnu::always_inline]] inline void PassesWith<S, T>::update_domains(int body, const BrickFrame& frame,
                                                                     const ColumnLayout& layout, int b,
                                                                     double* block, int used, Scratch& at) {
+  if (rigid(body) >= 0) return;
   if constexpr (deforms)
     at.statistics.domains += S::deform(frame, layout, at.batch.gradient, block_lanes * b, dt, block, used);
   if constexpr (settles)

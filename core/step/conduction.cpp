@@ -38,7 +38,7 @@ class ConductionWith final : public Conduction {
   ConductionWith(Model& model, NodeHalo& halo);
   bool any() const override { return any_; }
   void map_heat() override;
-  void map_flux() override;
+  void map_flux(double dt) override;
   void update_temperatures(double dt) override;
   void finish_exchange() override { halo_.end(*model_.grid); }
 
@@ -119,7 +119,7 @@ void ConductionWith<S>::temperatures(Slot s, double* nodes) const {
 }
 
 template <ShapePolicy S>
-void ConductionWith<S>::map_flux() {
+void ConductionWith<S>::map_flux(double dt) {
   BrickGrid& grid = *model_.grid;
   const auto map = [&](int slot) {
     const auto s = static_cast<Slot>(slot);
@@ -138,7 +138,7 @@ void ConductionWith<S>::map_flux() {
                            unseen -= nodes[node_doubles * node + 1] * shape;
                          });
         const double decaying = body.model->specific_heat() * block[layout.offset(Column::mass) + l] *
-                                decay(body, block, l, grid.geometry(), model_.clock.dt) * unseen;
+                                decay(body, block, l, grid.geometry(), dt) * unseen;
         const Vec3<double> flow =
             (-body.model->conductivity() * block[layout.offset(Column::volume) + l]) * gradient;
         S::for_each_node(place, l, grid.geometry().inverse_cell,

@@ -34,7 +34,7 @@ class Conduction {
   /// Whether any body conducts; if none does, the step has no heat phases.
   virtual bool any() const = 0;
   virtual void map_heat() = 0;
-  virtual void map_flux() = 0;
+  virtual void map_flux(double dt) = 0;
   virtual void update_temperatures(double dt) = 0;
   virtual void finish_exchange() = 0;
 };

@@ -51,9 +51,9 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   if (heat.any()) {
     then("heat to grid", [&] { heat.map_heat(); });
     then("exchange heat", [&] { heat.finish_exchange(); });
-    then("heat flux to grid", [&] { heat.map_flux(); });
+    then("heat flux to grid", [&] { heat.map_flux(heat_dt_); });
     then("exchange flux", [&] { heat.finish_exchange(); });
-    then("heat to particles", [&] { heat.update_temperatures(model_.clock.dt); });
+    then("heat to particles", [&] { heat.update_temperatures(heat_dt_); });
   }
 
   if (model_.scene->contact.enable) {
@@ -120,7 +120,10 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
       passes_(make_passes(model, communication.halo, rigid_.get())) {}
 
 void ExplicitIntegrator::begin_step(double dt) {
-  lag_before_ = model_.clock.lag;
+  Clock& clock = model_.clock;
+  lag_before_ = clock.lag;
+  heat_dt_ = std::max(dt - clock.heat_lead, 0.0);
+  clock.heat_lead = std::max(clock.heat_lead - dt, 0.0);
   passes_->begin_step(set_length(dt));
 }
 
@@ -139,12 +142,13 @@ StepLength ExplicitIntegrator::set_length(double dt) {
   return length;
 }
 
-/// Conduction has taken the step as it was chosen: it moves heat between particles alone.
+/// Heat has been conducted over the step as it was chosen; the next steps conduct it for less.
 void ExplicitIntegrator::limit_strain() {
   double& dt = model_.clock.dt;
   const double limited =
       limited_step(dt, ranks_.largest(passes_->largest_strain_rate(strain_rate_limit(dt))));
   if (limited == dt) return;
+  model_.clock.heat_lead += dt - limited;
   dt = limited;
   passes_->shorten_step(set_length(dt));
 }

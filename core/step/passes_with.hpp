@@ -102,10 +102,12 @@ class PassesWith final : public Passes {
   /// Whether it solves with the consistent mass matrix (core/transfer/consistent.hpp).
   static constexpr bool solves = solves_mass<T>;
   /// The nodes of a brick whose motion is found: with MUSL those that its particles take it from, unless
-  /// contact, a correction, a solution or a rigid wall (node_update.hpp) needs all of them.
+  /// contact, a correction, a solution, the work of a surface load or a rigid wall (node_update.hpp) needs
+  /// all of them.
   static NodeBlockShape moving_block(const Model& model) {
     const SolutionInput& solution = model.scene->solution;
     const bool all = corrects || solves || solution.scheme != Scheme::musl || model.scene->contact.enable ||
+                     has_surface_loads(*model.scene) ||
                      std::ranges::count(model.grid->geometry().boundary, Boundary::rigid_wall) > 0;
     return all ? S::node_block : momentum_block<S>;
   }

@@ -146,7 +146,8 @@ void PassesWith<S, T>::update_all() {
     for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t) {
       take_updated_nodes(s, at);
       velocities_of_brick(s, component, at);
-      regularised_velocities(velocity_dt * forces_.gravity, faces(s), shared_.nodes(), at.nodes.data());
+      regularised_velocities(velocity_dt * (forces_.gravity + weight_of(s, component).acceleration), faces(s),
+                             shared_.nodes(), at.nodes.data());
       at.field.take_strain(frame(s), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });

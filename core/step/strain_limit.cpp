@@ -29,11 +29,19 @@ bool strain_may_jump(const Model& model) {
   if (!scene.detonations.empty()) return true;
   std::vector<Vec3<double>> velocities;
   double fastest = 0;  // as of the critical step at the start
+  const Vec3<double>& gravity = scene.solution.gravity;
+  double weight = std::sqrt(dot(gravity, gravity));  // the largest force per mass
   for (const ComponentInput& component : scene.components) {
     for (const BodyInput& body : component.bodies) {
       if (body.for_bool || body.deactivated) continue;
       if (!body.initial_velocity_expressions.empty() || !body.prescribed_velocity_expressions.empty())
         return true;
+      if (body.prescribed_acceleration || body.harmonic_excitation) return true;
+      if (body.body_force) {
+        if (!body.body_force->expressions.empty()) return true;
+        const Vec3<double> force = gravity + body.body_force->number;
+        weight = std::max(weight, std::sqrt(dot(force, force)));
+      }
       const Vec3<double> v = body.prescribed_velocity.value_or(body.initial_velocity);
       const double c = model.materials[body.material]->initial_sound_speed();
       fastest = std::max(fastest, c / wave_limit(scene) + std::sqrt(dot(v, v)));
@@ -46,8 +54,7 @@ bool strain_may_jump(const Model& model) {
   for (const Vec3<double>& a : velocities) {
     for (const Vec3<double>& b : velocities) difference = std::max(difference, dot(a - b, a - b));
   }
-  const double g2 = dot(scene.solution.gravity, scene.solution.gravity);
-  const double fall = std::sqrt(2 * std::sqrt(g2) * diagonal(model.grid->geometry()));
+  const double fall = std::sqrt(2 * weight * diagonal(model.grid->geometry()));
   return step.factor * (std::sqrt(difference) + fall) > largest_strain * fastest;
 }
 

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "core/particle_range.hpp"
 #include "core/threads.hpp"
@@ -245,7 +249,8 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
     totals.contact_pairs.resize(ContactPairs(component_count(*model.scene)).size());
   for (std::size_t k = 0; k < totals.contact_pairs.size(); ++k) {
     // A rank that has had no contact yet has no pairs.
-    const ContactRecord::Pair pair = ledger.contact.empty() ? ContactRecord::Pair{} : ledger.contact.pairs[k];
+    const ContactRecord::Pair pair =
+        k < ledger.contact.pairs.size() ? ledger.contact.pairs[k] : ContactRecord::Pair{};
     booked.insert(booked.end(), pair.impulse.begin(), pair.impulse.end());
     booked.push_back(pair.friction_heat);
   }
@@ -335,8 +340,51 @@ EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
   return balance;
 }
 
+namespace {
+
+/// Where particles belong to nodes, up to eight bricks have particles in the same cell, also of other ranks.
+std::int64_t cells_of_several_bricks(const Model& model, Reductions& ranks) {
+  const GridGeometry& geometry = model.grid->geometry();
+  std::vector<std::int64_t> inside, border;  // numbers of cells; those that other ranks may have, too
+  for (Slot s = 0; s < model.grid->owned(); ++s) {
+    const Brick& brick = model.grid->brick(s);
+    const bool at_border = std::ranges::any_of(
+        brick.neighbour, [&](Slot n) { return n != no_slot && n >= model.grid->owned(); });
+    for (const ConstParticleBlock& block : blocks_of(model, brick)) {
+      for (const ConstParticle p : block) {
+        const Vec3<double> x = p.vector(Column::position_x);
+        std::int64_t cell = 0;
+        for (int a = 2; a >= 0; --a)
+          cell = geometry.cells[static_cast<std::size_t>(a)] * cell + geometry.cell_index(x[a], a);
+        (at_border ? border : inside).push_back(cell);
+      }
+    }
+  }
+  const auto distinct = [](std::vector<std::int64_t>& cells) {
+    std::ranges::sort(cells);
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  };
+  distinct(inside);
+  distinct(border);
+  std::erase_if(inside, [&](std::int64_t cell) { return std::ranges::binary_search(border, cell); });
+  std::string mine;
+  for (const std::int64_t cell : border) mine += fmt::format("{} ", cell);
+  border.clear();
+  for (const std::string& of_rank : ranks.gather(mine)) {
+    std::istringstream cells(of_rank);
+    for (std::int64_t cell; cells >> cell;) border.push_back(cell);
+  }
+  distinct(border);
+  auto count = static_cast<std::int64_t>(inside.size());
+  ranks.sum(std::span(&count, 1));
+  return count + static_cast<std::int64_t>(border.size());
+}
+
+}  // namespace
+
 std::int64_t occupied_cells(const Model& model, Reductions& ranks) {
   const GridGeometry& geometry = model.grid->geometry();
+  if (geometry.site == Site::node) return cells_of_several_bricks(model, ranks);
   std::int64_t cells = 0;
   const int bricks = model.grid->owned();
 #pragma omp parallel for schedule(dynamic, 16) reduction(+ : cells)

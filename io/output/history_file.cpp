@@ -298,34 +298,64 @@ void HistoryFile::look_up(const core::Model& model, int reach, std::vector<doubl
   }
 }
 
-void HistoryFile::average(const core::Model& model, const Target& t, std::vector<double>& values) const {
-  const core::GridGeometry& geometry = model.grid->geometry();
-  if (!geometry.contains(t.point)) return;
-  const core::Slot s = model.grid->find(geometry.brick_at(t.point));
-  if (s == core::no_slot || s >= model.grid->owned()) return;
-  std::array<std::int64_t, 3> cell{};
-  for (int a = 0; a < 3; ++a) cell[static_cast<std::size_t>(a)] = geometry.cell_index(t.point[a], a);
+namespace {
 
-  double weights = 0;
-  std::vector<double> sums(t.variables.size());
-  for (const core::ConstParticleBlock& block : core::blocks_of(model, model.grid->brick(s))) {
-    const BodyFacts facts = facts_of(model, static_cast<std::size_t>(block.body));
-    for (const core::ConstParticle p : block) {
-      const core::Vec3<double> x = p.vector(Column::position_x);
-      double w = p[Column::mass];
-      for (int a = 0; a < 3; ++a) {
-        w *= geometry.cell_index(x[a], a) == cell[static_cast<std::size_t>(a)]
-                 ? std::fmax(0.0, 1 - std::abs(x[a] - t.point[a]) * geometry.inverse_cell[a])
-                 : 0.0;
+/// The bricks whose particles may be in the cell of a point: around it are the nodes of up to eight.
+std::vector<core::BrickCoord> bricks_around(const core::GridGeometry& geometry, const core::Vec3<double>& x) {
+  if (geometry.site == core::Site::cell) return {geometry.brick_at(x)};
+  std::vector<core::BrickCoord> bricks;
+  for (int corner = 0; corner < 8; ++corner) {
+    std::int32_t b[3];
+    for (int a = 0; a < 3; ++a)
+      b[a] =
+          static_cast<std::int32_t>((geometry.cell_index(x[a], a) + (corner >> a & 1)) / core::brick_cells);
+    const core::BrickCoord brick{b[0], b[1], b[2]};
+    if (std::ranges::find(bricks, brick) == bricks.end()) bricks.push_back(brick);
+  }
+  return bricks;
+}
+
+}  // namespace
+
+void HistoryFile::average(const core::Model& model, core::Reductions& ranks,
+                          std::vector<double>& values) const {
+  const core::GridGeometry& geometry = model.grid->geometry();
+  std::vector<core::ExactSum> sums;  // by point: of weights, then of weight times variable
+  for (const Target& t : targets_) {
+    if (t.particle || !geometry.contains(t.point)) continue;
+    const std::size_t first = sums.size();
+    sums.resize(first + 1 + t.variables.size());
+    for (const core::BrickCoord& brick : bricks_around(geometry, t.point)) {
+      const core::Slot s = model.grid->find(brick);
+      if (s == core::no_slot || s >= model.grid->owned()) continue;
+      for (const core::ConstParticleBlock& block : core::blocks_of(model, model.grid->brick(s))) {
+        const BodyFacts facts = facts_of(model, static_cast<std::size_t>(block.body));
+        for (const core::ConstParticle p : block) {
+          const core::Vec3<double> x = p.vector(Column::position_x);
+          double w = p[Column::mass];
+          for (int a = 0; a < 3; ++a) {
+            w *= geometry.cell_index(x[a], a) == geometry.cell_index(t.point[a], a)
+                     ? std::fmax(0.0, 1 - std::abs(x[a] - t.point[a]) * geometry.inverse_cell[a])
+                     : 0.0;
+          }
+          if (w == 0) continue;
+          sums[first].add(w);
+          for (std::size_t v = 0; v < t.variables.size(); ++v)
+            sums[first + 1 + v].add(w * finite(evaluate(t.variables[v], p, facts)));
+        }
       }
-      if (w == 0) continue;
-      weights += w;
-      for (std::size_t v = 0; v < sums.size(); ++v) sums[v] += w * finite(evaluate(t.variables[v], p, facts));
     }
   }
-  if (!(weights > 0)) return;
-  values[t.first] = 0;
-  for (std::size_t v = 0; v < sums.size(); ++v) values[t.first + first_value + v] = finite(sums[v] / weights);
+  if (sums.empty()) return;
+  ranks.sum(std::span(sums));
+  auto next = sums.begin();
+  for (const Target& t : targets_) {
+    if (t.particle || !geometry.contains(t.point)) continue;
+    const double weights = (next++)->value();
+    if (weights > 0) values[t.first] = 0;
+    for (std::size_t v = 0; v < t.variables.size(); ++v, ++next)
+      if (weights > 0) values[t.first + first_value + v] = finite(next->value() / weights);
+  }
 }
 
 void HistoryFile::add(const core::Model& model, core::Reductions& ranks) {
@@ -336,9 +366,7 @@ void HistoryFile::add(const core::Model& model, core::Reductions& ranks) {
 
 void HistoryFile::add(const core::Model& model, const core::Energies& energies, core::Reductions& ranks) {
   std::vector<double> values(record_, infinity);
-  for (const Target& t : targets_) {
-    if (!t.particle) average(model, t, values);
-  }
+  average(model, ranks, values);
   const auto missing = [&] {
     return std::any_of(targets_.begin(), targets_.end(),
                        [&](const Target& t) { return t.particle && t.present && values[t.first] != 0; });

@@ -81,7 +81,8 @@ class HistoryFile {
   std::string head() const;
   std::string legend() const;
   void look_up(const core::Model& model, int reach, std::vector<double>& values) const;
-  void average(const core::Model& model, const Target& target, std::vector<double>& values) const;
+  /// Of all Points. Collective.
+  void average(const core::Model& model, core::Reductions& ranks, std::vector<double>& values) const;
 
   std::vector<Target> targets_;
   Reactions reactions_;

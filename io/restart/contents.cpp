@@ -127,8 +127,11 @@ Ledger summed(const core::Model& model, std::vector<BodyRecord>& bodies, core::R
     counts.push_back(entry(ledger.body_eroded, b));
     counts.push_back(entry(ledger.body_left, b));
   }
-  if (model.scene->contact.enable) {
-    ledger.contact.pairs.resize(core::ContactPairs(core::component_count(*model.scene)).size());
+  // Also of a run without contact that goes on from one with it.
+  const auto pairs = static_cast<std::size_t>(ranks.largest(double(ledger.contact.pairs.size())));
+  if (model.scene->contact.enable || pairs > 0) {
+    ledger.contact.pairs.resize(
+        std::max(pairs, core::ContactPairs(core::component_count(*model.scene)).size()));
     for (const core::ExactSum& sum : sums_of(ledger.contact)) sums.push_back(sum);
   }
   const std::size_t of_ledger = sums.size();
@@ -315,6 +318,7 @@ void write_run(hid_t file, const RestartContents& c) {
   hdf5::write_attribute(file, "critical_dt", c.clock.critical_dt);
   hdf5::write_attribute(file, "first_critical_dt", c.clock.first_critical_dt);
   hdf5::write_attribute(file, "next_dt", c.clock.next_dt);
+  hdf5::write_attribute(file, "heat_lead", c.clock.heat_lead);
   hdf5::write_attribute(file, "initial_energy", c.initial_energy);
   hdf5::write_attribute(file, "next_identity", static_cast<std::int64_t>(c.next_identity));
 }
@@ -330,6 +334,7 @@ void read_run(hid_t file, RestartContents& c) {
   c.clock.critical_dt = hdf5::read_double(file, "critical_dt");
   c.clock.first_critical_dt = hdf5::read_double(file, "first_critical_dt");
   c.clock.next_dt = hdf5::has_attribute(file, "next_dt") ? hdf5::read_double(file, "next_dt") : 0.0;
+  c.clock.heat_lead = hdf5::has_attribute(file, "heat_lead") ? hdf5::read_double(file, "heat_lead") : 0.0;
   c.initial_energy = hdf5::read_double(file, "initial_energy");
   c.next_identity = static_cast<std::uint64_t>(hdf5::read_int64(file, "next_identity"));
 }

@@ -153,11 +153,54 @@ void read_particles(const std::string& path, const RestartContents& contents, co
   core::arrange_blocks(model);
 }
 
+/// The record of contact with the pairs of this scene, whose components may be others than the file's: found
+/// again by name; of pairs that are gone the heat of friction remains.
+core::ContactRecord pairs_of_scene(const RestartContents& contents, const core::Scene& scene) {
+  const core::ContactRecord& old = contents.ledger.contact;
+  const auto new_count = static_cast<std::int32_t>(core::component_count(scene));
+  const core::ContactPairs numbers(static_cast<std::size_t>(new_count));
+  core::ContactRecord found;
+  found.dissipated = old.dissipated;
+  found.other_friction_heat = old.other_friction_heat;
+  found.pairs.resize(numbers.size());
+  std::map<std::int32_t, std::string> names;
+  for (const BodyRecord& body : contents.bodies) names[body.component_number] = body.component;
+  // Behind the components is that of failed particles.
+  const auto number_now = [&](std::int32_t number) -> std::int32_t {
+    const auto at = names.find(number);
+    if (at == names.end()) return core::has_failed_component(scene) ? core::failed_component(scene) : -1;
+    const auto same = [&](const core::ComponentInput& c) { return c.name == at->second; };
+    const auto now = std::ranges::find_if(scene.components, same);
+    return now == scene.components.end() ? -1 : static_cast<std::int32_t>(now - scene.components.begin());
+  };
+  std::size_t k = 0;
+  for (std::int32_t b = 1; k < old.pairs.size(); ++b) {
+    for (std::int32_t a = 0; a < b && k < old.pairs.size(); ++a, ++k) {
+      const core::ContactRecord::Pair& pair = old.pairs[k];
+      const auto [first, second] = std::pair(number_now(a), number_now(b));
+      const int number = first < 0 || second < 0 || first == second
+                             ? -1
+                             : numbers.number(std::min(first, second), std::max(first, second));
+      if (number < 0) {
+        found.other_friction_heat += pair.friction_heat;
+        continue;
+      }
+      core::ContactRecord::Pair& to = found.pairs[static_cast<std::size_t>(number)];
+      to = pair;
+      if (first > second)
+        for (core::ExactSum& impulse : to.impulse) impulse.negate();
+    }
+  }
+  return found;
+}
+
 /// The ledger of all ranks continues on rank 0.
 void restore_ledger(const RestartContents& contents, const Fit& fit, core::Model& model,
                     const core::Reductions& ranks) {
   const bool keeper = ranks.rank() == 0;
   model.ledger = keeper ? contents.ledger : core::Ledger{};
+  if (keeper && model.scene->contact.enable && !contents.ledger.contact.empty())
+    model.ledger.contact = pairs_of_scene(contents, *model.scene);
   model.ledger.body_eroded.assign(model.bodies.size(), 0);
   model.ledger.body_left.assign(model.bodies.size(), 0);
   for (std::size_t b = 0; b < contents.bodies.size(); ++b)

@@ -454,6 +454,29 @@ class Contact(_mpm.Case):
                     self.assertEqual(heat, status["friction_heat"][-1])
                 self.assertEqual(summary["contact"]["dissipated"], summary["energy"]["dissipated_by_contact"])
 
+    def test_books_through_restarts_with_other_components(self):
+        """A restart may switch contact off, or add components: what contact has taken and given is kept."""
+        def text(contact, end, more=(), attributes=""):
+            bodies = [_mpm.block("left", (2, 2, 2), (2, 2, 2), (1, 0, 0)), _mpm.block("right", (4, 2, 2), (2, 2, 2)), *more]
+            whole = _mpm.scene(bodies[:1], _mpm.grid((0, 0, 0), (12, 6, 6)), _mpm.solution(end), output=f'<Restart time_interval="0.5"/>')
+            others = "".join(f'<Component name="{name}">{body}</Component>' for name, body in zip(("second", "third"), bodies[1:]))
+            return whole.replace("</Component>", "</Component>" + others, 1).replace(
+                "<Solution", f'<Contact enable="{contact}" contact_type="1" record_contact_force="1" {attributes}/><Solution', 1)
+
+        def last(folder):
+            return max(_mpm.restarts(self.folder / folder), key=lambda path: int(path.stem.rpartition("_")[2]))
+
+        self.go(text(1, 0.5), "one")
+        first = _mpm.summary(self.folder / "one")["contact"]
+        self.assertGreater(first["pairs"][0]["impulse"][0], 0.1)
+        self.run_in("off", [last("one"), "-rt", self.write(text(0, 1.0), "off.xmp")])
+        self.run_in("on", [last("off"), "-rt", self.write(text(1, 1.0 + 1e-9, (), 'failure_to_component="1"'), "on.xmp")])
+        off, on = (_mpm.summary(self.folder / folder) for folder in ("off", "on"))
+        self.assertGreaterEqual(off["energy"]["dissipated_by_contact"], first["dissipated"])
+        again = {tuple(pair["components"]): pair["impulse"][0] for pair in on["contact"]["pairs"]}
+        self.assertAlmostEqual(again.pop(tuple(first["pairs"][0]["components"])) / first["pairs"][0]["impulse"][0], 1, delta=0.01)
+        self.assertEqual(set(again.values()), {0})
+
     def test_oblique_faces_in_flat_cells(self):
         """Two blocks whose faces stand at an angle to the axes collide without friction: the impulse is normal to the faces, whatever
         the cells' proportions."""

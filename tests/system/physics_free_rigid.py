@@ -4,6 +4,7 @@ Prints what it measures."""
 
 import math
 
+import h5py
 import numpy as np
 
 import _cases
@@ -156,6 +157,58 @@ class FreeRigid(_mpm.Case):
         text = self.write(scene(bodies, 2.0, 0.01))
         outcome = self.run_in("meet", [text], code=_mpm.NUMERICAL_FAILURE)
         self.assertIn("'left' and 'right', both moving freely, have met and overlap", outcome.complaint)
+
+    def test_two_free_bodies_of_given_mass(self):
+        """Bodies pass without touching, or stop the run where they have entered each other, whatever mass they are given."""
+        for factor in (0.1, 1, 10):
+            inertia = f'<RigidInertia mass="{108 * factor!r}"/>'
+            with self.subTest(factor=factor):
+                one = iron("one", (3, 3, 3), (3, 3, 3), more=inertia)
+                self.go(scene([one, iron("two", (6.6, 3, 3), (3, 3, 3), (0, 0.1, 0), inertia)], 0.1, 0.01, (14, 12, 12)))
+                outcome = self.run_in("met", [self.write(scene([one, iron("two", (7.5, 3, 3), (3, 3, 3), (-5, 0, 0), inertia)], 0.6, 0.01,
+                                                               (14, 12, 12)))], code=_mpm.NUMERICAL_FAILURE)
+                self.assertIn("have met and overlap", outcome.err)
+                self.assertLess(_mpm.summary(self.folder / "met")["bodies"][2]["centre"][0], 8.2)
+
+    def test_domains_turn_with_the_body(self):
+        """Edges and corners of all particles as the lattice of their places has turned."""
+        table = "".join(f'<Coefficient time="{t}" cx="0" cy="0" cz="0" crx="{c}" cry="{c}" crz="{c}"/>'
+                        for t, c in ((0, 1), (0.1, 1), (0.1000001, 0)))
+        law = f'<PrescribedAcceleration ax="0" ay="0" az="0" arx="0" ary="0" arz="50">{table}</PrescribedAcceleration>'
+        for shape, first, vectors in (("CPDI", "edge_1x", 3), ("CPDI2", "corner_0x", 8)):
+            with self.subTest(shape):
+                text = scene([iron("brick", (6, 6, 6), (3, 3, 3), more=law)], 0.25, 0.01, (14, 14, 14), shape=shape)
+                self.go(text.replace("</Output>", '<Restart time_interval="0.25"/></Output>'))
+                [restart] = _mpm.restarts(self.folder / "run")
+                with h5py.File(restart) as file:
+                    body = file["bodies/1"]
+                    names = body.attrs["columns"].decode().split()
+                    rows = body["particles"][:]
+                rows = rows[np.argsort(rows[:, names.index("identity")])]
+                place, at = rows[:, :3] - rows[:, :3].mean(axis=0), names.index(first)
+                begun = np.array([[(i % 6), (i // 6 % 6), i // 36] for i in range(216)]) * 0.5 - 1.25
+                turn = np.linalg.lstsq(begun, place, rcond=None)[0].T
+                np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-9)
+                self.assertGreater(abs(turn[1, 0]), 0.3)
+                domains = rows[:, at:at + 3 * vectors].reshape(-1, vectors, 3) @ turn  # turned back
+                np.testing.assert_allclose(domains, np.broadcast_to(domains[0], domains.shape), atol=1e-9)
+                np.testing.assert_allclose(np.sort(np.abs(domains[0]), axis=1)[:, -1], 0.25, atol=1e-9)
+
+    def test_a_body_joins_at_a_restart(self):
+        """The state of the others is that of the restart file: inertia as it has turned, and spin."""
+        table = "".join(f'<Coefficient time="{t}" cx="0" cy="0" cz="0" crx="{c}" cry="{c}" crz="{c}"/>'
+                        for t, c in ((0, 1), (0.1, 1), (0.1000001, 0)))
+        law = f'<PrescribedAcceleration ax="0" ay="0" az="0" arx="100" ary="30" arz="50">{table}</PrescribedAcceleration>'
+        brick = iron("brick", (8, 8, 8), (2, 3, 4), more=law + '<RigidInertia mass="100" Ixx="60" Iyy="240" Izz="250" Ixy="0" Iyz="0" Ixz="0"/>')
+        texts = [scene(bodies, 0.4, 0.01, (20, 20, 20)).replace("</Output>", '<Restart time_interval="0.2"/></Output>')
+                 for bodies in ([brick], [brick, iron("late", (15, 15, 15), (2, 2, 2))])]
+        _, alone, _ = self.go(texts[0], "alone")
+        halfway = min(_mpm.restarts(self.folder / "alone"), key=lambda path: int(path.stem.rpartition("_")[2]))
+        self.run_in("joined", [halfway, "-rt", self.write(texts[1], "more.xmp")])
+        joined = _mpm.summary(self.folder / "joined")
+        self.assertEqual(joined["bodies"][1]["angular_velocity"], alone["bodies"][1]["angular_velocity"])
+        self.assertEqual(joined["bodies"][1]["kinetic"], alone["bodies"][1]["kinetic"])
+        self.assertGreater(joined["bodies"][1]["kinetic"], 1000)
 
     def test_at_a_wall(self):
         """Walls hold no free rigid body: the run stops, on all ranks with the same words. Free faces let it out."""

@@ -117,6 +117,22 @@ class Heat(_mpm.Case):
         self.write(text)
         return self.run_in(folder, [self.folder / "case.xmp"], ranks=ranks), _cases.States(self.folder / folder)
 
+    def test_steps_that_the_strain_shortens(self):
+        """Heat is conducted for as long as the run lasts, also where the strain shortens the steps that conduction has taken."""
+        law = _mpm.material("soft", strength='type="IsoElastic" Young="1000" Poisson="0.3" CoefficientOfThermalConductivity="20" SpecHeat="1"')
+        bodies = [_mpm.block(name, (4, y, 4), (2, 1, 2), ("300*(x-5)", 0, 0), more=f'<InitialTemperature value="{kelvin}"/>')
+                  for name, y, kelvin in (("hot", 4, 600), ("cold", 5, 300))]
+        hottest, steps = [], []
+        for step in ('factor="0.5"', 'specified="0.00002"'):
+            text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (10, 10, 10)), _mpm.solution(0.006).replace('factor="0.5"', step), [law])
+            self.run_in("run", [self.write(text)])
+            found = _mpm.summary(self.folder / "run")
+            hottest.append(found["bodies"][0]["max_temperature"])
+            steps.append(found["steps"])
+        print(f"hottest after {steps} steps: {hottest}")
+        self.assertLess(steps[0], steps[1])
+        self.assertAlmostEqual(hottest[0], hottest[1], delta=0.1 * (600 - hottest[1]))
+
     def test_temperature_of_a_body(self):
         outcome, states = self.hot_and_cold("one")
         first = states.column("kelv", 0)

@@ -85,6 +85,41 @@ class Loads(_mpm.Case):
                 self.assertLess(found["energy"]["external_work"], -3)
                 self.assertLess(abs(found["energy"]["relative_drift"]), drift)
 
+    def test_uniform_force_strains_nothing(self):
+        """A uniform force per mass acts as gravity does, also on the strain of light nodes (USL)."""
+        for algorithm in ("MUSL", "USF", "USL"):
+            for shape in ("linear", "QuadraticBSpline"):
+                with self.subTest(algorithm=algorithm, shape=shape):
+                    body = _mpm.block("body", (2.2, 2.2, 2.2), (4, 4, 4), more='<BodyForce bx="20"/>')
+                    grid = _mpm.grid((0, 0, 0), (30, 10, 10)).replace("<Grid>", f'<Grid shape="{shape}">')
+                    self.run_in("run", [self.write(_mpm.scene([body], grid, _mpm.solution(1.0, algorithm)))])
+                    self.assertLess(_mpm.summary(self.folder / "run")["energy"]["internal"], 1e-20)
+
+    def test_work_of_tractions(self):
+        """Also where functions reach nodes to which particles give no momentum (DDMP): on a bar pulled at both ends, from rest, all
+        work becomes energy."""
+        for shape in ("linear", "DDMP", "SGMP"):
+            with self.subTest(shape):
+                bar = _mpm.block("bar", (4.3, 2.2, 2.1), (6, 2, 2), more='<Traction normal="0" tx="20"/>')
+                grid = _mpm.grid((0, 0, 0), (15, 7, 7)).replace("<Grid>", f'<Grid shape="{shape}">')
+                self.run_in("run", [self.write(_mpm.scene([bar], grid, _mpm.solution(1.0)))])
+                energy = _mpm.summary(self.folder / "run")["energy"]
+                print(f"work of tractions, {shape}: {energy['external_work']:.4f}, drift {energy['relative_drift']:+.1e}")
+                self.assertGreater(energy["external_work"], 1)
+                self.assertLess(abs(energy["relative_drift"]), 0.03)
+
+    def test_impact_of_a_body_that_a_load_has_accelerated(self):
+        """The strain of a step is limited as that of a body that is thrown."""
+        table = "".join(f'<Coefficient time="{t}" cx="{c}" cy="0" cz="0" crx="0" cry="0" crz="0"/>' for t, c in ((0, 1), (0.2, 1), (0.2000001, 0)))
+        law = f'<PrescribedAcceleration ax="2000" ay="0" az="0" arx="0" ary="0" arz="0">{table}</PrescribedAcceleration>'
+        target, grid, drift = _mpm.block("target", (60, 3, 3), (6, 4, 4)), _mpm.grid((0, 0, 0), (90, 10, 10)), []
+        for start, speed, more, end in ((3, 0, law, 0.25), (43, 400, "", 0.05)):
+            body = _mpm.block("body", (start, 3, 3), (4, 4, 4), (speed, 0, 0), more=more)
+            self.run_in("run", [self.write(_mpm.scene([body, target], grid, _mpm.solution(end, factor=0.8)))])
+            drift.append(abs(_mpm.summary(self.folder / "run")["energy"]["relative_drift"]))
+        print(f"impact at 400: drift {drift[0]:.2e} of a body that a load accelerates, {drift[1]:.2e} of one that is thrown")
+        self.assertLess(drift[0], 1.5 * drift[1] + 0.005)
+
     def test_what_damping_does_not_reach(self):
         """Without contact DynamicRelax leaves a rigid body alone, and so do the books."""
         body = _mpm.block("body", (2, 2, 2), (2, 2, 2), of="iron")
