@@ -39,7 +39,9 @@ constexpr std::array<Kind, 11> kinds{{
      "each of xx, yy, zz, xy, yz, xz by its strain e or its stress s at the end; strains count from the\n"
      "      start of the leg, and components not named have zero strain"},
     {"hold", "time T", "no strain for a time T (relaxation)"},
-    {"table", "FILE", "deformation gradient F over time: lines of time F11 F12 F13 F21 ... F33"},
+    {"table", "FILE",
+     "deformation gradient F over time: lines of time F11 F12 F13 F21 ... F33,\n"
+     "      the first with F = 1 0 0 0 1 0 0 0 1"},
 }};
 
 constexpr std::array<std::string_view, 5> options{"stress", "rate", "time", "steps", "confining"};
@@ -53,6 +55,14 @@ std::vector<std::string_view> words_of(std::string_view text) {
     words.push_back(text.substr(begin, at - begin));
   }
   return words;
+}
+
+/// To the digits of a table.
+bool is_identity(const core::Mat3<double>& f) {
+  constexpr double digits = 1e-9;
+  const core::Mat3<double> d = f - core::Mat3<double>{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  return std::ranges::all_of(std::array{d.xx, d.xy, d.xz, d.yx, d.yy, d.yz, d.zx, d.zy, d.zz},
+                             [](double x) { return std::abs(x) <= digits; });
 }
 
 struct Component {
@@ -333,6 +343,9 @@ std::vector<physics::DeformationRow> read_deformation(const std::string& file) {
     }
     rows.push_back({v[0], {v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9]}});
     if (!(determinant(rows.back().gradient) > 0)) fail("the determinant of F is not positive");
+    // The point starts undeformed, and goes from row to row.
+    if (rows.size() == 1 && !is_identity(rows[0].gradient))
+      fail("the first F is not the identity, 1 0 0 0 1 0 0 0 1: begin with the undeformed material");
     if (rows.size() > 1 && !(rows.back().time > rows[rows.size() - 2].time))
       fail("the time does not increase");
   }

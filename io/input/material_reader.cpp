@@ -1,6 +1,7 @@
 #include "io/input/material_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -56,6 +57,18 @@ std::uint32_t choose(const Document& document, const std::string& name, const Di
                         did_you_mean(name, names), list));
 }
 
+/// Up to the rounding of exponents.
+bool same(const core::Dimension& a, const core::Dimension& b) {
+  constexpr double rounding = 1e-9;
+  const core::Dimension d = a / b;
+  return std::max({std::abs(d.length), std::abs(d.mass), std::abs(d.time), std::abs(d.temperature)}) <=
+         rounding;
+}
+
+std::string in_words(const core::Dimension& dimension) {
+  return same(dimension, {}) ? "a number without a unit" : "a unit of " + core::to_text(dimension);
+}
+
 /// Overrides single values of a material in the document, so that they are checked like all others.
 class Setter {
  public:
@@ -77,6 +90,7 @@ class Setter {
       name = name.substr(dot + 1);
     }
     std::vector<std::uint32_t> places;
+    std::vector<const AttributeSpec*> rows;
     std::vector<std::string> elements;
     std::vector<std::string_view> known;
     for (const std::uint32_t child : children(document_, material_, element)) {
@@ -85,8 +99,10 @@ class Setter {
       const std::string_view type = attribute(document_, child, "type").value_or("");
       for (const AttributeSpec& a : spec->attributes)
         if (a.applies_to(type)) known.push_back(a.name);
-      if (!spec->attribute(name, type)) continue;
+      const AttributeSpec* row = spec->attribute(name, type);
+      if (!row) continue;
       places.push_back(child);
+      rows.push_back(row);
       elements.push_back(fmt::format("{}.{}", spec->name, name));
     }
     if (places.empty())
@@ -94,7 +110,7 @@ class Setter {
     if (places.size() > 1)
       return report(setting,
                     fmt::format("more than one law has this parameter: use {}", join(elements, " or ")));
-    document_.set_attribute(places[0], name, in_units_of_the_input(value, setting), 0);
+    document_.set_attribute(places[0], name, in_units_of_the_input(value, setting, places[0], *rows[0]), 0);
   }
 
  private:
@@ -102,12 +118,31 @@ class Setter {
     diagnostics_.add(0, {}, fmt::format("--set {}: {}", setting, message));
   }
 
-  std::string in_units_of_the_input(std::string_view value, const std::string& setting) {
+  /// Of a parameter of the law; its exponents may be other parameters.
+  core::Dimension dimension_of(std::uint32_t element, const AttributeSpec& row) const {
+    if (row.unit.empty()) return {};
+    const ElementSpec& spec = *language_.child(document_.elements()[element].name);
+    return core::parse_dimension(row.unit, [&](std::string_view name) -> std::optional<double> {
+      if (const auto given = attribute(document_, element, name)) return parse_real(*given);
+      const AttributeSpec* other = spec.attribute(name, attribute(document_, element, "type").value_or(""));
+      return other && other->default_value ? parse_real(*other->default_value) : std::nullopt;
+    });
+  }
+
+  std::string in_units_of_the_input(std::string_view value, const std::string& setting, std::uint32_t element,
+                                    const AttributeSpec& row) {
     if (parse_real(value) || value.find(' ') == value.npos) return std::string(value);
     try {
       const core::Quantity quantity = core::parse_quantity(value);
-      if (units_) return fmt::format("{}", units_->value_of(quantity));
-      report(setting, "the input does not state its units, so a unit cannot be converted");
+      const core::Dimension expected = dimension_of(element, row);
+      if (!same(quantity.unit.dimension, expected)) {
+        report(setting, fmt::format("expected {}, not of {}", in_words(expected),
+                                    core::to_text(quantity.unit.dimension)));
+      } else if (units_) {
+        return fmt::format("{}", units_->value_of(quantity));
+      } else {
+        report(setting, "the input does not state its units, so a unit cannot be converted");
+      }
     } catch (const core::UnitError& error) { report(setting, error.what()); }
     return std::string(value.substr(0, value.find(' ')));
   }

@@ -85,13 +85,29 @@ Failures restarts(const LawSample& sample, const Registry& registry) {
   return c.failures;
 }
 
+namespace {
+
+std::vector<core::DetonationItem> scaled(std::vector<core::DetonationItem> items, double per_length,
+                                         double per_time) {
+  for (core::DetonationItem& item : items) {
+    item.time *= per_time;
+    item.position = per_length * item.position;
+    item.location *= per_length;
+    for (std::array<double, 2>* corner : {&item.lower, &item.upper})
+      for (double& x : *corner) x *= per_length;
+  }
+  return items;
+}
+
+}  // namespace
+
 /// SI and mm-g-ms, for a sample in SI. Reveals absolute tolerances inside a law.
 Failures units_agree(const LawSample& sample, const Registry& registry) {
   Checker c(sample, registry);
   const double length = 1e3, mass = 1e3, time = 1e3, velocity = length / time,
                stress = mass / (length * time * time);
   const auto other = make_material(in_units(sample.input, registry.catalogue(), length, mass, time),
-                                   sample.detonations, registry);
+                                   scaled(sample.detonations, length, time), registry);
   const RandomPath path = c.path(2), converted_path(2, sample.strain, sample.duration * time);
   PointDriver a(*c.material, c.with_viscosity()), b(*other, {.cell_size = sample.cell_size * length});
   const double scale = walk(a, path, 100);

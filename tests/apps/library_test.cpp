@@ -239,6 +239,12 @@ TEST_CASE("faults about the library", "[library]") {
   CHECK(set("Yeild0=1") == "library: --set Yeild0=1: the material has no 'Yeild0'; did you mean 'Yield0'?");
   CHECK(set("Yield0") == "library: --set Yield0: expected NAME=VALUE");
   CHECK(set("Yield0=1 MPA") == "library: --set Yield0=1 MPA: 'MPA' is no unit; did you mean 'MPa'?");
+  CHECK(set("Yield0=120 kg") == "library: --set Yield0=120 kg: expected a unit of stress, not of mass");
+  CHECK(set("ReferenceDensity=9 g") ==
+        "library: --set ReferenceDensity=9 g: expected a unit of density, not of mass");
+  CHECK(set("Poisson=0.3 s") ==
+        "library: --set Poisson=0.3 s: expected a number without a unit, not of time");
+  CHECK(set("Poisson=0.3 1") == "none");
   CHECK(set("Yield0=-1") == "library: <StrengthModel Yield0=\"-1\">: expected a number greater than 0");
   CHECK(set("nosuch.Yield0=1") == "library: --set nosuch.Yield0=1: the material has no 'Yield0'");
 }

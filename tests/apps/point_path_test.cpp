@@ -141,6 +141,8 @@ TEST_CASE("tables of deformation gradients", "[path]") {
   CHECK(said("0,1,0,0,0,1,0,0,0\n") == ", line 1: 9 numbers, expected time and nine of F");
   CHECK(said("0,1,0,0,0,x,0,0,0,1\n") == ", line 1: 'x' is not a number");
   CHECK(said("0,1,0,0,0,1,0,0,0,1\n0,1,0,0,0,1,0,0,0,1\n") == ", line 2: the time does not increase");
+  CHECK(said("0,1.01,0,0,0,1,0,0,0,1\n1,1.02,0,0,0,1,0,0,0,1\n") ==
+        ", line 1: the first F is not the identity, 1 0 0 0 1 0 0 0 1: begin with the undeformed material");
   CHECK(said("0,1,0,0,0,-1,0,0,0,1\n") == ", line 1: the determinant of F is not positive");
 }
 

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "physics/checks/law_checks.hpp"
 #include "physics/point/point_driver.hpp"
 #include "tests/physics/samples.hpp"
 
@@ -204,6 +205,16 @@ TEST_CASE("explosives have artificial viscosity and a sound speed before they ar
   CHECK(fraction(products) == 1);
   CHECK(material->initial_sound_speed() == burnt->initial_sound_speed());
   CHECK(point.critical_speed() > 0.9 * burnt->initial_sound_speed());
+}
+
+TEST_CASE("a detonation has the units of its explosive", "[physics][burn]") {
+  // The front reaches the point, at the origin, while the check's path is walked.
+  for (const DetonationItem& source :
+       {point_at(1e-6, {0.05, 0.02, 0}), rectangle(1e-6, 2, 0.05, {-0.01, -0.02}, {0.01, 0.02})}) {
+    const physics::LawSample sample{tnt(2), {source}};
+    CHECK(physics::law_check("units").failures(sample, physics::built_in_laws()) ==
+          std::vector<std::string>{});
+  }
 }
 
 TEST_CASE("contradictions about burning are refused", "[physics][burn]") {

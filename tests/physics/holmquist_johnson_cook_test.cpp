@@ -20,6 +20,7 @@ using physics::EosPoint;
 using physics::HolmquistJohnsonCook;
 using physics::HolmquistJohnsonCookBulk;
 using physics::LinearisedPressure;
+using physics::PathKind;
 using physics::PointDriver;
 
 namespace {
@@ -89,6 +90,14 @@ TEST_CASE("HJC strength at tabulated pressures, damages and rates", "[physics][h
     INFO(row.pressure << " MPa, damage " << row.damage << ", rate " << row.rate);
     CHECK(law.strength(row.pressure, row.damage, row.rate) == Approx(row.strength).epsilon(1e-11));
   }
+}
+
+TEST_CASE("HJC with a threshold of zero fails at the first damage, and not before", "[physics][hjc]") {
+  const auto material = make(concrete({{"DamageToFail", 1}, {"FailureDamageThreshold", 0}}));
+  PointDriver point(*material, {});
+  drive(point, {.kind = PathKind::uniaxial_stress, .rate = 1, .targets = {-0.01}, .steps = 1000},
+        [&](double) { CHECK((point.value(Column::failed) > 0) == (point.value(Column::damage) > 0)); });
+  CHECK(point.value(Column::failed) == 1);
 }
 
 TEST_CASE("HJC strain to fracture, with and without softening tension", "[physics][hjc]") {

@@ -260,6 +260,29 @@ class Restart(Case):
                     self.assertEqual(outcome.complaint.count(words + ": differs from the input"), 1, outcome)
         self.assertFalse((self.folder / "over").exists())
 
+    def test_work_planes_are_compared_by_their_values(self):
+        """A plane may get another place in the list or another name, or go where it changes nothing; it may not move."""
+        left, right = _mpm.BOUNCING
+
+        def text(planes, of_left, of_right):
+            bodies = [body.replace('type="Block"', f'type="Block" workPlane="{plane}"') if plane else body
+                      for body, plane in ((left, of_left), (right, of_right))]
+            return bounce(end=END / 8, bodies=bodies, output=f'<Restart time_interval="{END / 32}"/>').replace(
+                "<Component", planes + "<Component", 1)
+
+        turned = '<WorkPlane name="turned" a11="1" a21="0.003" a31="0"/>'
+        self.write(text('<WorkPlane name="spare"/><WorkPlane name="idle"/>' + turned, "idle", "turned"), "planes.xmp")
+        alone = self.run_in("planes", [self.folder / "planes.xmp"]).state
+        restart = _mpm.restarts(self.folder / "planes", "planes")[0]
+        same = self.write(text(turned, None, "turned"), "same.xmp")
+        self.assertEqual(self.run_in("same", [restart, "-rt", same]).state, alone)
+        for planes, of_left in ((turned + '<WorkPlane name="moved" r0x="0.1"/>', "moved"),
+                                (turned + turned.replace('"turned"', '"moved"'), "moved")):
+            outcome = self.run_in("moved", [restart, "-rt", self.write(text(planes, of_left, "turned"), "moved.xmp")],
+                                  code=INPUT_ERROR)
+            self.assertEqual(outcome.complaint.count('<Body name="left">: differs from the input'), 1, outcome)
+            self.assertEqual(outcome.complaint.count('differs from'), 1, outcome)
+
     def test_a_body_that_is_taken_out(self):
         """-rt with Deactive="1": the body is gone, and the ledger says what it took along."""
         left, right = _mpm.BOUNCING
