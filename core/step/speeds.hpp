@@ -20,7 +20,7 @@ namespace mpm::core {
 /// particle that has crept to the edge of a cell is unstable there; their limits are the largest that held.
 ///
 ///                 MUSL                USF                 USL
-///   linear        0.91 1.0  1.3       0.95 0.91 1.2       0.67 0.64 0.70      block, fluid, bar
+///   linear        0.95 0.99 1.3       1.2  1.2  1.3       0.67 0.64 0.73      block, fluid, bar
 ///   SGMP          1.5  1.3  2.2       1.3  1.1  2.3       1.0  0.80 1.2
 ///   DDMP          1.5  1.0  1.7       0.64 0.95 1.7       0.99 0.77 1.1
 ///   uGIMP         1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.73 0.77
@@ -29,9 +29,9 @@ namespace mpm::core {
 ///   quadratic     1.6  1.2  1.8       1.0  1.1  1.9       1.0  0.73 1.1
 ///   cubic         1.5  1.3  2.0       1.4  1.1  2.1       1.3  1.0  1.4
 /// Over 100,000 steps USF: cpGIMP 0.6 (not 0.68); linear has a remedy of its own (face_traps.hpp); USL:
-/// linear 0.24 (not 0.3), DDMP 0.58 (not 0.66), uGIMP and cpGIMP 0.56 (not 0.63). In the shock only linear
-/// functions with USF fall short: 0.55. XPIC and FMPM allow longer steps than FLIP, affine transfers shorter
-/// ones; fluid, APIC and TPIC | AFLIP:
+/// linear 0.24 (not 0.3), DDMP 0.58 (not 0.66), uGIMP and cpGIMP 0.56 (not 0.63). XPIC and FMPM allow longer
+/// steps than FLIP (not linear with FMPM: fluid 0.87, stable at factor 1 by the weight of tension, below),
+/// affine transfers shorter ones; fluid, the smaller of APIC and TPIC | AFLIP:
 ///   uGIMP, cpGIMP 0.73 | 0.64         0.64 | 0.67         0.23 | 0.2
 ///   quadratic     0.87 | 0.59         0.87 | 0.59         0.42 | below 0.2
 ///   cubic         1.1  | 0.77         1.1  | 0.80         0.44 | below 0.2
