@@ -17,13 +17,11 @@ Watch::Watch(const core::Scene& scene, double time) : warn_(scene.solution.warn)
     if (!points.empty() && points.back().time >= time)
       load_ends_.emplace(points.back().time, fmt::format("{} of body \"{}\"", load, body));
   };
-  for (const core::ComponentInput& component : scene.components) {
-    for (const core::BodyInput& body : component.bodies) {
-      if (body.prescribed_acceleration)
-        note(body.prescribed_acceleration->points, body.name, "PrescribedAcceleration");
-      for (const core::SurfaceLoad& load : body.surface_loads) note(load.points, body.name, "Traction");
-    }
-  }
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    if (body.prescribed_acceleration)
+      note(body.prescribed_acceleration->points, body.name, "PrescribedAcceleration");
+    for (const core::SurfaceLoad& load : body.surface_loads) note(load.points, body.name, "Traction");
+  });
 }
 
 void Watch::after_step(const core::Model& model, const core::Stepper::Incidents& mine,

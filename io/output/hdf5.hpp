@@ -82,6 +82,5 @@ double read_double(hid_t object, const std::string& name);
 std::int64_t read_int64(hid_t object, const std::string& name);
 /// Whether the object has an attribute of this name.
 bool has_attribute(hid_t object, const std::string& name);
-bool has_dataset(hid_t parent, const std::string& name);
 
 }  // namespace mpm::io::hdf5

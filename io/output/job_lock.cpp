@@ -50,7 +50,11 @@ Answer set_both(int handle) {
   const Answer at_gate = set(handle, F_WRLCK, gate);
   if (at_gate != Answer::taken) return at_gate;
   const Answer at_ranks = set(handle, F_WRLCK, holders);
-  if (at_ranks != Answer::taken) set(handle, F_UNLCK, gate);
+  if (at_ranks != Answer::taken) {
+    const int error = errno;
+    set(handle, F_UNLCK, gate);
+    errno = error;  // of the lock that was not taken
+  }
   return at_ranks;
 }
 
@@ -134,9 +138,10 @@ void JobLock::take(const std::string& path, int number_of_ranks) {
     handle_ = open_lock(path, O_RDWR | O_CREAT);
     if (handle_ < 0) throw system_error("write", path, errno);
     const Answer answer = set_both(handle_);
+    const int error = errno;
     if (answer == Answer::no_locks) {
       notice_ = fmt::format("'{}' cannot be locked ({}): make sure that only one run writes to this folder",
-                            path, system_error("lock", path, errno).what());
+                            path, system_error("lock", path, error).what());
       return;
     }
     if (answer == Answer::taken && leads_to(path, handle_)) break;

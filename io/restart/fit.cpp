@@ -58,6 +58,10 @@ class Fitting {
           fmt::format("body '{}' is deactivated: its {} particles are removed, with their mass and energy "
                       "recorded as removed",
                       record.name, record.particles));
+    } else if (record.particles > 0 && input != nullptr && input->for_bool) {
+      report(input->source, record.name,
+             "the restart file has particles of this body, but the scene makes it an operand of Bool bodies; "
+             "remove ForBoolBody, or add Deactive=\"1\" to remove its particles");
     } else if (record.particles > 0) {
       report({model_.scene->provenance.path, 0}, record.name,
              "the restart file has this body, but the scene does not; add it, with Deactive=\"1\" to remove "

@@ -47,6 +47,13 @@ class Loads(_mpm.Case):
                 self.assertLess(max(map(abs, status["relative_drift"])), 5e-3)  # gained: eight times the first energy
         log = (self.folder / "MUSL" / "case.out").read_text()
         self.assertIn('the last Coefficient of PrescribedAcceleration of body "block" has passed', log)
+        # A body that takes no part has no load that ends.
+        for part in ('Deactive="1"', 'ForBoolBody="1"'):
+            idle = _mpm.block("idle", (12, 2, 2), (3, 3, 3), more=load, attributes=part)
+            body = _mpm.block("block", (6, 2, 2), (3, 3, 3), (1, 0, 0))
+            text = _mpm.scene([body, idle], _mpm.grid((0, 0, 0), (20, 8, 8)), _mpm.solution(1.5))
+            self.run_in("idle", [self.write(text)])
+            self.assertNotIn("the last Coefficient", (self.folder / "idle" / "case.out").read_text())
 
     def test_harmonic_excitation(self):
         load = ('<HarmExcit><A ax="0" ay="3" az="0"/><Omega x="0" y="8" z="0"/><Theta x="0" y="0.4" z="0"/>'

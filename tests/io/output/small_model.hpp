@@ -85,7 +85,7 @@ inline core::Model prepared_model(std::shared_ptr<const core::Scene> scene, cons
   model.grid = std::make_unique<core::BrickGrid>(geometry);
   for (std::size_t c = 0; c < scene->components.size(); ++c) {
     for (const core::BodyInput& input : scene->components[c].bodies) {
-      if (input.deactivated) continue;
+      if (input.deactivated || input.for_bool) continue;
       core::Body& body = model.bodies.emplace_back();
       body.name = input.name;
       body.component = static_cast<int>(c);

@@ -257,6 +257,22 @@ TEST_CASE("A scene that does not fit is refused with every difference") {
               "<Body name=\"wall <&> floor\">: its material is 'ice', but 'wax' in the restart file"));
 }
 
+TEST_CASE("A body with particles that becomes an operand is refused by what it is") {
+  const Folder folder("restart_operand");
+  core::SoloCommunication solo;
+  core::Model model = prepared_model(small_scene());
+  fill(model, solo);
+  const std::string path = io::write_restart(folder.path(), "small", model, {}, solo);
+  auto scene = small_scene();
+  scene->components[0].bodies[0].for_bool = true;
+  core::Model copy = prepared_model(scene);
+  CHECK_THROWS_WITH(
+      io::read_restart(path, copy, solo),
+      Catch::Contains(
+          "<Body name=\"bar\">: the restart file has particles of this body, but the scene makes it an "
+          "operand of Bool bodies; remove ForBoolBody, or add Deactive=\"1\" to remove its particles"));
+}
+
 TEST_CASE("What is only shown may start at zero or go") {
   const Folder folder("restart_shown");
   core::SoloCommunication solo;
