@@ -463,15 +463,15 @@ class Contact(_mpm.Case):
             return whole.replace("</Component>", "</Component>" + others, 1).replace(
                 "<Solution", f'<Contact enable="{contact}" contact_type="1" record_contact_force="1" {attributes}/><Solution', 1)
 
-        def last(folder):
-            return max(_mpm.restarts(self.folder / folder), key=lambda path: int(path.stem.rpartition("_")[2]))
+        def last(folder, job="case"):
+            return max(_mpm.restarts(self.folder / folder, job), key=lambda path: int(path.stem.rpartition("_")[2]))
 
         self.go(text(1, 0.5), "one")
         first = _mpm.summary(self.folder / "one")["contact"]
         self.assertGreater(first["pairs"][0]["impulse"][0], 0.1)
         self.run_in("off", [last("one"), "-rt", self.write(text(0, 1.0), "off.xmp")])
-        self.run_in("on", [last("off"), "-rt", self.write(text(1, 1.0 + 1e-9, (), 'failure_to_component="1"'), "on.xmp")])
-        off, on = (_mpm.summary(self.folder / folder) for folder in ("off", "on"))
+        self.run_in("on", [last("off", "off"), "-rt", self.write(text(1, 1.0 + 1e-9, (), 'failure_to_component="1"'), "on.xmp")])
+        off, on = (_mpm.summary(self.folder / job, job) for job in ("off", "on"))
         self.assertGreaterEqual(off["energy"]["dissipated_by_contact"], first["dissipated"])
         again = {tuple(pair["components"]): pair["impulse"][0] for pair in on["contact"]["pairs"]}
         self.assertAlmostEqual(again.pop(tuple(first["pairs"][0]["components"])) / first["pairs"][0]["impulse"][0], 1, delta=0.01)

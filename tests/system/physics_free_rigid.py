@@ -205,7 +205,7 @@ class FreeRigid(_mpm.Case):
         _, alone, _ = self.go(texts[0], "alone")
         halfway = min(_mpm.restarts(self.folder / "alone"), key=lambda path: int(path.stem.rpartition("_")[2]))
         self.run_in("joined", [halfway, "-rt", self.write(texts[1], "more.xmp")])
-        joined = _mpm.summary(self.folder / "joined")
+        joined = _mpm.summary(self.folder / "joined", "more")
         self.assertEqual(joined["bodies"][1]["angular_velocity"], alone["bodies"][1]["angular_velocity"])
         self.assertEqual(joined["bodies"][1]["kinetic"], alone["bodies"][1]["kinetic"])
         self.assertGreater(joined["bodies"][1]["kinetic"], 1000)
