@@ -37,7 +37,8 @@ std::vector<std::string> asked(const Node& node, const IdleRule& rule) {
     if (asked(node, name) && std::ranges::find(names, name) == names.end()) names.emplace_back(name);
   };
   if (rule.attributes.front() == "*") {
-    for (const AttributeSpec& row : std::span(node.spec().attributes).subspan(1)) add(row.name);
+    for (const AttributeSpec& row : std::span(node.spec().attributes).subspan(1))
+      if (std::ranges::find(rule.attributes, row.name) == rule.attributes.end()) add(row.name);
   } else {
     for (const std::string_view name : rule.attributes) add(name);
   }

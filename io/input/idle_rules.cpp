@@ -1,9 +1,11 @@
 #include "io/input/idle_rules.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "core/contact/component_contact.hpp"
+#include "io/input/idle_places.hpp"
 
 namespace mpm::io {
 
@@ -13,33 +15,14 @@ using core::MaterialInput;
 using core::Scene;
 using Place = SettingPlace;
 
-bool contact_is_off(const Place& at) { return !at.scene.contact.enable; }
 bool gaps_at_nodes(const Place& at) {
   return at.scene.contact.enable && at.scene.contact.distance == core::ContactInput::Distance::shared_node;
 }
 bool gaps_without_limit(const Place& at) {
   return at.scene.contact.enable && !gaps_at_nodes(at) && !at.scene.contact.measures_gaps();
 }
-bool regression(const Place& at) {
-  return at.scene.contact.enable && at.scene.contact.normal == core::ContactInput::Normal::regression;
-}
-
-bool is_law(const Place& at, std::string_view type) { return at.strength().type == type; }
-
 const MaterialInput& material_of(const Scene& scene, const core::BodyInput& body) {
   return scene.materials[body.material];
-}
-
-template <class Test>
-bool any_body(const Scene& scene, Test test) {
-  return std::ranges::any_of(scene.components, [&](const core::ComponentInput& component) {
-    return std::ranges::any_of(component.bodies, test);
-  });
-}
-
-bool unused_material(const Place& at) {
-  const auto number = static_cast<std::size_t>(at.material - at.scene.materials.data());
-  return !any_body(at.scene, [&](const core::BodyInput& body) { return body.material == number; });
 }
 
 bool unused_plane(const Place& at) {
@@ -49,34 +32,16 @@ bool unused_plane(const Place& at) {
   });
 }
 
-/// Whether the law itself has damage.
-bool has_damage(const core::LawInput& law) {
-  return law.type == "HolmquistJohnsonCook" || law.type == "RHT" || law.type == "JH2" ||
-         (law.type == "JohnsonCook" && law.has("D1"));
-}
-bool has_damage(const Place& at) { return has_damage(at.strength()); }
-
-bool can_fail(const Place& at) { return io::can_fail(*at.material); }
-
 bool nothing_fails(const Place& at) {
   return at.scene.contact.enable && !any_body(at.scene, [&](const core::BodyInput& body) {
-           return io::can_fail(material_of(at.scene, body));
+           return can_fail(material_of(at.scene, body));
          });
 }
 
-bool failed_type_is_not(const Place& at, int type) { return at.strength().value_or("FailedType", 0) != type; }
-
-/// Nothing reads FailureDamageThreshold.
-bool no_damage_rule(const Place& at) {
-  return (contact_is_off(at) || !at.scene.contact.failed_to_component) &&
-         at.strength().value_or("DamageToFail", 0) == 0;
-}
-
-bool all_zero(const Place& at) {
-  return at.node.word("type") != "none" &&
-         std::ranges::all_of(at.node.spec().attributes, [&](const AttributeSpec& row) {
-           return row.type != ValueType::real || !row.applies_to(at.node.type()) ||
-                  at.node.real(row.name) == 0;
+/// No particle joins the failed component, which damage suffices for.
+bool nothing_joins(const Place& at) {
+  return nothing_fails(at) && !any_body(at.scene, [&](const core::BodyInput& body) {
+           return has_damage(material_of(at.scene, body).strength);
          });
 }
 
@@ -121,9 +86,6 @@ bool outside_grid(const Place& at) {
   return false;
 }
 
-bool steps_are_implicit(const Place& at) {
-  return at.scene.solution.integration == core::Integration::implicit;
-}
 bool steps_are_explicit(const Place& at) { return !steps_are_implicit(at); }
 bool is_quasistatic(const Place& at) {
   return steps_are_implicit(at) && at.scene.solution.implicit && at.scene.solution.implicit->quasistatic();
@@ -138,10 +100,6 @@ bool step_is_given(const Place& at) {
   return at.scene.contact.enable && !steps_are_implicit(at) && (step.specified > 0 || step.constant);
 }
 
-/// The step does not follow the speed of sound.
-bool step_is_unestimated(const Place& at) {
-  return steps_are_implicit(at) || at.scene.solution.time_step.specified > 0;
-}
 bool has_free_rigid(const Place& at) {
   return at.scene.contact.enable && any_body(at.scene, [&](const core::BodyInput& body) {
            return core::is_rigid(material_of(at.scene, body)) && !body.prescribed_velocity &&
@@ -171,33 +129,12 @@ bool begins_late(const Place& at, const Points& points) {
   return !points.empty() && points.front().time >= at.scene.solution.end_time;
 }
 
-using Random = core::RandomFailureInput;
-const Random& random(const Place& at) { return at.material->random_failure; }
-
-}  // namespace
-
-bool has_plastic_strain(std::string_view strength_type) {
-  constexpr std::string_view without[] = {"IsoElastic", "CauchyElastic", "Elastic_1D",
-                                          "Null",       "HighExpBurn",   "MooneyRivlin",
-                                          "NeoHookean", "Corotated",     "Rigid"};
-  return std::ranges::find(without, strength_type) == std::end(without);
-}
-
-bool can_fail(const core::MaterialInput& material) {
-  const std::string& type = material.strength.type;
-  return std::ranges::any_of(material.failures,
-                             [&](const core::FailureInput& failure) {
-                               return failure.type != "PlaStrain" || has_plastic_strain(type);
-                             }) ||
-         has_damage(material.strength) || type == "DruckerPrager" || type == "DFFoam" || type == "Gurson";
-}
-
-const std::vector<IdleRule>& idle_rules() {
+std::vector<IdleRule> rules_of_the_run() {
   static constexpr std::string_view no_contact = "used only by Contact, which is off";
   static constexpr std::string_view no_weights =
       "with contact_normal=\"regression\" the particles of both bodies give the normal";
   static constexpr std::string_view no_part = "an operand of Bool bodies takes no part in the run";
-  static const std::vector<IdleRule> table{
+  return {
       {"Solution/Implicit", {}, steps_are_explicit, "used only with Integration=\"impl\""},
       {"Solution/Implicit",
        {"newmark_beta", "newmark_gamma"},
@@ -227,135 +164,6 @@ const std::vector<IdleRule>& idle_rules() {
        [](const Place& at) { return at.scene.solution.gravity == core::Vec3<double>{}; },
        "there is no Gravity"},
       {"Solution/TimeStep", {}, steps_are_implicit, "implicit steps take their length from Implicit"},
-      {"Material", {}, unused_material, "no body is made of this material"},
-      {"Material/StrengthModel",
-       {"TensileCutoff"},
-       [](const Place& at) { return failed_type_is_not(at, 2); },
-       "used only with FailedType=\"2\""},
-      {"Material/StrengthModel",
-       {"FailedType", "FailViscosity"},
-       [](const Place& at) { return !can_fail(at); },
-       "applies only to failed particles, and this material cannot fail"},
-      {"Material/StrengthModel",
-       {"FailureDamageThreshold"},
-       no_damage_rule,
-       "used only with Contact failure_to_component=\"1\", or with DamageToFail=\"1\" of "
-       "HolmquistJohnsonCook"},
-      {"Material/StrengthModel",
-       {"mu"},
-       [](const Place& at) { return is_law(at, "Null") && at.strength().value_or("ck", 0) > 0; },
-       "with ck the viscosity is that of the power law alone"},
-      {"Material/StrengthModel",
-       {"nn"},
-       [](const Place& at) { return is_law(at, "Null") && !(at.strength().value_or("ck", 0) > 0); },
-       "the exponent of the power law, which ck switches on"},
-      {"Material/StrengthModel",
-       {"match"},
-       [](const Place& at) { return is_law(at, "DruckerPrager") && !at.strength().has("phi"); },
-       "used only with phi, c and psi"},
-      {"Material/StrengthModel",
-       {"Gauss_f0"},
-       [](const Place& at) { return is_law(at, "Gurson") && at.strength().value_or("Gauss_sn", 0) == 0; },
-       "without a scatter Gauss_sn every particle starts with f0"},
-      {"Material/StrengthModel",
-       {"VarSoundspeed"},
-       [](const Place& at) { return !core::is_rigid(*at.material) && step_is_unestimated(at); },
-       "the speed of sound does not decide the step"},
-      {"Material/StrengthModel",
-       {"PlasticWorkCoefficient"},
-       [](const Place& at) { return !at.strength().has("SpecHeat"); },
-       "requires SpecHeat, which is not given"},
-      {"Material/StrengthModel",
-       {"roomt"},
-       [](const Place& at) { return !at.strength().has("SpecHeat"); },
-       "there is no temperature without SpecHeat"},
-      {"Material/StrengthModel",
-       {"SpecHeat"},
-       [](const Place& at) {
-         return at.node.spec().attribute("PlasticWorkCoefficient", at.node.type()) == nullptr &&
-                at.strength().value_or("TemperatureCoefficient", 0) == 0 &&
-                at.strength().value_or("CoefficientOfThermalConductivity", 0) == 0;
-       },
-       "nothing heats this material"},
-      {"Material/StrengthModel",
-       {"*"},
-       [](const Place& at) { return core::is_rigid(*at.material); },
-       "a rigid body has neither stress nor heat"},
-      {"Material/StrengthModel",
-       {"Young", "Poisson"},
-       [](const Place& at) {
-         const std::string& type = at.strength().type;
-         return type == "HighExpBurn" || (type == "Null" && at.material->eos);
-       },
-       "the equation of state determines the stiffness"},
-      {"Material/StrengthModel",
-       {"limiter"},
-       [](const Place& at) {
-         return !core::is_rigid(*at.material) && at.strength().value_or("bq1", 0) == 0 &&
-                at.strength().value_or("bq2", 0) == 0;
-       },
-       "bq1 and bq2 are 0: there is no artificial viscosity to limit"},
-      {"Material/StrengthModel",
-       {"limiter"},
-       [](const Place& at) { return !core::is_rigid(*at.material) && steps_are_implicit(at); },
-       "implicit steps have no artificial viscosity"},
-      {"Material/StrengthModel",
-       {"bq1", "bq2"},
-       [](const Place& at) { return !core::is_rigid(*at.material) && steps_are_implicit(at); },
-       "implicit steps have no artificial viscosity"},
-      {"Material/EquationOfState",
-       {"c0", "c1", "c2", "c3", "c4", "c5", "c6"},
-       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 1; },
-       "used only with EOSID=\"1\""},
-      {"Material/EquationOfState",
-       {"A1", "A2", "A3", "B0", "B1", "T1", "T2"},
-       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 2; },
-       "used only with EOSID=\"2\""},
-      {"Material/EquationOfState",
-       {"S1", "gamma0", "simplified"},
-       [](const Place& at) { return at.node.type() == "PAlpha" && at.eos("EOSID") != 3; },
-       "used only with EOSID=\"3\""},
-      {"Material/FailureModel",
-       {"Erosion"},
-       [](const Place& at) { return at.node.type() == "none"; },
-       "type none has no criterion"},
-      {"Material/FailureModel", {}, all_zero, "all its bounds are 0, which switches it off"},
-      {"Material/FailureModel",
-       {},
-       [](const Place& at) {
-         return at.node.type() == "PlaStrain" && !has_plastic_strain(at.strength().type);
-       },
-       "this StrengthModel has no plastic strain"},
-      {"Material/RandomFailure",
-       {"*"},
-       [](const Place& at) { return !random(at).enable; },
-       "RandomFailure is off"},
-      {"Material/RandomFailure",
-       {"enable"},
-       [](const Place& at) { return random(at).distribution == Random::Distribution::constant; },
-       "FailDistribution 0 gives every particle the same thresholds"},
-      {"Material/RandomFailure",
-       {"enable"},
-       [](const Place& at) {
-         return random(at).distribution != Random::Distribution::constant && !can_fail(at);
-       },
-       "this material cannot fail"},
-      {"Material/RandomFailure",
-       {"GaussMean", "GaussStd"},
-       [](const Place& at) {
-         return random(at).enable && random(at).distribution != Random::Distribution::gauss;
-       },
-       "used only with FailDistribution=\"1\""},
-      {"Material/RandomFailure",
-       {"WeibMed", "WeibMod", "WeibRefVol", "WeibPartVol"},
-       [](const Place& at) {
-         return random(at).enable && random(at).distribution != Random::Distribution::weibull;
-       },
-       "used only with FailDistribution=\"2\""},
-      {"Material/RandomFailure",
-       {"DamageRandom"},
-       [](const Place& at) { return random(at).enable && !has_damage(at); },
-       "the law of this material has no damage"},
       {"Friction", {}, contact_is_off, no_contact},
       {"Friction/Coefficient",
        {},
@@ -381,7 +189,7 @@ const std::vector<IdleRule>& idle_rules() {
        "min_distance=\"0.5\" with distance_type 1, 0.05 with 2"},
       {"Contact",
        {"failure_to_component"},
-       nothing_fails,
+       nothing_joins,
        "no body has a material that can fail; give it a FailureModel"},
       {"Contact",
        {"normal_vector_excluding_failure_particle"},
@@ -500,6 +308,16 @@ const std::vector<IdleRule>& idle_rules() {
        [](const Place& at) { return at.scene.decomposition.method == core::PartitionMethod::metis; },
        "method metis does not use them, except that their product must be the number of ranks"},
   };
+}
+
+}  // namespace
+
+const std::vector<IdleRule>& idle_rules() {
+  static const std::vector<IdleRule> table = [] {
+    std::vector<IdleRule> all = idle_rules_of_materials();
+    std::ranges::copy(rules_of_the_run(), std::back_inserter(all));
+    return all;
+  }();
   return table;
 }
 

@@ -27,16 +27,20 @@ struct SettingPlace {
 struct IdleRule {
   std::string_view path;  ///< of the element
   /// Attributes checked where they are given with a value other than the default; none: the element itself;
-  /// "*": all attributes of the element except the first, its switch.
+  /// "*": all attributes of the element except the first, its switch, and those named after it.
   std::vector<std::string_view> attributes;
   bool (*idle)(const SettingPlace&);
   std::string_view why;
 };
 
 const std::vector<IdleRule>& idle_rules();
+/// Those of them below Material.
+std::vector<IdleRule> idle_rules_of_materials();
 
 /// Whether particles of this strength model have an effective plastic strain; true for a user's model.
 bool has_plastic_strain(std::string_view strength_type);
+/// Whether the law itself has damage, with these parameters.
+bool has_damage(const core::LawInput& law);
 /// Whether particles of the material can fail.
 bool can_fail(const core::MaterialInput& material);
 

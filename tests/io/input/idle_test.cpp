@@ -1,10 +1,12 @@
 // What has no effect says so: one input per setting, with the note that it must bring.
 
 #include <algorithm>
+#include <array>
 
 #include <catch2/catch.hpp>
 
 #include "io/input/idle_rules.hpp"
+#include "physics/material/material.hpp"
 #include "physics/strength/list.hpp"
 #include "tests/io/input/support.hpp"
 
@@ -301,6 +303,105 @@ TEST_CASE("laws without plastic strain are known") {
           (std::ranges::count(Law::state, core::Column::effective_plastic_strain) == 1));
   });
   CHECK(io::has_plastic_strain("a user's law"));
+}
+
+/// Laws with and without damage and failure of their own.
+const std::vector<std::string>& failing_laws() {
+  static const std::vector<std::string> laws = [] {
+    const std::string elastic = "Young='1e5' Poisson='0.3' ",
+                      johnson_cook = "<StrengthModel type='JohnsonCook' " + elastic +
+                                     "Yield0='400' B='1' n='1' C='0' m='1' roomt='293' "
+                                     "melt='1000' SpecHeat='1' epso='1' ",
+                      concrete = "<StrengthModel type='HolmquistJohnsonCook' " + elastic +
+                                 "Yield0='1' A='1' B='2' N='0.6' C='0' fc='48' SMax='7' D1='0.04' D2='1' "
+                                 "EFMin='0.01' T='4' epso='1' ",
+                      foam = "<StrengthModel type='DFFoam' " + elastic +
+                             "Yield0='5' alfa='2.1' epsud='1.6' alal='4' gama='1' bebe='2.5' ",
+                      soil = "<StrengthModel type='DruckerPrager' " + elastic +
+                             "qfai='0.3' kfai='1' qpsi='0' ten_f='1' ",
+                      porous = "<StrengthModel type='Gurson' " + elastic +
+                               "Yield0='400' q1='1.5' q2='1' f0='0.01' fc='0.15' ff='0.25' TangMod='100' ";
+    return std::vector<std::string>{std::string(law) + " ",
+                                    johnson_cook,
+                                    johnson_cook + "D1='0' D2='0' D3='0' D4='0' D5='0' ",
+                                    johnson_cook + "D1='0.5' D2='0' D3='0' D4='0' D5='0' ",
+                                    concrete,
+                                    concrete + "DamageToFail='1' ",
+                                    concrete + "ErosionByDamage='1' ",
+                                    concrete + "TensileFailure='1' ",
+                                    concrete + "ErosionByPressure='1' ",
+                                    foam + "vole='0' ",
+                                    foam + "vole='0.5' ",
+                                    soil,
+                                    porous};
+  }();
+  return laws;
+}
+
+TEST_CASE("which laws have damage, and which fail by themselves") {
+  for (const std::string& text : failing_laws()) {
+    INFO(text);
+    std::string input(bar);
+    if (std::ranges::any_of(std::array{"DFFoam", "Gurson", "DruckerPrager"}, [&](const char* type) {
+          return text.find(type) != text.npos;
+        }))  // set the pressure
+      input = replaced(input, "<EquationOfState type=\"Gruneisen\" C0=\"3940\" S1=\"1.49\" gamma0=\"1.96\"/>",
+                       "");
+    std::vector<core::Diagnostic> notes;
+    const core::Scene scene = test::parse(replaced(input, law, text), notes);
+    const core::ColumnSet columns = physics::make_material(scene.materials[0])->columns({});
+    CHECK(io::can_fail(scene.materials[0]) == columns.has(core::Column::failed));
+    CHECK(io::has_damage(scene.materials[0].strength) == columns.has(core::Column::damage));
+    const std::vector<std::string> found =
+        notes_of(replaced(replaced(input, law, text + "FailedType='1' "), "<FailureModel type=\"none\"/>",
+                          "<RandomFailure enable='1' FailDistribution='1' DamageRandom='1'/>"));
+    const auto has = [&](const std::string& end) {
+      return std::ranges::any_of(found, [&](const std::string& note) { return note.ends_with(end); });
+    };
+    CHECK(has("applies only to failed particles, and this material cannot fail") ==
+          !columns.has(core::Column::failed));
+    CHECK(has("DamageRandom=\"1\">: no effect: the law of this material has no damage") ==
+          !columns.has(core::Column::damage));
+    CHECK(has("<RandomFailure enable=\"1\">: no effect: this material cannot fail") ==
+          !(columns.has(core::Column::failed) || columns.has(core::Column::damage)));
+  }
+}
+
+TEST_CASE("Young that nothing uses but automatic weights of normals") {
+  const std::string rubber =
+                        "<StrengthModel type='MooneyRivlin' Young='100' Poisson='0.49' Mr_A2='1' Mr_B2='1'",
+                    fluid = "<StrengthModel type='Null' Young='1'",
+                    by_eos = "the equation of state determines the stiffness",
+                    rigid = "a rigid body has neither stress nor heat";
+  const std::string line = "line 6: <StrengthModel Young=";
+  const auto weighted = [](const std::string& text, const std::string& more = "") {
+    std::string two = replaced(text, "</Component>",
+                               "</Component><Component name='other'><Body name='second' material='cu' "
+                               "type='Block'><Geometry dp='0.25' x0='6' y0='0' z0='1' lx='1' ly='1' "
+                               "lz='1'/></Body></Component>");
+    two = replaced(two, "<Solution>",
+                   "<Contact enable='1' auto_normal_vector_weight='1'" + more + "/><Solution>");
+    std::vector<std::string> found;
+    for (const std::string& note : notes_of(two, true))
+      if (note.find("<StrengthModel") != std::string::npos) found.push_back(note);
+    return found;
+  };
+  const std::string without_eos =
+      replaced(bar, "<EquationOfState type=\"Gruneisen\" C0=\"3940\" S1=\"1.49\" gamma0=\"1.96\"/>", "");
+  const std::string of_rubber = replaced(without_eos, law, rubber), of_fluid = replaced(bar, law, fluid),
+                    of_iron = replaced(rigid_bar(), rigid_law, std::string(rigid_law) + " Young='2' bq1='1'");
+  const std::vector<std::string> rubber_note{
+      line + "\"100\">: no effect: Mr_A2, Mr_B2 and Poisson determine the stiffness"};
+  CHECK(notes_of(of_rubber) == rubber_note);
+  CHECK(weighted(of_rubber) == rubber_note);
+  CHECK(notes_of(of_fluid) == std::vector{line + "\"1\">: no effect: " + by_eos});
+  CHECK(weighted(of_fluid).empty());
+  CHECK(weighted(of_fluid, " contact_normal='regression'") ==
+        std::vector{line + "\"1\">: no effect: " + by_eos});
+  CHECK(notes_of(of_iron) ==
+        std::vector<std::string>{"line 6: <StrengthModel>: Young, bq1 have no effect: " + rigid});
+  CHECK(weighted(of_iron) ==
+        std::vector<std::string>{"line 6: <StrengthModel bq1=\"1\">: no effect: " + rigid});
 }
 
 TEST_CASE("a bound of the plastic strain without one") {
