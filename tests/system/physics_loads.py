@@ -2,6 +2,8 @@
 and waves that leave through a non-reflecting face."""
 
 import math
+import os
+import unittest.mock
 
 import _cases
 import _mpm
@@ -103,17 +105,21 @@ class Loads(_mpm.Case):
                     self.assertLess(_mpm.summary(self.folder / "run")["energy"]["internal"], 1e-20)
 
     def test_work_of_tractions(self):
-        """Also where functions reach nodes to which particles give no momentum (DDMP): on a bar pulled at both ends, from rest, all
-        work becomes energy."""
+        """Also where functions reach nodes to which particles give no momentum (DDMP): the work on a bar pulled at both ends depends
+        on no memory that the step has not written."""
         for shape in ("linear", "DDMP", "SGMP"):
             with self.subTest(shape):
-                bar = _mpm.block("bar", (4.3, 2.2, 2.1), (6, 2, 2), more='<Traction normal="0" tx="20"/>')
+                bar = _mpm.block("bar", (4.3, 2.2, 2.1), (6, 2, 2), more='<Traction normal="0" tx="1"/>')
                 grid = _mpm.grid((0, 0, 0), (15, 7, 7)).replace("<Grid>", f'<Grid shape="{shape}">')
-                self.run_in("run", [self.write(_mpm.scene([bar], grid, _mpm.solution(1.0)))])
-                energy = _mpm.summary(self.folder / "run")["energy"]
-                print(f"work of tractions, {shape}: {energy['external_work']:.4f}, drift {energy['relative_drift']:+.1e}")
-                self.assertGreater(energy["external_work"], 1)
-                self.assertLess(abs(energy["relative_drift"]), 0.03)
+                works = []
+                for filled in ("60", "180"):  # what the C library writes into memory that is given out
+                    with unittest.mock.patch.dict(os.environ, MALLOC_PERTURB_=filled):
+                        self.run_in("run", [self.write(_mpm.scene([bar], grid, _mpm.solution(1.0)))])
+                    works.append(_mpm.summary(self.folder / "run")["energy"]["external_work"])
+                print(f"work of tractions, {shape}: {works[0]:.4f}")
+                self.assertEqual(*works)
+                self.assertGreater(works[0], 0.02)  # force times the lengthening of the bar: 4 * 6e-3 at rest, up to twice that
+                self.assertLess(works[0], 0.06)
 
     def test_impact_of_a_body_that_a_load_has_accelerated(self):
         """The strain of a step is limited as that of a body that is thrown."""
