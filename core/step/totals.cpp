@@ -245,7 +245,7 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
                      ledger.removed_internal, ledger.contact.dissipated, ledger.contact.friction_heat(),
                      ledger.internal_lead};
   const std::size_t first_of_pairs = booked.size();
-  if (model.scene->contact.enable)
+  if (model.scene != nullptr && model.scene->contact.enable)
     totals.contact_pairs.resize(ContactPairs(component_count(*model.scene)).size());
   for (std::size_t k = 0; k < totals.contact_pairs.size(); ++k) {
     // A rank that has had no contact yet has no pairs.
