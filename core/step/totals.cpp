@@ -241,19 +241,9 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
   static_cast<Quantities&>(totals) = quantities_of(all.data());
 
   const Ledger& ledger = model.ledger;
-  std::vector booked{ledger.external_work,    ledger.removed_mass,       ledger.removed_kinetic,
-                     ledger.removed_internal, ledger.contact.dissipated, ledger.contact.friction_heat(),
-                     ledger.internal_lead};
-  const std::size_t first_of_pairs = booked.size();
-  if (model.scene != nullptr && model.scene->contact.enable)
-    totals.contact_pairs.resize(ContactPairs(component_count(*model.scene)).size());
-  for (std::size_t k = 0; k < totals.contact_pairs.size(); ++k) {
-    // A rank that has had no contact yet has no pairs.
-    const ContactRecord::Pair pair =
-        k < ledger.contact.pairs.size() ? ledger.contact.pairs[k] : ContactRecord::Pair{};
-    booked.insert(booked.end(), pair.impulse.begin(), pair.impulse.end());
-    booked.push_back(pair.friction_heat);
-  }
+  std::array booked{ledger.external_work,    ledger.removed_mass,       ledger.removed_kinetic,
+                    ledger.removed_internal, ledger.contact.dissipated, ledger.contact.friction_heat(),
+                    ledger.internal_lead};
   std::array<std::int64_t, 3> count{ledger.eroded, ledger.left_grid, ledger.velocity_limited};
   ranks.sum(std::span<ExactSum>(booked));
   ranks.sum(std::span<std::int64_t>(count));
@@ -264,11 +254,6 @@ Totals compute_totals(const Model& model, Reductions& ranks) {
   totals.dissipated_by_contact = booked[4].value();
   totals.friction_heat = booked[5].value();
   totals.internal_lead = booked[6].value();
-  auto of_pair = booked.begin() + static_cast<std::ptrdiff_t>(first_of_pairs);
-  for (Totals::ContactPair& pair : totals.contact_pairs) {
-    for (int a = 0; a < 3; ++a) pair.impulse[a] = (of_pair++)->value();
-    pair.friction_heat = (of_pair++)->value();
-  }
   totals.eroded = count[0];
   totals.left_grid = count[1];
   totals.velocity_limited = count[2];
@@ -338,6 +323,25 @@ EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
       std::max({std::abs(initial_energy), std::abs(totals.external_work), std::abs(accounted)});
   if (scale > 0) balance.relative_drift = (accounted - totals.external_work - initial_energy) / scale;
   return balance;
+}
+
+std::vector<ContactPairTotals> contact_pair_totals(const Model& model, Reductions& ranks) {
+  if (!model.scene->contact.enable) return {};
+  std::vector<ContactRecord::Pair> pairs = model.ledger.contact.pairs;
+  pairs.resize(ContactPairs(component_count(*model.scene)).size());  // a rank without contact yet has none
+  std::vector<ExactSum> sums;
+  for (const ContactRecord::Pair& pair : pairs) {
+    sums.insert(sums.end(), pair.impulse.begin(), pair.impulse.end());
+    sums.push_back(pair.friction_heat);
+  }
+  ranks.sum(std::span(sums));
+  std::vector<ContactPairTotals> totals(pairs.size());
+  auto next = sums.begin();
+  for (ContactPairTotals& pair : totals) {
+    for (int a = 0; a < 3; ++a) pair.impulse[a] = (next++)->value();
+    pair.friction_heat = (next++)->value();
+  }
+  return totals;
 }
 
 namespace {

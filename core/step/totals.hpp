@@ -43,12 +43,6 @@ struct Totals : Quantities {
   double external_work = 0;
   double dissipated_by_contact = 0;  ///< energy
   double friction_heat = 0;          ///< the part of it that friction took
-  /// Of contact since time zero, by ContactPairs::number.
-  struct ContactPair {
-    Vec3<double> impulse{};  ///< on the second component
-    double friction_heat = 0;
-  };
-  std::vector<ContactPair> contact_pairs;
   double removed_mass = 0;
   double removed_kinetic = 0;
   double removed_internal = 0;
@@ -79,6 +73,14 @@ struct EnergyBalance {
   double relative_drift = 0;
 };
 EnergyBalance energy_balance(const Totals& totals, double initial_energy);
+
+/// What contact has done between two components since time zero.
+struct ContactPairTotals {
+  Vec3<double> impulse{};  ///< on the second
+  double friction_heat = 0;
+};
+/// By ContactPairs::number; empty without contact. Collective.
+std::vector<ContactPairTotals> contact_pair_totals(const Model& model, Reductions& ranks);
 
 /// Cells with at least one particle. Collective.
 std::int64_t occupied_cells(const Model& model, Reductions& ranks);

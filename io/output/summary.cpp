@@ -30,7 +30,8 @@ Json energy_json(const core::Model& model, const core::Totals& totals) {
 }
 
 /// What contact has done since time zero, in all and by pair of components.
-Json contact_json(const core::Scene& scene, const core::Totals& totals) {
+Json contact_json(const core::Scene& scene, const core::Totals& totals,
+                  const std::vector<core::ContactPairTotals>& of_pairs) {
   const auto components = static_cast<std::int32_t>(core::component_count(scene));
   const core::ContactPairs numbers(core::component_count(scene));
   const auto name = [&](std::int32_t c) {
@@ -42,7 +43,7 @@ Json contact_json(const core::Scene& scene, const core::Totals& totals) {
     for (std::int32_t a = 0; a < b; ++a) {
       const int number = numbers.number(a, b);
       if (number < 0) continue;
-      const core::Totals::ContactPair& pair = totals.contact_pairs[static_cast<std::size_t>(number)];
+      const core::ContactPairTotals& pair = of_pairs[static_cast<std::size_t>(number)];
       pairs.push_back({{"components", {name(a), name(b)}},
                        {"impulse", to_json(pair.impulse)},
                        {"friction_heat", pair.friction_heat}});
@@ -97,7 +98,8 @@ double bytes_per_particle(const core::Model& model, const core::Totals& totals) 
 }  // namespace
 
 std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report,
-                         int ranks, const MemoryUse& memory) {
+                         int ranks, const MemoryUse& memory,
+                         const std::vector<core::ContactPairTotals>& pairs) {
   const core::Scene& scene = *model.scene;
   Json bodies = Json::array();
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -130,15 +132,17 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
         {"length", scene.header.length_unit},
         {"mass", scene.header.mass_unit}}},
   };
-  if (scene.contact.enable) summary["contact"] = contact_json(scene, totals);
+  if (scene.contact.enable) summary["contact"] = contact_json(scene, totals, pairs);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,
                    const RunReport& report, core::Reductions& ranks) {
   const MemoryUse memory = peak_memory(ranks);
+  const std::vector<core::ContactPairTotals> pairs = core::contact_pair_totals(model, ranks);
   together(ranks, [&] {
-    if (ranks.rank() == 0) replace_file(path, summary_json(model, totals, report, ranks.size(), memory));
+    if (ranks.rank() == 0)
+      replace_file(path, summary_json(model, totals, report, ranks.size(), memory, pairs));
   });
 }
 

@@ -33,9 +33,11 @@ struct RunReport {
   double particle_steps = 0;
 };
 
-/// The text of the file; phase times are means over the ranks. Undefined numbers are null.
+/// The text of the file; phase times are means over the ranks. Undefined numbers are null. `pairs`: of
+/// contact.
 std::string summary_json(const core::Model& model, const core::Totals& totals, const RunReport& report,
-                         int ranks, const MemoryUse& memory);
+                         int ranks, const MemoryUse& memory,
+                         const std::vector<core::ContactPairTotals>& pairs);
 
 /// Writes the file atomically. Throws FileError. Collective.
 void write_summary(const std::string& path, const core::Model& model, const core::Totals& totals,

@@ -94,7 +94,7 @@ TEST_CASE("The summary keeps its contract") {
 TEST_CASE("A body without particles has no place") {
   core::SoloCommunication solo;
   const core::Model model = prepared_model(small_scene());
-  const auto text = io::summary_json(model, core::compute_totals(model, solo), report(), 1, {});
+  const auto text = io::summary_json(model, core::compute_totals(model, solo), report(), 1, {}, {});
   const auto summary = nlohmann::json::parse(text);
   CHECK(summary["bodies"][0]["centre"][0].is_null());
   CHECK(summary["bodies"][0]["velocity"][0] == 0);
