@@ -59,7 +59,7 @@ waves: what particles that rest ought not to have."""
         h = HEIGHT / point.cells
         weight = f'<BodyForce bz="-{gravity()!r}*if(t&lt;{RAMP},(t/{RAMP})^2*(3-2*t/{RAMP}),1)"/>'
         column = support.block("column", (0, 0, 0), (h, h, HEIGHT), h / point.split, "solid", weight)
-        more = f'<DynamicRelax damping="{DAMPING}"/>' + ('<Volumetric averaging="cell"/>' if point.study == "averaged" else "")
+        more = f'<DynamicRelax damping="{DAMPING}"/>' + support.averages(point)
         return support.scene([column], support.grid((0, 0, 0), (h, h, HEIGHT), "222220", h),
                              support.solution(END, point.factor, more), [support.material("solid", SOLID.density, SOLID.law)],
                              support.pictures(END, ["SigmaZ"]))

@@ -46,7 +46,7 @@ faster, and the error does not go to zero."""
     def scene(self, point):
         h = SIDE / point.cells
         water = support.block("water", (0, 0, 0), (SIDE, h, 2 * SIDE), h / point.split, "water")
-        more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/>' + ('<Volumetric averaging="cell"/>' if point.study == "averaged" else "")
+        more = f'<Gravity ax="0" ay="0" az="-{GRAVITY}"/>' + support.averages(point)
         return support.scene([water], support.grid((0, 0, 0), (8 * SIDE, h, 3 * SIDE), "202220", h),
                              support.solution(TIMES[-1] * UNIT, point.factor, more),
                              [WATER],

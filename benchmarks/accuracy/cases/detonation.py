@@ -39,8 +39,8 @@ cell), over the mean exact pressure."""
         h = LENGTH / point.cells
         charge = support.block("charge", (0, 0, 0), (LENGTH, h, h), h / point.split, "TNT")
         end = 0.9 * LENGTH / TNT["D"]
-        averages = '<Volumetric averaging="cell"/>' if point.study == "averaged" else ""
-        text = support.scene([charge], _blast.column(0, LENGTH + 4 * h, h, "20"), support.solution(end, point.factor, averages),
+        text = support.scene([charge], _blast.column(0, LENGTH + 4 * h, h, "20"),
+                             support.solution(end, point.factor, support.averages(point)),
                              [_blast.explosive()], support.pictures(end / 8, ["pres", "density"]))
         return text.replace("</PeneBlast>", _blast.lit_at(0.0) + "</PeneBlast>")
 

@@ -56,7 +56,7 @@ from its momentum (0.6 GPa). *Velocity*: of the plate, against zones that move w
         h, end = CHARGE / point.cells, sandwich().end
         bodies = [support.block("TNT", (0, 0, 0), (CHARGE, h, h), h / point.split, "TNT"),
                   support.block("plate", (CHARGE, 0, 0), (PLATE, h, h), h / point.split, "copper")]
-        averages = rest.averages(point, 1 if point.study.endswith("1") else rest.RELAXATION)
+        averages = support.averages(point, 1 if point.study.endswith("1") else rest.RELAXATION)
         left, right = (h * np.ceil(share * _blast.TNT["D"] * end / h) for share in (2, 0.5))
         text = support.scene(bodies, _blast.column(float(-left), float(CHARGE + PLATE + right), h, "00"),
                              support.solution(end, point.factor, averages),

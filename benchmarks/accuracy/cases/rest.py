@@ -20,12 +20,6 @@ COVERED = 2  # cells above it
 FINE = (*methods.flip(), *methods.product(("QuadraticBSpline", "CubicBSpline"), ("APIC",)))
 
 
-def averages(point, relaxation=RELAXATION):
-    """The element of the studies with averages, `relaxation` where they relax."""
-    relaxed = f' relaxation="{relaxation}"' if "relaxed" in point.study else ""
-    return f'<Volumetric averaging="cell"{relaxed}/>' if "_" in point.study else ""
-
-
 class Rest(Case):
     name = "rest"
     title = "Pressure at rest"
@@ -51,7 +45,7 @@ below the surface, count. *velocity*: root mean square of what is left, over the
         return list(dict.fromkeys([*methods.short(), *methods.product(("CubicBSpline", "uGIMP"), ("APIC", "AFLIP"))]))
 
     def scene(self, point):
-        return (self.water if point.study.startswith("water") else self.sand)(point, averages(point))
+        return (self.water if point.study.startswith("water") else self.sand)(point, support.averages(point, RELAXATION))
 
     @staticmethod
     def water(point, averaged):

@@ -37,6 +37,14 @@ def solution(end, factor, more=""):
     return _mpm.solution(repr(float(end)), factor=repr(float(factor)), more=more)
 
 
+def averages(point, relaxation=None):
+    """The element of studies with averages, averaged or relaxed by their names; `relaxation` of those that relax."""
+    relaxed = "relaxed" in point.study
+    if not relaxed and "averaged" not in point.study:
+        return ""
+    return f'<Volumetric averaging="cell" relaxation="{relaxation}"/>' if relaxed else '<Volumetric averaging="cell"/>'
+
+
 def pictures(interval, variables):
     return f'<PostProcessing time_interval="{interval!r}" h5part="1" var="{"|".join(variables)}"/>'
 
