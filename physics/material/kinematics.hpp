@@ -11,6 +11,10 @@
 //   V + v <- (V + v) ratio,   V <- min(V, V + v)
 // Stretched instead, its density would leave the range of any equation of state. At p = a + gamma0 E, with E
 // per unit initial volume, compression from V to V0 multiplies an energy by exp(gamma0 (V/V0 - 1)).
+//
+// A law that lets its material come apart may bound the volume: velocity gradients between particles that
+// have lost touch say nothing of their volumes, and a lone particle's own one, which an affine transfer
+// returns to it from the grid, never ends.
 #pragma once
 
 #include "core/material/batch.hpp"
@@ -109,12 +113,18 @@ T part_fragments(core::Batch& batch, double* block, int row, const T& old_volume
   return core::select(loose, fragments, stretched);
 }
 
+/// What a material makes of the motion.
+struct KinematicRules {
+  double reference_density = 0;
+  bool parts = false;         ///< what has failed bears no tension, and opens voids
+  double largest_volume = 0;  ///< that motion leads to, over m/rho0; 0: no bound
+};
+
 /// Fills volumetric_strain (of the material, without voids) and old_volume of the batch; updates the volume,
-/// the accumulated strains where the layout has them, and the voids where `parts`: failed material bears no
-/// tension.
+/// the accumulated strains where the layout has them, and the voids.
 template <class T>
 [[gnu::noinline, gnu::flatten]] void update_kinematics(core::Batch& batch, const core::UpdateOptions& options,
-                                                       double reference_density, bool parts = false) {
+                                                       const KinematicRules& rules) {
   using core::Column;
   const core::ColumnLayout& layout = *batch.layout;
   const int mass_at = layout.offset(Column::mass), volume_at = layout.offset(Column::volume);
@@ -139,10 +149,15 @@ template <class T>
       batch.vanishing |= lanes_of<T>(unusable, row, batch.particles);
     }
     T volume = core::select(unusable, old_volume, old_volume * ratio);
-    if (core::derivatives_of<T> == 0 && parts)
+    if (rules.largest_volume > 0) {
+      const T largest = core::load<T>(block + mass_at) * (rules.largest_volume / rules.reference_density);
+      volume = core::min(volume, core::max(old_volume, largest));
+    }
+    if (core::derivatives_of<T> == 0 && rules.parts)
       volume = part_fragments<T>(batch, block, row, old_volume, ratio, volume);
     if (limits) {
-      volume = limit_volume(batch, options, reference_density, core::load<T>(block + mass_at), volume, row);
+      volume =
+          limit_volume(batch, options, rules.reference_density, core::load<T>(block + mass_at), volume, row);
     }
     core::store(batch.old_volume + row, old_volume);
     core::store(block + volume_at, volume);

@@ -113,7 +113,10 @@ void Material::update_as(core::Batch& batch, const core::UpdateOptions& options,
   }
   alignas(64) core::Row verdict;
   const PressureRules rules = pressure_rules(options);
-  update_kinematics<T>(batch, options, laws_.reference_density, fails_ && rules.failed.no_tension());
+  update_kinematics<T>(batch, options,
+                       {.reference_density = laws_.reference_density,
+                        .parts = fails_ && rules.failed.no_tension(),
+                        .largest_volume = strength_traits_.largest_volume});
   if (follows_deformation_) update_deformation_gradient<T>(batch);
   laws_.strength->update(batch, strength_rules(), instance);
   laws_.eos->update(batch, rules, fails_ ? verdict : nullptr, instance);

@@ -36,6 +36,7 @@ struct StrengthTraits {
   std::optional<double> bulk;            ///< `bulk`, stress
   std::optional<double> failing_damage;  ///< `fails_by_damage()`, `failing_damage()`: damage at failure
   bool erodes_by_damage = false;         ///< `erodes_by_damage()`
+  double largest_volume = 0;             ///< `largest_volume`, over m/rho0; 0: no bound (kinematics.hpp)
   std::optional<double> compression_burn;  ///< `compression_burn` (physics/eos/burning.hpp): an explosive
 };
 
@@ -82,6 +83,7 @@ class StrengthOf final : public StrengthLaw {
     &&!requires { requires !Law::linear_elasticity; };
     t.follows_strain_rate = requires { requires Law::follows_strain_rate; };
     t.heats = requires(const Law& law) { law.plastic_work_coefficient; };
+    if constexpr (requires { Law::largest_volume; }) t.largest_volume = Law::largest_volume;
     if constexpr (requires(const Law& law) { law.is_viscous(); }) t.viscous = law_.is_viscous();
     if constexpr (requires(const Law& law) { law.bulk; }) t.bulk = law_.bulk;
     if constexpr (requires(const Law& law) { law.tension_rules(); }) t.tension = law_.tension_rules();

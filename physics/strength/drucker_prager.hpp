@@ -10,8 +10,8 @@
 // apex and ten_f is used as given; the thesis sets it to zero (6-49). With closes="1" material that the
 // cut-off has let expand bears pressure only once it is as dense as before; without, as in the manual, at
 // once, and loose grains that fall together stay at a low density (A. P. Tampubolon et al., ACM Transactions
-// on Graphics 36 (2017) 105, correct the same gain of volume). The law computes its own pressure: no
-// EquationOfState. Tested by tests/physics/drucker_prager_test.cpp.
+// on Graphics 36 (2017) 105, correct the same gain of volume). A volume of 8 m/rho0 is the largest. The law
+// computes its own pressure: no EquationOfState. Tested by tests/physics/drucker_prager_test.cpp.
 #pragma once
 
 #include <cmath>
@@ -31,6 +31,10 @@ struct DruckerPrager : IsotropicElasticity {
   static constexpr std::array state{core::Column::effective_plastic_strain,
                                     core::Column::plastic_volumetric_strain};
   static constexpr bool sets_pressure = true;
+  /// Soil of an eighth of its density consists of grains that have lost touch: a gradient of velocity between
+  /// them opens it no further. 8 is the volume of a cell for a particle that it has alone, of two along an
+  /// edge.
+  static constexpr double largest_volume = 8;
 
   static constexpr double not_given = -1;
   double friction = not_given;                                    ///< qfai
@@ -158,7 +162,9 @@ struct DruckerPrager : IsotropicElasticity {
     const core::MaskOf<T> torn = mean - (bulk * dilation) * alone > tension;
     const T slip = select(torn, max(tau - edge, 0.0) * (1 / shear), alone);
     const T expansion = select(torn, (mean - tension) * (1 / bulk), dilation * slip);
-    const T mean_after = mean - bulk * expansion, tau_after = max(tau - shear * slip, 0.0);
+    // On the cut-off exactly: what has come apart bears nothing, however large its volume.
+    const T mean_after = select(torn, T(tension), mean - bulk * expansion);
+    const T tau_after = select(torn, core::min(tau, T(edge)), max(tau - shear * slip, 0.0));
     point.s = select(slip > 0.0, tau_after / tau, T(1.0)) * point.s;
     point.pressure = -mean_after;
     if (closes != 0) point.plastic_volumetric_strain += select(torn, expansion, T(0.0)) - closing;

@@ -225,6 +225,28 @@ TEST_CASE("grains that open and close often are not denser than before", "[physi
   CHECK(mean(point) == Approx(bulk * volume).epsilon(1e-6));
 }
 
+TEST_CASE("grains that have lost touch bear nothing, and open to eight times their volume",
+          "[physics][drucker-prager]") {
+  for (const double closes : {0.0, 1.0}) {
+    INFO("closes " << closes);
+    const auto material =
+        make(soil({{"qfai", 0.4}, {"kfai", 0.0}, {"qpsi", 0.0}, {"ten_f", 0.0}, {"closes", closes}}));
+    PointDriver point(*material, {});
+    const double dt = 1e-3;
+    for (int i = 0; i < 1000; ++i) {
+      point.step({0.1 / dt, 0.2 / dt, 0, 0, 0.02 / dt, 0, 0, 0, 0.03 / dt}, dt);
+      CHECK(mean(point) == 0);
+      CHECK(tau(point) == 0);
+    }
+    CHECK(point.volume_ratio() == Approx(8).epsilon(1e-14));
+    // Pressed together again they bear pressure as soon as they are as dense as before, or at once.
+    const int steps = 100;
+    const double ratio = std::pow(0.999 / (closes != 0 ? 8 : 1), 1.0 / steps), rate = (ratio - 1) / (3 * dt);
+    for (int i = 0; i < steps; ++i) point.step({rate, 0, 0, 0, rate, 0, 0, 0, rate}, dt);
+    CHECK(mean(point) == Approx(bulk * std::log(0.999)).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("what dilation has opened bears pressure, with closes=1 too", "[physics][drucker-prager]") {
   const core::ParameterValues values{
       {"qfai", 0.4}, {"kfai", 0.0}, {"qpsi", 0.2}, {"ten_f", 0.0}, {"closes", 1.0}};

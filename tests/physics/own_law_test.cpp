@@ -76,7 +76,7 @@ TEST_CASE("a strength law with state of its own", "[physics][own-law]") {
   std::fill_n(one.batch.gradient[3], 8, 1e3);
   double path = 0, stress = 0;
   for (int i = 0; i < 5; ++i) {
-    physics::update_kinematics<core::Real>(one.batch, {}, 1000);
+    physics::update_kinematics<core::Real>(one.batch, {}, {.reference_density = 1000});
     physics::update_strength<core::Real>(one.batch, law, {});
     path += std::sqrt(2.0) * 1e-3;
     stress += 2 * law.shear / (1 + 100 * path) * 1e-3;
@@ -94,7 +94,7 @@ TEST_CASE("an equation of state with state of its own", "[physics][own-law]") {
   double compression = 0, largest = 0;
   for (const double rate : {-1e4, -1e4, 5e3, 5e3, -2e4}) {
     std::fill_n(one.batch.gradient[0], 8, rate);
-    physics::update_kinematics<core::Real>(one.batch, {}, 1000);
+    physics::update_kinematics<core::Real>(one.batch, {}, {.reference_density = 1000});
     physics::update_pressure<core::Real>(one.batch, eos, rules, nullptr);
     compression = 1 / one.get(Column::volume) - 1;
     largest = std::max(largest, compression);
