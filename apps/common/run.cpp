@@ -94,6 +94,11 @@ class Run {
     if (case_.restart)
       log_->say("continue   from {} at step {}, time {:.6g}", *case_.restart, model_.clock.step,
                 model_.clock.time);
+    if (case_.restart && options_.restart_input)
+      log_->say(
+          "note       particles keep their state: geometry, initial velocities, E0, random failure "
+          "thresholds "
+          "and initial porosity of the new input act on bodies alone that the restart file does not have");
     stepper_.emplace(model_, communication_);
     describe(model_, *stepper_, communication_.reductions, threads_, *log_);
     warn_of_long_step(model_, *log_);
@@ -135,7 +140,7 @@ class Run {
       status = "failed";
       reason = failure.what();
       code = numerical_failure;
-      if (failure.keeps_state()) save();
+      if (failure.keeps_state()) save_after_failure();
     } catch (const io::FileError& failure) {
       status = "failed";
       reason = failure.what();
@@ -273,6 +278,15 @@ class Run {
     log_->say("restart    {} at step {}, time {:.6g}", path, model_.clock.step, model_.clock.time);
     last_restart_ = path;
     save_seconds_ += clock_.seconds() - before;
+  }
+
+  /// A disk error then must not hide why the run stopped, nor keep the summary from being written.
+  void save_after_failure() {
+    try {
+      save();
+    } catch (const io::FileError& failure) {
+      log_->warn("the last good state was not saved: {}", failure.what());
+    }
   }
 
   void conclude(const std::string& status, const std::string& reason, double loop_seconds) {

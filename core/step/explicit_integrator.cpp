@@ -158,7 +158,9 @@ double ExplicitIntegrator::next_step(const Clock& clock) const {
   if (how.specified > 0) return how.specified;
   const double factor =
       passes_->loads().nonreflecting() ? std::min(how.factor, Loads::nonreflecting_factor) : how.factor;
-  const double stable = factor * (how.constant ? clock.first_critical_dt : clock.critical_dt);
+  // What a load moves within its first step has no speed yet, by which the critical step is known.
+  const double stable =
+      factor * std::min(how.constant ? clock.first_critical_dt : clock.critical_dt, fall_time(model_));
   return rigid_ ? std::min(stable, rigid_->longest_step(passes_->loads())) : stable;
 }
 

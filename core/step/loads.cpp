@@ -46,6 +46,18 @@ Vec3<double> acceleration_of(const BodyInput& input, double time) {
   return a;
 }
 
+double fall_time(const Model& model) {
+  double largest = 0;  // squared
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
+  for (std::size_t b = 0; b < inputs.size(); ++b) {
+    if (model.bodies[b].rigid) continue;
+    Vec3<double> a = model.scene->solution.gravity + acceleration_of(*inputs[b], model.clock.time);
+    if (inputs[b]->body_force) a = a + inputs[b]->body_force->number;
+    largest = std::max(largest, dot(a, a));
+  }
+  return std::sqrt(model.grid->geometry().smallest_cell() / std::sqrt(largest));
+}
+
 Vec3<double> velocity_gained(const BodyInput& input, double time) {
   Vec3<double> v{};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -41,6 +41,10 @@ Vec3<double> acceleration_of(const BodyInput& input, double time);
 /// Its integral from time zero.
 Vec3<double> velocity_gained(const BodyInput& input, double time);
 
+/// In what time gravity and the force per mass at this time (that of expressions excepted) move a free
+/// deformable body from rest by half a cell, at least; infinite without either.
+double fall_time(const Model& model);
+
 /// The velocity that the input gives a body's particles at the end of a step: for all the same, or with
 /// expressions of their places at its beginning.
 struct PrescribedMotion {
