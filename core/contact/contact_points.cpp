@@ -133,28 +133,34 @@ void PointsByCell::around(const BrickGrid& grid, Slot s, const std::array<int, 3
   const BrickCoord coord = grid.brick(s).coord;
   const Vec3<double> place = g.node_place(coord, node);
   const std::int32_t brick[3] = {coord.x, coord.y, coord.z};
-  double scale[3], plane[3] = {};  // of the face whose mirror images are among the points
-  int lowest[3], highest[3], mirrored_lowest[3], mirrored_highest[3];
-  unsigned near_faces = 0;  // by axis
+  double scale[3];
+  // Along an axis the cells around the node, and those whose images in a face are: at shift + sign x.
+  struct Image {
+    int low, high;
+    double sign, shift;
+  };
+  std::array<Image, 3> images[3];
+  std::size_t count[3];
   for (int a = 0; a < 3; ++a) {
     const auto axis = static_cast<std::size_t>(a);
-    lowest[a] = node[axis] - layers, highest[a] = node[axis] + layers - 1;
+    const int here = node[axis];
     scale[a] = g.inverse_cell[a];
-    const std::int64_t below = std::int64_t{brick_cells} * brick[a] + node[axis],
-                       above = g.cells[axis] - below;
+    images[a][0] = {here - layers, here + layers - 1, 1, 0};
+    count[a] = 1;
+    const std::int64_t below = std::int64_t{brick_cells} * brick[a] + here, above = g.cells[axis] - below;
     const bool lower = is_constrained(g.boundary[2 * axis]), upper = is_constrained(g.boundary[2 * axis + 1]);
     if ((lower && below == 0) || (upper && above == 0)) {
       scale[a] = 0;
-    } else if (lower && below > 0 && below < layers) {
-      near_faces |= 1u << a;
-      plane[a] = g.origin[a];
-      mirrored_lowest[a] = node[axis] - static_cast<int>(below);
-      mirrored_highest[a] = mirrored_lowest[a] + layers - static_cast<int>(below) - 1;
-    } else if (upper && above > 0 && above < layers) {
-      near_faces |= 1u << a;
-      plane[a] = g.origin[a] + static_cast<double>(g.cells[axis]) * g.cell[a];
-      mirrored_highest[a] = node[axis] + static_cast<int>(above) - 1;
-      mirrored_lowest[a] = mirrored_highest[a] - (layers - static_cast<int>(above) - 1);
+      continue;
+    }
+    if (lower && below > 0 && below < layers) {
+      const int face = here - static_cast<int>(below);
+      images[a][count[a]++] = {face, face + layers - static_cast<int>(below) - 1, -1, 2 * g.origin[a]};
+    }
+    if (upper && above > 0 && above < layers) {
+      const int face = here + static_cast<int>(above);
+      const double plane = g.origin[a] + static_cast<double>(g.cells[axis]) * g.cell[a];
+      images[a][count[a]++] = {face - (layers - static_cast<int>(above)), face - 1, -1, 2 * plane};
     }
   }
   points.clear();
@@ -162,22 +168,17 @@ void PointsByCell::around(const BrickGrid& grid, Slot s, const std::array<int, 3
   const Points zero(0.0), one(1.0), of_first(static_cast<double>(first)),
       of_second(static_cast<double>(second)), lane(Points::vector{0, 1, 2, 3, 4, 5, 6, 7});
   // The particles, then their images in each face, in each edge and in the corner near the node.
-  for (unsigned images = 0; images < 8; ++images) {
-    if ((images & ~near_faces) != 0) continue;
-    int low[3], high[3];
-    double sign[3], shift[3];  // an image is at shift - x
-    for (int a = 0; a < 3; ++a) {
-      const bool image = (images >> a & 1u) != 0;
-      low[a] = image ? mirrored_lowest[a] : lowest[a];
-      high[a] = image ? mirrored_highest[a] : highest[a];
-      sign[a] = image ? -1 : 1;
-      shift[a] = image ? 2 * plane[a] : 0;
-    }
+  for (std::size_t image = 0; image < count[0] * count[1] * count[2]; ++image) {
+    const Image& x = images[0][image % count[0]];
+    const Image& y = images[1][image / count[0] % count[1]];
+    const Image& z = images[2][image / count[0] / count[1]];
+    const double sign[3] = {x.sign, y.sign, z.sign}, shift[3] = {x.shift, y.shift, z.shift};
+    const int low[3] = {x.low, y.low, z.low}, high[3] = {x.high, y.high, z.high};
     for_each_row(low, high, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; p += LabelledPoints::lanes) {
         const auto along = [&](int a) {
-          const Points x = load<Points>(rows_[a].data() + p);
-          return scale[a] * (sign[a] * x + shift[a] - place[a]);
+          const Points at = load<Points>(rows_[a].data() + p);
+          return scale[a] * (sign[a] * at + shift[a] - place[a]);
         };
         const Points component = load<Points>(rows_[3].data() + p);
         const auto exists = lane < Points(static_cast<double>(end - p));

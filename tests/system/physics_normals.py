@@ -59,6 +59,14 @@ def overlapping(mirrored, **more):
                  distance=SHARED_NODE, friction=0.2, **more)
 
 
+def between_walls(halves):
+    """A block strikes another one that is a cell wide, at the middle of a grid of two cells between symmetry planes; or this and its mirror
+    image beyond one of the planes."""
+    base = "".join(_mpm.block(f"{BASE}{i}", (0.2, lower, 0.2), (0.4, 0.1, 0.2), dp=0.05, of=BASE) for i, lower in enumerate((0, 0.3)[:halves]))
+    top = _mpm.block(TOP, (0.3, 0, 0.42), (0.4, 0.2 * halves, 0.2), (1, 0, -5), 0.05, TOP)
+    return scene(base, top, _mpm.grid((0, 0, 0), (1, 0.2 * halves, 1), "002200", 0.1), _mpm.solution(0.02), friction=0.2, normal="regression")
+
+
 class Normals(_mpm.Case):
     def go(self, text, folder="run", **how):
         outcome = self.run_in(folder, [self.write(text)], **how)
@@ -95,6 +103,14 @@ class Normals(_mpm.Case):
                 print(f"plate of two cells, mu {friction} {more}: acceleration {found:.4f} of {5 - 10 * friction:.0f}, drift {drift:+.1e}")
                 self.assertAlmostEqual(found, 5 - 10 * friction, delta=0.05)
                 self.assertLess(abs(drift), 0.01)
+
+    def test_node_between_two_walls(self):
+        """Its cloud of particles has an image in both: what is beyond one of them alone would turn the normal."""
+        half, whole = (self.go(between_walls(halves), str(halves))[1] for halves in (1, 2))
+        for name in ("kinetic", "internal"):
+            off = 2 * half["energy"][name] / whole["energy"][name] - 1
+            print(f"between two walls: {name} energy off by {off:.1e}")
+            self.assertLess(abs(off), 1e-10)
 
     def test_mirror_images_of_bodies_that_overlap(self):
         """They differ by round-off, whatever gives the normals."""
