@@ -142,15 +142,24 @@ struct DruckerPrager : IsotropicElasticity {
   /// kfai/qfai, the mean tension at which the cone ends.
   double apex() const { return friction > 0 ? cohesion / friction : HUGE_VAL; }
 
+  /// What the cut-off does not hold together begins open, without the elastic work of opening it.
+  template <class T>
+  T place(StrengthPoint<T>& point, const T& relative_volume) const {
+    StrengthPoint<T> held{};
+    IsotropicElasticity::place(point, relative_volume);
+    return IsotropicElasticity::place(held, core::min(relative_volume, T(std::exp(tension / bulk))));
+  }
+
   template <class T>
   void update(StrengthPoint<T>& point) const {
     using core::max;
     using core::select;
+    const T mean_before = -point.pressure;
     elastic_step_with_pressure(point);
     T mean = -point.pressure, closing = 0.0;
     if (closes != 0) {
       // The change of the volume's logarithm: rates would let a grain that opens and closes lose volume.
-      mean += bulk * (core::log(max(point.volume_ratio, 0.1)) - point.volumetric_strain);
+      mean = mean_before + bulk * core::log(max(point.volume_ratio, 0.1));
       closing = core::min(point.plastic_volumetric_strain, max((tension - mean) * (1 / bulk), 0.0));
       mean += bulk * closing;
     }

@@ -247,6 +247,22 @@ TEST_CASE("grains that have lost touch bear nothing, and open to eight times the
   }
 }
 
+TEST_CASE("loose soil begins open: it bears nothing, and has no elastic energy",
+          "[physics][drucker-prager]") {
+  for (const double tension : {0.0, 50e3}) {
+    const auto material =
+        make(soil({{"qfai", 0.4}, {"kfai", 200e3}, {"qpsi", 0.0}, {"ten_f", tension}, {"closes", 1.0}}));
+    const double held = tension / bulk;
+    PointDriver loose(*material, {.density = 0.9 * 2000}), dense(*material, {.density = 1.001 * 2000});
+    CHECK(mean(loose) == tension);
+    CHECK(loose.energy() ==
+          Approx(bulk * (std::exp(held) * (held - 1) + 1)).margin(1e-9 * bulk * held * held));
+    CHECK(loose.value(Column::plastic_volumetric_strain) == Approx(-std::log(0.9) - held).epsilon(1e-12));
+    CHECK(mean(dense) == Approx(-bulk * std::log(1.001)).epsilon(1e-12));
+    CHECK(dense.energy() == Approx(bulk * (1 - (1 + std::log(1.001)) / 1.001)).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("what dilation has opened bears pressure, with closes=1 too", "[physics][drucker-prager]") {
   const core::ParameterValues values{
       {"qfai", 0.4}, {"kfai", 0.0}, {"qpsi", 0.2}, {"ten_f", 0.0}, {"closes", 1.0}};
