@@ -2,8 +2,9 @@
 # test_builds.sh [BUILD...]: tests that test.sh does not cover, each in its own build:
 #   minimal                the first command of the README; what that build lacks is refused by name
 #   sanitize               all unit tests with clang under the address and undefined-behaviour sanitizers, with vectors of
-#                          two, warnings as errors, every file with its own includes
+#                          two, warnings as errors, every file with its own includes; one shape function of each kind
 # and, if named:
+#   sanitize-all           as sanitize, with all shape functions
 #   lanes1, lanes2, lanes4 the unit tests of core and physics without vectors, and with vectors of two and four
 #   clang                  as sanitize, with the widest vectors and without sanitizers
 #   race                   data races between the threads of a rank

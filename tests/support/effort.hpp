@@ -5,13 +5,15 @@
 
 namespace mpm::tests {
 
-/// `steps`, or at most four in a build whose tests are brief (MPM_BRIEF_TESTS).
-constexpr int brief(int steps) {
+/// Whether this build's tests are brief (MPM_BRIEF_TESTS): what another build tests with each of several
+/// methods is then tested with one after the other in turns.
 #ifdef MPM_BRIEF_TESTS
-  return std::min(steps, 4);
+inline constexpr bool brief_tests = true;
 #else
-  return steps;
+inline constexpr bool brief_tests = false;
 #endif
-}
+
+/// `steps`, or at most four in a build whose tests are brief (MPM_BRIEF_TESTS).
+constexpr int brief(int steps) { return brief_tests ? std::min(steps, 4) : steps; }
 
 }  // namespace mpm::tests

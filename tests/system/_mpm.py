@@ -29,6 +29,9 @@ ENVIRONMENT = {
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_MCA_ess_singleton_isolated": "1",  # a program on its own needs no daemon: half a second less
+    # Tests are on one machine: no search for adapters of fast networks, and none for graphics cards, takes half of the start.
+    "OMPI_MCA_pml": "ob1",
+    "HWLOC_COMPONENTS": "linux,stop",
     "OMPI_MCA_orte_tmpdir_base": MPI_FILES.name,
     "OMP_WAIT_POLICY": "passive",
 }

@@ -50,7 +50,9 @@ class Contact(Case):
         forces = _mpm.table(self.folder / "alone/case_curv.dat")
         for pair in ("1,2", "1,3", "2,3"):
             self.assertGreater(max(map(abs, forces[f"contact_z[{pair}]"])), 0, pair)
-        for ranks, threads, metis in itertools.product((1, 2, 4), (1, 2), (False, True)):
+        # Each partition with one and with two threads, in turns over the ranks and the two kinds of normals.
+        for n, (ranks, metis) in enumerate(itertools.product((1, 2, 4), (False, True))):
+            threads = 1 + (n + n // 2 + (normal == "regression")) % 2
             partition = ""
             if not metis and ranks > 1:
                 partition = '<DomainDecomposition dimension0="{}" dimension1="{}" dimension2="{}"/>'.format(*DIMENSIONS[ranks])

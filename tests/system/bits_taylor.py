@@ -44,7 +44,9 @@ class TaylorBar(Case):
                 self.assertEqual(state, expected)
 
     def test_musl_on_all_ranks_threads_and_partitions(self):
-        self.compare("MUSL", itertools.product((1, 2, 3, 4, 8), (1, 2), ("uniform", "metis")))
+        # Each partition with one and with two threads, in turns over the ranks.
+        pairs = itertools.product((1, 2, 3, 4, 8), ("uniform", "metis"))
+        self.compare("MUSL", [(ranks, 1 + (n + n // 2) % 2, partition) for n, (ranks, partition) in enumerate(pairs)])
 
     def test_usf(self):
         self.compare("USF", [(1, 2, "metis"), (2, 1, "metis"), (3, 2, "uniform"), (8, 1, "metis")])

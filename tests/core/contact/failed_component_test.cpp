@@ -116,7 +116,9 @@ TEST_CASE("A tile says which of its particles belong to the other tile of the bo
 
 TEST_CASE("Failed particles part from their body without tension, and press on it") {
   for (const ReferenceShape shape : shapes) {
+    if (!has_passes(shape)) continue;
     for (const ReferenceScheme scheme : schemes) {
+      if (left_out(shape, scheme)) continue;
       for (const double speed : {1.0, -1.0}) {
         INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", speed "
                       << speed);

@@ -23,6 +23,7 @@
 #include "core/step/passes.hpp"
 #include "core/step/speeds.hpp"
 #include "core/step/stepper.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/reference_stepper.hpp"
 
 namespace mpm::tests {
@@ -191,10 +192,26 @@ constexpr ReferenceShape reference_shape(std::type_identity<core::CubicBSpline>)
   return ReferenceShape::cubic_bspline;
 }
 
-/// The shapes of the program's list.
-inline constexpr auto reference_shapes = []<class... S>(std::type_identity<std::tuple<S...>>) {
-  return std::array<ReferenceShape, sizeof...(S)>{reference_shape(std::type_identity<S>())...};
-}(std::type_identity<core::Shapes>());
+/// Whether this build has the passes of the shape: a sanitizer build has one of each kind
+/// (CMakePresets.json).
+constexpr bool has_passes(ReferenceShape shape) {
+  return []<class... S>(ReferenceShape sought, std::type_identity<std::tuple<S...>>) {
+    return ((core::is_built<S> && reference_shape(std::type_identity<S>()) == sought) || ...);
+  }(shape, std::type_identity<core::Shapes>());
+}
+
+/// The shapes of the program's list that this build has.
+inline const std::vector<ReferenceShape> reference_shapes =
+    []<class... S>(std::type_identity<std::tuple<S...>>) {
+      std::vector<ReferenceShape> built;
+      ((core::is_built<S> ? built.push_back(reference_shape(std::type_identity<S>())) : void()), ...);
+      return built;
+    }(std::type_identity<core::Shapes>());
+
+/// Whether a brief test of all shapes, each with one scheme in turn, leaves this pair out.
+inline bool left_out(ReferenceShape shape, ReferenceScheme scheme) {
+  return brief_tests && static_cast<int>(shape) % 3 != static_cast<int>(scheme) % 3;
+}
 
 /// A particle's first domain, for the shapes that have columns for it.
 inline void write_box(const core::ColumnLayout& layout, const Vector& half_size, double* lane) {

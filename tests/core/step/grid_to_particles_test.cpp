@@ -10,6 +10,7 @@
 #include "tests/core/step/transfer.hpp"
 
 using namespace mpm::core;
+using mpm::tests::BuiltShapes;
 using mpm::tests::TransferCase;
 
 namespace {
@@ -63,7 +64,8 @@ typename S::Field field_of(const TransferCase<S, T>& c, const std::vector<double
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("Velocity and position take from the nodes what a plain loop takes", "", Shapes) {
+TEMPLATE_LIST_TEST_CASE("Velocity and position take from the nodes what a plain loop takes", "",
+                        BuiltShapes) {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {1, 0, 1}, {2, 2, 2}}) {
     TransferCase<TestType> c(brick, 150, 11);
     const std::vector<double> nodes = random_records(c.shape, 3);
@@ -100,7 +102,7 @@ TEMPLATE_LIST_TEST_CASE("Velocity and position take from the nodes what a plain 
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("Velocity gradients are a plain loop's", "", Shapes) {
+TEMPLATE_LIST_TEST_CASE("Velocity gradients are a plain loop's", "", BuiltShapes) {
   for (const BrickCoord brick : {BrickCoord{1, 0, 1}, {2, 2, 2}}) {
     TransferCase<TestType> c(brick, 150, 12);
     const std::vector<double> nodes = random_records(c.shape, 4);
@@ -125,7 +127,7 @@ TEMPLATE_LIST_TEST_CASE("Velocity gradients are a plain loop's", "", Shapes) {
 
 TEMPLATE_LIST_TEST_CASE(
     "Constant and linear velocity fields come out exactly, in the cell, on its faces, edges and corners", "",
-    Shapes) {
+    BuiltShapes) {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {2, 2, 2}}) {
     TransferCase<TestType> c(brick, 150, 13);
     const double constant[3] = {3, -2, 0.5}, linear[3][3] = {{1, -2, 3}, {0.5, 4, -1}, {-3, 2, 0.25}};
@@ -175,7 +177,7 @@ TEMPLATE_LIST_TEST_CASE(
 }
 
 TEMPLATE_LIST_TEST_CASE("The cell's strain is that of its middle, the same for all its particles", "",
-                        Shapes) {
+                        BuiltShapes) {
   TransferCase<TestType> c({1, 0, 1}, 150, 14);
   const std::vector<double> nodes = random_records(c.shape, 9);
   const auto field = field_of(c, nodes);

@@ -10,6 +10,7 @@
 #include "tests/core/step/transfer.hpp"
 
 using namespace mpm::core;
+using mpm::tests::BuiltShapes;
 using mpm::tests::TransferCase;
 
 namespace {
@@ -74,7 +75,7 @@ void compare(const TransferCase<S, T>& c) {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("All that is mapped to the nodes is what a plain loop maps", "", Shapes) {
+TEMPLATE_LIST_TEST_CASE("All that is mapped to the nodes is what a plain loop maps", "", BuiltShapes) {
   for (const BrickCoord brick : {BrickCoord{0, 0, 0}, {1, 0, 1}, {2, 2, 2}}) {
     for (const int count : {0, 1, 7, 8, 9, 200}) {
       INFO("brick " << brick.x << brick.y << brick.z << ", particles " << count);
@@ -98,7 +99,7 @@ TEMPLATE_TEST_CASE("Affine velocities are mapped to the nodes as a plain loop ma
 }
 
 TEMPLATE_LIST_TEST_CASE("The nodes get all mass and momentum, and forces that balance each other", "",
-                        Shapes) {
+                        BuiltShapes) {
   const TransferCase<TestType> c({1, 1, 1}, 333, 5);
   const std::vector<double> nodes = by_kernel<mapped::momentum_mass_force>(c);
   double sum[8] = {}, size[8] = {}, all[4] = {};
@@ -116,7 +117,7 @@ TEMPLATE_LIST_TEST_CASE("The nodes get all mass and momentum, and forces that ba
   CHECK(size[7] == 0);
 }
 
-TEMPLATE_LIST_TEST_CASE("Lanes out of use add nothing, whatever is in them", "", Shapes) {
+TEMPLATE_LIST_TEST_CASE("Lanes out of use add nothing, whatever is in them", "", BuiltShapes) {
   TransferCase<TestType> c({1, 0, 1}, 11, 6);
   const std::vector<double> before = by_kernel<mapped::momentum_mass_force>(c);
   double* block = c.pool.block(c.tile.blocks[1]);

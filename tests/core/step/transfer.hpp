@@ -5,14 +5,23 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
 #include "core/particles/block_pool.hpp"
+#include "core/shape/list.hpp"
 #include "core/transfer/list.hpp"
 #include "tests/support/reference_shape.hpp"
 
 namespace mpm::tests {
+
+/// The shapes of this build, for tests of each.
+template <class... S>
+constexpr auto built_of(std::type_identity<std::tuple<S...>>) {
+  return std::tuple_cat(std::conditional_t<core::is_built<S>, std::tuple<S>, std::tuple<>>()...);
+}
+using BuiltShapes = decltype(built_of(std::type_identity<core::Shapes>()));
 
 /// Along one axis: S and the factor of its gradient on the particle's n-th node, r = (x - x_i)/h away.
 struct AlongAxis {

@@ -1,8 +1,12 @@
 // The rules of single elements and of settings that do not go together: one wrong input per rule, with all
 // the faults that it must bring.
 
+#include <algorithm>
+#include <iterator>
+
 #include <catch2/catch.hpp>
 
+#include "core/built.hpp"
 #include "tests/io/input/support.hpp"
 
 namespace {
@@ -10,6 +14,11 @@ namespace {
 using namespace mpm;
 using test::bar;
 using test::check_faults;
+
+/// Of CPDI and CPDI2 a sanitizer build has one.
+bool is_built(std::string_view shape) {
+  return std::ranges::find(core::built_shapes, shape) != std::ranges::end(core::built_shapes);
+}
 using test::faults;
 using test::replaced;
 
@@ -70,6 +79,7 @@ TEST_CASE("laws are checked by their own tables") {
 TEST_CASE("known, but not implemented yet") {
   const std::string remove = "known, but not implemented yet; remove the element";
   const std::string zero = "known, but not implemented yet; remove the attribute or set it to its default, 0";
+  if (is_built("CPDI")) check_faults({{"<Grid shape=\"linear\">", "<Grid shape=\"CPDI\">", {"ok"}}});
   check_faults({
       {"<Solution>",
        "<Contact enable=\"1\"/><Solution>",
@@ -80,7 +90,6 @@ TEST_CASE("known, but not implemented yet") {
       {"<Grid shape=\"linear\">", "<Grid gimp=\"1\">", {"ok"}},
       {"<Grid shape=\"linear\">", "<Grid gimp=\"0\" shape=\"linear\">", {"ok"}},
       {"<Grid shape=\"linear\">", "<Grid shape=\"DDMP\">", {"ok"}},
-      {"<Grid shape=\"linear\">", "<Grid shape=\"CPDI\">", {"ok"}},
       {"<Grid shape=\"linear\">", "<Grid shape=\"CPDI2\">", {"ok"}},
       {"boundary=\"2\"", "boundary=\"3\"", {"ok"}},
       {"<DCell", "<MovingGrid enable='1'/><DCell", {"line 22: <MovingGrid enable=\"1\">: " + zero}},
@@ -449,6 +458,7 @@ TEST_CASE("what the consistent mass matrix does not go with elsewhere") {
         test::replaced(test::replaced(test::bar, from, to), "<Solution>", "<Solution mass=\"consistent\">"));
   };
   for (const std::string shape : {"CPDI", "CPDI2"}) {
+    if (!is_built(shape)) continue;
     CHECK(faults("<Grid shape=\"linear\">", "<Grid shape=\"" + shape + "\">") ==
           std::vector<std::string>{
               "line 25: <Solution mass=\"consistent\">: is not available with CPDI and CPDI2, whose domains "
