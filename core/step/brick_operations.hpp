@@ -349,6 +349,16 @@ template <ShapePolicy S, TransferPolicy T>
   return std::sqrt(fastest_square);
 }
 
+/// The cells of a brick whose particles have moved, while these are in the cache; unless some leave it, or
+/// rigid bodies are yet to move theirs.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::find_own_cells([[maybe_unused]] Slot s) {
+  if constexpr (needs_cells<S>) {
+    const bool settled = departing_[static_cast<std::size_t>(s)].empty() && rigid_ == nullptr;
+    model_.grid->own_cells(s) = settled ? find_cells(model_, s) : 0;
+  }
+}
+
 // --- stress -----------------------------------------------------------------------------------------------
 
 /// Of the cells, for block `b` of the batch, where the volume update asks for it.

@@ -16,6 +16,7 @@
 #include "core/shape/cell_mass.hpp"
 #include "core/shape/face_traps.hpp"
 #include "core/simd/denormals.hpp"
+#include "core/step/cells_in_use.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/grid_to_particles.hpp"
 #include "core/step/load_forces.hpp"
@@ -218,6 +219,7 @@ class PassesWith final : public Passes {
   void take_updated_nodes(Slot s, Scratch& at);
   void velocities_of_brick(Slot s, std::int32_t component, Scratch& at);
   double velocities_and_motion_of_brick(Slot s, std::int32_t component, Scratch& at);
+  void find_own_cells(Slot s);
   /// Whether the particles' velocities are already those at the start of the next step.
   enum class Velocities { of_last_step, of_next_step };
   template <bool moves, class F>

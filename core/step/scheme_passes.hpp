@@ -96,6 +96,7 @@ void PassesWith<S, T>::update_stress_and_move() {
                        room.next();
                      });
                    });
+    find_own_cells(s);
   });
 }
 
@@ -134,6 +135,7 @@ void PassesWith<S, T>::update_velocities_and_move() {
           std::max(at.statistics.fastest,
                    critical_[static_cast<std::size_t>(s)] + velocities_and_motion_of_brick(s, component, at));
     });
+    find_own_cells(s);
   });
 }
 
@@ -152,6 +154,7 @@ void PassesWith<S, T>::update_all() {
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
     });
+    find_own_cells(s);
   });
 }
 
