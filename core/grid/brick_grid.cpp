@@ -86,6 +86,7 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   component_begin_.clear();
   components_.clear();
   cells_around_.clear();
+  own_cells_.assign(bricks_.size(), 0);
   allocate_nodes(bricks_.size() + ghosts_.size());
   ++revision_;
 }

@@ -132,6 +132,9 @@ class BrickGrid {
   CellsAround& cells_around(Slot s) { return cells_around_[static_cast<std::size_t>(s)]; }
   /// None in use, for every owned brick.
   void reset_cells_around() { cells_around_.assign(bricks_.size(), {}); }
+  /// Those that hold particles of an owned brick, where a pass that has moved these has found them and none
+  /// has come or gone since: cell (i, j, k) in bit i + 4 j + 16 k; 0 where they are to be found.
+  std::uint64_t& own_cells(Slot s) { return own_cells_[static_cast<std::size_t>(s)]; }
 
   /// Incremented whenever the set of bricks changes; communication plans are then rebuilt.
   std::uint64_t revision() const { return revision_; }
@@ -165,6 +168,7 @@ class BrickGrid {
   std::vector<CellsAround> cells_around_;  ///< by owned slot, or empty
   int boundary_ = 0;
   std::uint64_t revision_ = 0;
+  std::vector<std::uint64_t> own_cells_;  ///< by owned slot
 };
 
 }  // namespace mpm::core

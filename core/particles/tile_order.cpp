@@ -124,6 +124,7 @@ void insert_particles(Model& model, const MigrationBuffer& particles) {
   }
   groups.push_back(arrivals.size());
   for_each_by_threads(std::size_t{0}, groups.size() - 1, 16, [&](std::size_t g) {
+    model.grid->own_cells(arrivals[groups[g]].slot) = 0;
     for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
       const Arrival& a = arrivals[i];
       append(model, model.grid->brick(a.slot), a.body, &particles.columns[particles.offsets[a.index]]);

@@ -22,6 +22,10 @@ inline Row previous(Row a) {
   return __builtin_shufflevector(a.v, zero, 8, 0, 1, 2, 3, 4, 5, 6);
 }
 
+/// To the lattice's points of a row, which come in the order of their numbers: what is stored beyond the row
+/// is overwritten by the next one.
+inline void store_points(double* at, Row a) { store(at, next(a)); }
+
 /// Rows of zeros and ones by the bits of a row of cells.
 struct BitRows {
   alignas(64) double row[1 << cells][row_doubles];
@@ -36,7 +40,7 @@ constexpr BitRows bit_rows = [] {
 
 /// The cells in use, and 1/n_j.
 struct CellWeights {
-  Row lower[cells * cells], upper[cells * cells];  ///< row j + 6 k; in the lanes of its lower and upper nodes
+  Row in_use[cells * cells];  ///< row j + 6 k
   Row share[points * points];
 
   explicit CellWeights(const CellsAround& around) {
@@ -44,9 +48,8 @@ struct CellWeights {
     for (int k = 0; k < cells; ++k) {
       for (int j = 0; j < cells; ++j) {
         const int n = j + cells * k;
-        lower[n] = load<Row>(bit_rows.row[around.row(j - 1, k - 1)]);
-        upper[n] = previous(lower[n]);
-        both[n] = lower[n] + upper[n];
+        in_use[n] = load<Row>(bit_rows.row[around.row(j - 1, k - 1)]);
+        both[n] = in_use[n] + previous(in_use[n]);
       }
     }
     for (int k = 0; k < points; ++k) {
@@ -66,19 +69,29 @@ template <class F>
   if (r < cells) f(r, r + 1);
 }
 
-/// Row (j, k): sum over the four cells beside it in use of (2 or 1 along y) (2 or 1 along z) a, a given on
-/// the cells' edges along x. In the cells' lanes.
-[[gnu::always_inline]] inline Row across(const Row* a, const CellWeights& weights, int j, int k) {
-  Row sum(0.0);
-  beside(k, [&](int cell_k, int other_k) {
-    const Row *near = a + side * k, *far = a + side * other_k;
-    const Row here = Row(2.0) * near[j] + far[j];
-    beside(j, [&](int cell_j, int other_j) {
-      sum += weights.lower[cell_j + cells * cell_k] *
-             (Row(2.0) * here + (Row(2.0) * near[other_j] + far[other_j]));
+/// put(j, k, sum) for the rows first .. last along y and z: over the four cells beside row (j, k) in use, the
+/// sum of (2 or 1 along y) (2 or 1 along z) a, a given on the cells' edges along x. In the cells' lanes.
+template <class F>
+[[gnu::always_inline]] inline void across(const Row* a, const CellWeights& weights, int first, int last,
+                                          F put) {
+  for (int k = first; k <= last; ++k) {
+    Row along_z[2][side];  // for the cells below and above
+    beside(k, [&](int cell_k, int other_k) {
+      for (int j = 0; j < side; ++j)
+        along_z[cell_k == k][j] = Row(2.0) * a[j + side * k] + a[j + side * other_k];
     });
-  });
-  return sum;
+#pragma GCC unroll 7
+    for (int j = first; j <= last; ++j) {
+      Row sum(0.0);
+      beside(k, [&](int cell_k, int) {
+        const Row* m = along_z[cell_k == k];
+        beside(j, [&](int cell_j, int other_j) {
+          sum += weights.in_use[cell_j + cells * cell_k] * (Row(2.0) * m[j] + m[other_j]);
+        });
+      });
+      put(j, k, sum);
+    }
+  }
 }
 
 /// A plane of cells between two rows' planes of nodes, `a` on its edges across the plane, by the row r of the
@@ -86,13 +99,14 @@ template <class F>
 /// nodes' lanes. `cell`: number of the plane's first row of cells, `stride` to the next.
 [[gnu::always_inline]] inline Row along(const Row* a, const CellWeights& weights, int r, int cell,
                                         int stride) {
-  Row sum(0.0);
+  Row lower(0.0), upper(0.0);  // of the cells' lower and upper nodes, in the cells' lanes
   beside(r, [&](int cell_r, int other) {
-    const int n = cell + stride * cell_r;
-    const Row m = Row(2.0) * a[r] + a[other], twice = Row(2.0) * m;
-    sum += weights.lower[n] * (twice + ddmp::next(m)) + weights.upper[n] * (twice + previous(m));
+    const Row in_use = weights.in_use[cell + stride * cell_r];
+    const Row m = Row(2.0) * a[r] + a[other], n = ddmp::next(m);
+    lower += in_use * (Row(2.0) * m + n);
+    upper += in_use * (Row(2.0) * n + m);
   });
-  return sum;
+  return lower + previous(upper);
 }
 
 /// v: rows of a component; d: of its derivatives along the axes at the lattice's points.
@@ -105,29 +119,28 @@ void derivatives(const CellWeights& weights, const Vec3<double>& inverse_cell, c
   }
   const auto put = [&](int axis, int j, int k, Row sum) {
     const int n = j - 1 + points * (k - 1);
-    store(d[axis] + row_doubles * n, Row(inverse_cell[axis] * (1.0 / 9)) * (weights.share[n] * sum));
+    store_points(d[axis] + points * n, Row(inverse_cell[axis] * (1.0 / 9)) * (weights.share[n] * sum));
   };
-  for (int k = 1; k <= points; ++k) {
-    for (int j = 1; j <= points; ++j) {
-      const Row sum = across(edges, weights, j, k);
-      put(0, j, k, sum + previous(sum));
-    }
-  }
+  across(edges, weights, 1, points, [&](int j, int k, Row sum) { put(0, j, k, sum + previous(sum)); });
   // Along y and z: planes of cells across the axis, and what their edges give the nodes on both sides.
   for (int axis = 1; axis < 3; ++axis) {
     const int stride = axis == 1 ? 1 : side, row_stride = axis == 1 ? side : 1;
     const int cell_stride = axis == 1 ? 1 : cells, cell_row_stride = axis == 1 ? cells : 1;
-    Row below[side] = {};
+    Row sums[cells][side];
     for (int plane = 0; plane < cells; ++plane) {
       Row difference[side];
       for (int r = 0; r < side; ++r) {
         const Row* at = v + stride * plane + row_stride * r;
         difference[r] = at[stride] - at[0];
       }
-      for (int r = 1; r <= points; ++r) {
-        const Row sum = along(difference, weights, r, cell_stride * plane, cell_row_stride);
-        if (plane > 0) put(axis, axis == 1 ? plane : r, axis == 1 ? r : plane, below[r] + sum);
-        below[r] = sum;
+#pragma GCC unroll 5
+      for (int r = 1; r <= points; ++r)
+        sums[plane][r] = along(difference, weights, r, cell_stride * plane, cell_row_stride);
+    }
+    for (int k = 1; k <= points; ++k) {
+      for (int j = 1; j <= points; ++j) {
+        const int plane = axis == 1 ? j : k, r = axis == 1 ? k : j;
+        put(axis, j, k, sums[plane - 1][r] + sums[plane][r]);
       }
     }
   }
@@ -151,10 +164,10 @@ void derivatives(const Vec3<double>& inverse_cell, const double* velocity, doubl
       z[j] = mean[n + side] - mean[n - side];
     }
     for (int j = 1; j <= points; ++j) {
-      const int at = row_doubles * (j - 1 + points * (k - 1));
-      store(d[0] + at, scale[0] * (Row(4.0) * x[j] + (x[j + 1] + x[j - 1])));
-      store(d[1] + at, scale[1] * (y[j + 1] - y[j - 1]));
-      store(d[2] + at, scale[2] * (Row(4.0) * z[j] + (z[j + 1] + z[j - 1])));
+      const int at = points * (j - 1 + points * (k - 1));
+      store_points(d[0] + at, scale[0] * (Row(4.0) * x[j] + (x[j + 1] + x[j - 1])));
+      store_points(d[1] + at, scale[1] * (y[j + 1] - y[j - 1]));
+      store_points(d[2] + at, scale[2] * (Row(4.0) * z[j] + (z[j + 1] + z[j - 1])));
     }
   }
 }
@@ -166,12 +179,8 @@ void forces(const CellWeights& weights, const Vec3<double>& inverse_cell, const 
   const Row scale[3] = {Row(inverse_cell.x / 9), Row(inverse_cell.y / 9), Row(inverse_cell.z / 9)};
   Row edges[side * side];
   for (int n = 0; n < side * side; ++n) edges[n] = t[0][n] + ddmp::next(t[0][n]);
-  for (int k = 0; k < side; ++k) {
-    for (int j = 0; j < side; ++j) {
-      const Row sum = across(edges, weights, j, k);
-      force[j + side * k] = scale[0] * (sum - previous(sum));
-    }
-  }
+  across(edges, weights, 0, side - 1,
+         [&](int j, int k, Row sum) { force[j + side * k] = scale[0] * (sum - previous(sum)); });
   for (int axis = 1; axis < 3; ++axis) {
     const int stride = axis == 1 ? 1 : side, row_stride = axis == 1 ? side : 1;
     const int cell_stride = axis == 1 ? 1 : cells, cell_row_stride = axis == 1 ? cells : 1;
@@ -181,6 +190,7 @@ void forces(const CellWeights& weights, const Vec3<double>& inverse_cell, const 
         const Row* at = t[axis] + stride * plane + row_stride * r;
         both[r] = at[0] + at[stride];
       }
+#pragma GCC unroll 7
       for (int r = 0; r < side; ++r) {
         const Row sum = scale[axis] * along(both, weights, r, cell_stride * plane, cell_row_stride);
         Row* at = force + stride * plane + row_stride * r;
@@ -195,9 +205,13 @@ void forces(const CellWeights& weights, const Vec3<double>& inverse_cell, const 
 void forces(const Vec3<double>& inverse_cell, const Row* const (&t)[3], Row* force) {
   const Row scale[3] = {Row(inverse_cell.x / 72), Row(inverse_cell.y / 72), Row(inverse_cell.z / 72)};
   // Rows -1 .. side around each row, as far as they are not zero.
-  Row sums[side][side + 2] = {}, slopes[side][side + 2] = {};
+  constexpr int beyond[4] = {0, 1, side, side + 1};
+  Row sums[side][side + 2], slopes[side][side + 2], x[side + 2], y[side + 2], z[side + 2];
+  for (const int r : beyond) {
+    x[r] = y[r] = z[r] = Row(0.0);
+    for (int j = 0; j < side; ++j) sums[j][r] = slopes[j][r] = Row(0.0);
+  }
   for (int k = 1; k <= points; ++k) {
-    Row x[side + 2] = {}, y[side + 2] = {}, z[side + 2] = {};
     for (int j = 1; j <= points; ++j) {
       const int n = j + side * k;
       x[j + 1] = scale[0] * (ddmp::next(t[0][n]) - previous(t[0][n]));
@@ -250,21 +264,6 @@ template <Onto onto, class Part>
 }  // namespace
 
 template <Onto onto>
-void sums_to_nodes(const double* sums, double* nodes) {
-  using Half = Lanes<4>;
-  for_each_row([&](int row, int point) {
-    double* at = nodes + 4 * side * row;
-#pragma GCC unroll 8
-    for (int i = 0; i < side; ++i) {
-      if (point >= 0 && i > 0 && i <= points)
-        put<onto>(at + 4 * i, load<Half>(sums + 4 * (point + i - 1)));
-      else if (onto == Onto::nothing)
-        store(at + 4 * i, Half(0.0));
-    }
-  });
-}
-
-template <Onto onto>
 void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes) {
   using Half = Lanes<4>;
   constexpr int components = 6;
@@ -313,8 +312,6 @@ void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes) {
 
 template void sums_to_nodes<Onto::nothing>(const BrickFrame&, const double*, double*);
 template void sums_to_nodes<Onto::contributions>(const BrickFrame&, const double*, double*);
-template void sums_to_nodes<Onto::nothing>(const double*, double*);
-template void sums_to_nodes<Onto::contributions>(const double*, double*);
 
 void nodes_to_lattice(const double* nodes, double* lattice) {
   using Record = Lanes<node_doubles>;
@@ -337,11 +334,27 @@ void velocity_rows(const double* nodes, double* velocity) {
   }
 }
 
+void edge_gradients(const Vec3<double>& inverse_cell, const double* velocity, double* gradient) {
+  const Row scale[3] = {Row(inverse_cell.x), Row(inverse_cell.y), Row(inverse_cell.z)};
+  for (int c = 0; c < 3; ++c) {
+    for (int k = 0; k < points; ++k) {
+      for (int j = 0; j < points; ++j) {
+        const double* at = velocity + NodeRows::doubles * c + row_doubles * (j + 1 + side * (k + 1));
+        double* to = gradient + 3 * gradient_doubles * c + lattice_points.index(0, j, k);
+        const Row v = load<Row>(at);
+        store_points(to, scale[0] * (ddmp::next(v) - v));
+        store_points(to + gradient_doubles, scale[1] * (load<Row>(at + row_doubles) - v));
+        store_points(to + 2 * gradient_doubles, scale[2] * (load<Row>(at + row_doubles * side) - v));
+      }
+    }
+  }
+}
+
 void averaged_gradients(const BrickFrame& frame, const double* velocity, double* gradient) {
   const auto each = [&](auto derive) {
     for (int c = 0; c < 3; ++c) {
-      double* const to = gradient + 3 * LatticeRows::doubles * c;
-      double* const d[3] = {to, to + LatticeRows::doubles, to + 2 * LatticeRows::doubles};
+      double* const to = gradient + 3 * gradient_doubles * c;
+      double* const d[3] = {to, to + gradient_doubles, to + 2 * gradient_doubles};
       derive(velocity + NodeRows::doubles * c, d);
     }
   };

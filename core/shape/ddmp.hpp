@@ -16,6 +16,8 @@
 // mass of it, as with trilinear functions.
 #pragma once
 
+#include <type_traits>
+
 #include "core/shape/linear.hpp"
 
 namespace mpm::core {
@@ -29,23 +31,20 @@ inline constexpr NodeBlockShape node_block{1, 1};
 inline constexpr int row_doubles = 8;
 static_assert(node_block.side() < row_doubles);
 
-/// One component of all nodes, or of the points of the lattice, row by row along y and z; x_0 in lane 1.
-template <NodeBlockShape shape>
-struct Rows {
-  static constexpr int side = shape.side(), doubles = row_doubles * side * side;
-  static constexpr int index(int i, int j, int k) {
-    return i + 1 + row_doubles * (j + shape.below + side * (k + shape.below));
-  }
+/// One component of all nodes, row by row along y and z; x_0 in lane 1.
+struct NodeRows {
+  static constexpr int side = node_block.side(), doubles = row_doubles * side * side;
   /// Of a point of lattice_points.
   static constexpr int index(int point) {
-    const int n = lattice_points.side();
-    return index(point % n, point / n % n, point / (n * n));
+    const auto [i, j, k] = lattice_points.node(point);
+    return i + 1 + row_doubles * (j + 1 + side * (k + 1));
   }
   /// Corner number `n` = i + 2 j + 4 k of a cell, relative to its lowest one.
   static constexpr int corner(int n) { return (n & 1) + row_doubles * ((n >> 1 & 1) + side * (n >> 2)); }
 };
-using NodeRows = Rows<node_block>;
-using LatticeRows = Rows<lattice_points>;
+
+/// Of a component of a gradient at the lattice's points: room for whole rows of vectors.
+inline constexpr int gradient_doubles = lattice_points.nodes() + row_doubles - lattice_points.side();
 
 /// A point's sums: momentum, mass and the force of the direct gradients, as a node's record; T_j.
 inline constexpr int sum_doubles = 16;
@@ -106,15 +105,15 @@ struct CellSums : MomentumSums<what> {
   }
 };
 
-/// The sums to the records of the lattice's points.
+/// The sums to the records of the lattice's points; without forces to those of the nodes.
 template <NodeFields what>
 struct PointStore {
   static constexpr int width = maps_force(what) ? sum_doubles : 4;
   [[gnu::always_inline]] static void add(const CellSums<what>& s, const BrickFrame& frame, double* records,
                                          int node) {
     using N = linear::Nodes;
-    double* const lowest = records + width * node;
     if constexpr (maps_force(what)) {
+      double* const lowest = records + width * node;
       const N(&d)[6] = s.direct;
       N point[8] = {s.px, s.py, s.pz, s.m, N(0.0), N(0.0), N(0.0), N(0.0)};
       linear::forces(frame, d[0], d[1], d[2], d[3], d[4], d[5], point + 4);
@@ -124,7 +123,8 @@ struct PointStore {
       add_to_corners<width>(stress, lowest + 8);
     } else {
       N momentum[4] = {s.px, s.py, s.pz, s.m};
-      add_half_to_corners(momentum, lowest);
+      const auto [i, j, k] = lattice_points.node(node);
+      add_half_to_corners<node_block>(momentum, records + width * node_block.index(i, j, k));
     }
   }
 };
@@ -147,14 +147,28 @@ struct Scatter : CellScatter<CellSums<what>, PointStore<what>> {
 /// `sums`: records of sum_doubles; `nodes`: contributions to the first array.
 template <Onto onto>
 void sums_to_nodes(const BrickFrame& frame, const double* sums, double* nodes);
-/// Momentum and mass alone: records of four doubles.
-template <Onto onto>
-void sums_to_nodes(const double* sums, double* nodes);
+/// Sums at the lattice's points. Momentum and mass alone go to the nodes themselves.
+class PointSums {
+ public:
+  explicit PointSums(double* contributions) : records(lattice_), contributions_(contributions) {}
+  void finish(const BrickFrame& frame, const NodeMask* = nullptr) {
+    sums_to_nodes<Onto::contributions>(frame, lattice_, contributions_);
+  }
+  void replace(const BrickFrame& frame) { sums_to_nodes<Onto::nothing>(frame, lattice_, contributions_); }
+  double* records;
+
+ private:
+  alignas(64) double lattice_[sum_doubles * lattice_points.nodes()] = {};
+  double* contributions_;
+};
+
 /// The records of the lattice's points among those of the nodes.
 void nodes_to_lattice(const double* nodes, double* lattice);
 /// The strain velocities of nodes' records in rows, three components.
 void velocity_rows(const double* nodes, double* velocity);
-/// D_j = sum_i v_i (x) G_ji in rows, nine components in the order of Mat3, for the points of the lattice.
+/// Gradients of them, nine components in the order of Mat3, each of all points of the lattice: along the
+/// edges from a point to the next ones, and D_j = sum_i v_i (x) G_ji.
+void edge_gradients(const Vec3<double>& inverse_cell, const double* velocity, double* gradient);
 void averaged_gradients(const BrickFrame& frame, const double* velocity, double* gradient);
 
 }  // namespace ddmp
@@ -168,35 +182,16 @@ struct Ddmp {
   static constexpr bool needs_cells = true;
   static ColumnSet columns() { return {}; }
   using NodeRows = ddmp::NodeRows;
-  using LatticeRows = ddmp::LatticeRows;
   using Place = DdmpPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>
   using Scatter = ddmp::Scatter<what>;
 
-  /// Sums at the lattice's points.
   template <NodeFields what>
-  class Sums {
-   public:
-    explicit Sums(double* contributions) : records(lattice_), contributions_(contributions) {}
-    void finish(const BrickFrame& frame, const NodeMask* = nullptr) { to_nodes<Onto::contributions>(frame); }
-    void replace(const BrickFrame& frame) { to_nodes<Onto::nothing>(frame); }
-    double* records;
+  using Sums = std::conditional_t<maps_force(what), ddmp::PointSums, Linear::Sums<what>>;
 
-   private:
-    template <Onto onto>
-    void to_nodes(const BrickFrame& frame) {
-      if constexpr (maps_force(what))
-        ddmp::sums_to_nodes<onto>(frame, lattice_, contributions_);
-      else
-        ddmp::sums_to_nodes<onto>(lattice_, contributions_);
-    }
-
-    alignas(64) double lattice_[Scatter<what>::width * lattice_points.nodes()] = {};
-    double* contributions_;
-  };
-
-  /// Motion of the lattice's points; strain velocities of all nodes and their averaged gradients.
+  /// Motion of the lattice's points; strain velocities of all nodes, their derivatives along edges and their
+  /// averaged gradients.
   class Field {
    public:
     void take_motion(const double* nodes, const NodeMask* = nullptr) {
@@ -204,42 +199,47 @@ struct Ddmp {
     }
     void take_strain(const BrickFrame& frame, const double* nodes, const NodeMask* = nullptr) {
       ddmp::velocity_rows(nodes, velocity_);
+      ddmp::edge_gradients(frame.inverse_cell, velocity_, edge_);
       ddmp::averaged_gradients(frame, velocity_, gradient_);
     }
     const double* velocity() const { return motion_ + Motion::velocity_at; }
     const double* increment() const { return motion_ + Motion::increment_at; }
     /// In rows.
     const double* strain_velocity() const { return velocity_; }
+    const double* edge_gradient() const { return edge_; }
     const double* averaged_gradient() const { return gradient_; }
 
    private:
     alignas(64) double motion_[node_doubles * lattice_points.nodes()];
     alignas(64) double velocity_[3 * ddmp::NodeRows::doubles];
-    alignas(64) double gradient_[9 * ddmp::LatticeRows::doubles];
+    alignas(64) double edge_[9 * ddmp::gradient_doubles], gradient_[9 * ddmp::gradient_doubles];
   };
 
+  /// A derivative of the trilinear functions is a mean of those along the cell's four edges.
   template <class Rows>
-  static void gradient(const BrickFrame& frame, const Place& place, const Field& field, Rows& rows, int at) {
+  static void gradient(const BrickFrame&, const Place& place, const Field& field, Rows& rows, int at) {
     using R = Lanes<8>;
-    const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
     const R alpha = place.alpha(), rest = R(1.0) - alpha;
-    const R scale[3] = {alpha * R(frame.inverse_cell.x), alpha * R(frame.inverse_cell.y),
-                        alpha * R(frame.inverse_cell.z)};
     const LinearWeights weight(place);
+    R of_corner[8], of_edge[3][8];  // the latter at the edge's lower corner
+    for (int n = 0; n < 8; ++n) {
+      of_corner[n] = rest * weight[n];
+      for (int a = 0; a < 3; ++a)
+        if ((n >> a & 1) == 0) of_edge[a][n] = alpha * (weight[n] + weight[n + (1 << a)]);
+    }
     R gradient[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    for_each_cell(place, [&](int point, auto here) {
-      const int lowest_node = NodeRows::index(point), lowest_point = LatticeRows::index(point);
-      for (int i = 0; i < 3; ++i) {
-        const double* v = field.strain_velocity() + NodeRows::doubles * i + lowest_node;
-        R direct[3];
-        trilinear_differences([&](int n) { return R(v[NodeRows::corner(n)]); }, x, y, z, direct);
-        for (int j = 0; j < 3; ++j) {
-          const double* d = field.averaged_gradient() + LatticeRows::doubles * (3 * i + j) + lowest_point;
-          R averaged = weight[0] * R(d[0]);
-          for (int n = 1; n < 8; ++n) averaged += weight[n] * R(d[LatticeRows::corner(n)]);
-          R& g = gradient[3 * i + j];
-          g = select(here, scale[j] * direct[j] + rest * averaged, g);
+    for_each_cell(place, [&](int lowest, auto here) {
+#pragma GCC unroll 9
+      for (int i = 0; i < 9; ++i) {
+        const double* averaged = field.averaged_gradient() + ddmp::gradient_doubles * i + lowest;
+        const double* edge = field.edge_gradient() + ddmp::gradient_doubles * i + lowest;
+        R sum(0.0);
+#pragma GCC unroll 8
+        for (int n = 0; n < 8; ++n) {
+          sum += of_corner[n] * R(averaged[corner_node(n)]);
+          if ((n >> i % 3 & 1) == 0) sum += of_edge[i % 3][n] * R(edge[corner_node(n)]);
         }
+        gradient[i] = select(here, sum, gradient[i]);
       }
     });
     for (int i = 0; i < 9; ++i) store(rows[i] + at, gradient[i]);

@@ -190,11 +190,12 @@ template <int width, NodeBlockShape shape = lattice_points>
   }
 }
 /// Adds four components, r[component], to records of four doubles.
+template <NodeBlockShape shape = lattice_points>
 [[gnu::always_inline]] inline void add_half_to_corners(linear::Nodes r[4], double* lowest) {
   using Record = Lanes<4>;
   transpose_half(r);
   for (int n = 0; n < 8; ++n) {
-    double* at = lowest + 4 * corner_node(n);
+    double* at = lowest + 4 * corner_node<shape>(n);
     store(at, load<Record>(at) + half_of(r[n / 2], n % 2));
   }
 }

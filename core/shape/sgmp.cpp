@@ -227,6 +227,12 @@ void nodes_to_centres(const NodeMask* some, const double* node, double* centre) 
   }
 }
 
+void copy_velocities(const NodeMask* some, const double* from, int from_doubles, double* to, int to_doubles) {
+  const auto copy = [&](int c) { store(to + to_doubles * c, load<Half>(from + from_doubles * c)); };
+  if (some != nullptr) return for_each_centre(*some, [&](int, int c) { copy(c); });
+  for (int c = 0; c < lattice_points.nodes(); ++c) copy(c);
+}
+
 void gradients_at_centres(const NodeMask* some, const Vec3<double>& inverse_cell, const double* node,
                           double* gradient) {
   struct Plane {

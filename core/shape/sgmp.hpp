@@ -54,6 +54,8 @@ void centres_to_nodes(const NodeMask& some, const Vec3<double>& inverse_cell, co
 void centres_to_nodes(const NodeMask& some, const double* centre, double* node);
 /// Means of the nodes' records; if not null, of cells with `some` nodes alone.
 void nodes_to_centres(const NodeMask* some, const double* node, double* centre);
+/// Velocities of centres between records of these numbers of doubles.
+void copy_velocities(const NodeMask* some, const double* from, int from_doubles, double* to, int to_doubles);
 /// Gradients of the nodes' strain velocities.
 void gradients_at_centres(const NodeMask* some, const Vec3<double>& inverse_cell, const double* node,
                           double* gradient);
@@ -107,6 +109,14 @@ struct Sgmp {
     }
     void take_strain(const BrickFrame& frame, const double* nodes, const NodeMask* some = nullptr) {
       sgmp::gradients_at_centres(some, frame.inverse_cell, nodes, gradient_);
+    }
+    /// The velocities alone, which MUSL keeps between its passes.
+    static constexpr int kept_doubles = 4 * lattice_points.nodes();
+    void keep_velocity(const NodeMask* some, double* kept) const {
+      sgmp::copy_velocities(some, velocity(), node_doubles, kept, 4);
+    }
+    void recall_velocity(const NodeMask* some, const double* kept) {
+      sgmp::copy_velocities(some, kept, 4, motion_ + Motion::velocity_at, node_doubles);
     }
     const double* velocity() const { return motion_ + Motion::velocity_at; }
     const double* increment() const { return motion_ + Motion::increment_at; }

@@ -85,10 +85,16 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
   const NodeMask* some = reached(s);
   const bool replaces =
       can_replace && some == nullptr && !(maps_force(what) && std::ranges::any_of(brick.tiles, loaded));
+  // Of the nodes that it does not reach, MUSL's map of the new momentum needs no sums, but at walls, which
+  // fold them.
+  const bool all =
+      maps_force(what) || momentum_block<S> == S::node_block || scheme_ != Scheme::musl || !faces(s).none();
+  const NodeSelection written{grid.shape(), all ? S::node_block : momentum_block<S>};
   if (selects_)
     sparse_.begin_map(what.array, grid.shape(), s, width, replaces, contributions);
   else if (!replaces)
-    std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
+    written.for_each(
+        [&](int first, int nodes) { std::fill_n(contributions + width * first, width * nodes, 0.0); });
   const bool next_is_full = s + 1 < grid.owned() && !has_few_particles(s + 1);
   SpreadPrefetch room(next_is_full ? grid.contributions(what.array, s + 1) : nullptr,
                       width * grid.shape().nodes(), block_count(brick));
@@ -347,6 +353,16 @@ template <ShapePolicy S, TransferPolicy T>
                  });
   at.add_work_of_brick();
   return std::sqrt(fastest_square);
+}
+
+/// The cells of a brick whose particles have moved, while these are in the cache; unless some leave it, or
+/// rigid bodies are yet to move theirs.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::find_own_cells([[maybe_unused]] Slot s) {
+  if constexpr (needs_cells<S>) {
+    const bool settled = departing_[static_cast<std::size_t>(s)].empty() && rigid_ == nullptr;
+    model_.grid->own_cells(s) = settled ? find_cells(model_, s) : 0;
+  }
 }
 
 // --- stress -----------------------------------------------------------------------------------------------

@@ -53,27 +53,31 @@ void add_mirror_images(const GridGeometry& geometry, BrickCoord brick, CellsArou
 
 }  // namespace
 
-CellsInUse::Cells CellsInUse::cells_of(Slot s) const {
-  const BrickGrid& grid = *model_.grid;
+std::uint64_t find_cells(const Model& model, Slot s) {
+  using Cells = std::uint64_t;
+  const BrickGrid& grid = *model.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), brick.coord);
   constexpr int columns = static_cast<int>(Column::position_x) + 3;
-  Cells of_lanes[block_lanes] = {};
+  using Wide = LaneMask<block_lanes>::vector;
+  constexpr Wide lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  Wide of_lanes{};
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
-    const BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
-    const BlockPrefetch prefetch(model_, s, c);
+    const BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
+    const BlockPrefetch prefetch(model, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       prefetch.request<Linear>(b, pool.layout(), columns);
       const double* x = pool.block(tile.blocks[b]) + pool.layout().offset(Column::position_x);
       const auto p =
           locate_in_sites<Lanes<block_lanes>, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
-      const int used = tile.used_lanes(b);
-      for (int l = 0; l < block_lanes; ++l) of_lanes[l] |= Cells{l < used} << p.node[l];
+      Wide cell;
+      for (int l = 0; l < block_lanes; ++l) cell[l] = p.node[l];
+      of_lanes |= (lane_numbers < std::int64_t{tile.used_lanes(b)} ? Wide{} + 1 : Wide{}) << cell;
     }
   }
   Cells cells = 0;
-  for (const Cells of_lane : of_lanes) cells |= of_lane;
+  for (int l = 0; l < block_lanes; ++l) cells |= static_cast<Cells>(of_lanes[l]);
   return cells;
 }
 
@@ -98,16 +102,17 @@ CellsInUse::Cells CellsInUse::read_from_nodes(Slot s) const {
 void CellsInUse::find() {
   BrickGrid& grid = *model_.grid;
   cells_.resize(static_cast<std::size_t>(grid.owned() + grid.ghosts()));
-  const auto find_cells = [&](Slot s) {
+  const auto of_brick = [&](Slot s) {
     prefetch_coming_bricks(grid, s);
-    cells_[static_cast<std::size_t>(s)] = cells_of(s);
+    const Cells known = grid.own_cells(s);
+    cells_[static_cast<std::size_t>(s)] = known != 0 ? known : find_cells(model_, s);
   };
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
-    find_cells(s);
+    of_brick(s);
     write_to_nodes(s);
   });
   halo_.begin(grid, field);
-  for_each_by_threads(grid.boundary(), grid.owned(), 4, find_cells);
+  for_each_by_threads(grid.boundary(), grid.owned(), 4, of_brick);
 }
 
 void CellsInUse::finish_exchange() {

@@ -12,6 +12,9 @@
 
 namespace mpm::core {
 
+/// The cells that hold a brick's particles, (i, j, k) in bit i + 4 j + 16 k.
+std::uint64_t find_cells(const Model& model, Slot s);
+
 class CellsInUse {
  public:
   CellsInUse(Model& model, NodeHalo& halo) : model_(model), halo_(halo) {}
@@ -22,8 +25,7 @@ class CellsInUse {
   void finish_exchange();
 
  private:
-  using Cells = std::uint64_t;  ///< cell (i, j, k) in bit i + 4 j + 16 k
-  Cells cells_of(Slot s) const;
+  using Cells = std::uint64_t;
   void write_to_nodes(Slot s);
   Cells read_from_nodes(Slot s) const;
   void combine(Slot s);

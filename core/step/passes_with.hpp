@@ -16,6 +16,7 @@
 #include "core/shape/cell_mass.hpp"
 #include "core/shape/face_traps.hpp"
 #include "core/simd/denormals.hpp"
+#include "core/step/cells_in_use.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/grid_to_particles.hpp"
 #include "core/step/load_forces.hpp"
@@ -95,21 +96,27 @@ class PassesWith final : public Passes {
   static bool selects_nodes(const Model& model) {
     return selects && !corrects && !solves && !model.scene->contact.enable && !conducts_heat(model);
   }
-  /// What MUSL maps back to the grid. Where the motion of all nodes is not found (moving_block), the strain
-  /// velocities of the others need the masses once more.
+  /// Whether what particles move with is kept as their field has it, not at the nodes.
+  static constexpr bool can_keep_field = requires(typename S::Field field, double* kept) {
+    field.keep_velocity(nullptr, kept);
+  };
+  /// What MUSL maps back to the grid. Where the motion of all nodes is not found (moving_block) or kept, the
+  /// strain velocities need the masses once more.
   static constexpr NodeFields mapped_back =
-      momentum_block<S> == S::node_block ? mapped::momentum : mapped::momentum_mass;
+      momentum_block<S> == S::node_block && !can_keep_field ? mapped::momentum : mapped::momentum_mass;
   /// Whether it solves with the consistent mass matrix (core/transfer/consistent.hpp).
   static constexpr bool solves = solves_mass<T>;
   /// The nodes of a brick whose motion is found: with MUSL those that its particles take it from, unless
   /// contact, a correction, a solution, the work of a surface load or a rigid wall (node_update.hpp) needs
   /// all of them.
   static NodeBlockShape moving_block(const Model& model) {
+    return moves_all_nodes(model) ? S::node_block : momentum_block<S>;
+  }
+  static bool moves_all_nodes(const Model& model) {
     const SolutionInput& solution = model.scene->solution;
-    const bool all = corrects || solves || solution.scheme != Scheme::musl || model.scene->contact.enable ||
-                     has_surface_loads(*model.scene) ||
-                     std::ranges::count(model.grid->geometry().boundary, Boundary::rigid_wall) > 0;
-    return all ? S::node_block : momentum_block<S>;
+    return corrects || solves || solution.scheme != Scheme::musl || model.scene->contact.enable ||
+           has_surface_loads(*model.scene) ||
+           std::ranges::count(model.grid->geometry().boundary, Boundary::rigid_wall) > 0;
   }
   struct Nothing {};
   struct Scratch : ThreadScratch {
@@ -218,6 +225,7 @@ class PassesWith final : public Passes {
   void take_updated_nodes(Slot s, Scratch& at);
   void velocities_of_brick(Slot s, std::int32_t component, Scratch& at);
   double velocities_and_motion_of_brick(Slot s, std::int32_t component, Scratch& at);
+  void find_own_cells(Slot s);
   /// Whether the particles' velocities are already those at the start of the next step.
   enum class Velocities { of_last_step, of_next_step };
   template <bool moves, class F>
@@ -317,7 +325,11 @@ class PassesWith final : public Passes {
   const SharedNodes& shared() const {
     return of == NodeArray::first ? shared_ : momentum_shared_;
   }
-  int motion_doubles() const { return motion_width * moving_shared_.summed().nodes(); }
+  int motion_doubles() const {
+    if constexpr (can_keep_field)
+      if (keeps_field_) return S::Field::kept_doubles;
+    return motion_width * moving_shared_.summed().nodes();
+  }
   /// Of the field number `k` of those that the brick sees.
   double* motion(Slot s, std::size_t k = 0) {
     const std::size_t first = contact_ ? contact_->first_seen(s) : static_cast<std::size_t>(s);
@@ -336,6 +348,7 @@ class PassesWith final : public Passes {
   SharedNodes shared_;
   SharedNodes momentum_shared_;
   SharedNodes moving_shared_;  ///< of the first array, where the nodes' motion is found
+  const bool keeps_field_;     ///< in motion()
   const bool selects_;         ///< selects_nodes()
   SparseBricks sparse_;
   NodeForces forces_;
@@ -382,6 +395,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       shared_(model.grid->shape()),
       momentum_shared_(model.grid->shape(), momentum_block<S>),
       moving_shared_(model.grid->shape(), model.grid->shape(), moving_block(model)),
+      keeps_field_(can_keep_field && !moves_all_nodes(model)),
       selects_(selects_nodes(model)),
       loads_(model),
       failed_(model),

@@ -55,7 +55,10 @@ void PassesWith<S, T>::update_velocities_and_map_back() {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
     for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
       take_updated_nodes(s, at);
-      keep_motion(moving_shared_.summed(reached(s)), moving_nodes(s, at), motion(s, k));
+      if constexpr (can_keep_field) {
+        if (keeps_field_) at.field.keep_velocity(reached(s), motion(s, k));
+      }
+      if (!keeps_field_) keep_motion(moving_shared_.summed(reached(s)), moving_nodes(s, at), motion(s, k));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       SpreadPrefetch room = prefetch_motion(s);
       const BrickFrame frame = this->frame(s);
@@ -77,17 +80,21 @@ void PassesWith<S, T>::update_stress_and_move() {
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t k) {
       const NodeMask* some = reached(s);
-      recall_motion(moving_shared_.summed(some), motion(s, k), at.nodes.data());
+      if (!keeps_field_) recall_motion(moving_shared_.summed(some), motion(s, k), at.nodes.data());
       if constexpr (solves) return take_solved_strain(s, at);
       double *const sums = at.sums.data(), *const nodes = at.nodes.data();
       sum<NodeArray::second>(momentum_shared_, s, component, at, sums, some);
-      second_velocities(0, sums, maps_mass(mapped_back) ? sums : nodes, faces(s), shared_.summed(some),
-                        nodes);
+      constexpr bool maps_again = maps_mass(mapped_back);
+      second_velocities(maps_again ? grid.geometry().mass_cutoff : 0, sums, maps_again ? sums : nodes,
+                        faces(s), shared_.summed(some), nodes);
     };
     for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
-                   [&](std::int32_t component, std::size_t) {
+                   [&](std::int32_t component, std::size_t k) {
                      const NodeMask* some = reached(s);
-                     at.field.take_motion(at.nodes.data(), some);
+                     if constexpr (can_keep_field) {
+                       if (keeps_field_) at.field.recall_velocity(some, motion(s, k));
+                     }
+                     if (!keeps_field_) at.field.take_motion(at.nodes.data(), some);
                      at.field.take_strain(frame(s), at.nodes.data(), some);
                      auto nodes = prefetch_nodes<NodeArray::second>(s);
                      SpreadPrefetch room = prefetch_motion(s);
@@ -96,6 +103,7 @@ void PassesWith<S, T>::update_stress_and_move() {
                        room.next();
                      });
                    });
+    find_own_cells(s);
   });
 }
 
@@ -134,6 +142,7 @@ void PassesWith<S, T>::update_velocities_and_move() {
           std::max(at.statistics.fastest,
                    critical_[static_cast<std::size_t>(s)] + velocities_and_motion_of_brick(s, component, at));
     });
+    find_own_cells(s);
   });
 }
 
@@ -152,6 +161,7 @@ void PassesWith<S, T>::update_all() {
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
     });
+    find_own_cells(s);
   });
 }
 
