@@ -69,7 +69,9 @@ struct CornerPlace {
     SumWeights<R, Domain> weights;
     Domain::evaluate(frame, layout, block, within, at, reach, weights);
     far = 0;
+#pragma GCC unroll 3
     for (int a = 0; a < 3; ++a) {
+#pragma GCC unroll 8
       for (int c = 0; c < corners; ++c) store(corner[a][c], at[a][c]);
       // So that round-off puts no corner beyond the nodes.
       const R wide = reach[a] + R(1e-14);
