@@ -38,6 +38,7 @@ struct SumWeights {
 struct CornerNodes {
   int along;                ///< their number along each axis, 3 or 4
   int lowest[block_lanes];  ///< the first of them
+  bool shared;              ///< by all particles
   /// f(along) with a constant.
   template <class F>
   [[gnu::always_inline]] void with_along(F f) const {
@@ -80,7 +81,8 @@ struct CornerPlace {
       const R from = select(below, R(-2.0), R(0.0)), to = select(beyond, R(3.0), R(below_one));
 #pragma GCC unroll 8
       for (int c = 0; c < corners; ++c) store(corner[a][c], max(min(at[a][c], to), from));
-      store(first[a], select(below, R(-1.0), R(0.0)));
+      // As far as a particle has the choice, a block's have the same nodes.
+      store(first[a], select(beyond, R(0.0), R(any(below) ? -1.0 : 0.0)));
       far |= bits(below & beyond);
       for (int s = 0; s < Domain::sums - Domain::first_slope; ++s)
         store(slope[s][a], weights.slope[s][a] * R(frame.inverse_cell[a]));
@@ -125,6 +127,7 @@ struct CornerHats : CornerNodes {
     for (int a = 0; a < 3; ++a) first[a] = along == most_along ? R(-1.0) : load<R>(place.first[a]);
     const auto nodes = place.nodes(first[0] + R(1.0), first[1] + R(1.0), first[2] + R(1.0));
     std::memcpy(lowest, &nodes, sizeof lowest);
+    shared = std::equal(lowest + 1, lowest + block_lanes, lowest);
     with_along([&](auto n) {
       for (int a = 0; a < 3; ++a)
         for (int c = 0; c < corners; ++c) evaluate<n>(load<R>(place.corner[a][c]), first[a], c, hat[a]);

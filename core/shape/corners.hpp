@@ -67,7 +67,9 @@ template <int n, int width, class F>
 [[gnu::always_inline]] inline void for_each_record(F f) {
   constexpr int side = corner_nodes.side();
   for (int k = 0; k < n; ++k)
+#pragma GCC unroll 4
     for (int j = 0; j < n; ++j)
+#pragma GCC unroll 4
       for (int i = 0; i < n; ++i) f(i + n * (j + n * k), width * (i + side * (j + side * k)));
 }
 
@@ -155,6 +157,8 @@ struct CornerScatter {
                            double* records) {
     using H = Lanes<4>;
     const auto& values = place.values();
+    if (values.shared && used == block_lanes) [[likely]]
+      return add_shared_momentum(values, rows, records);
     values.with_along([&](auto n) {
       for (int l = 0; l < used; ++l) {
         const H motion = H::vector{rows.momentum[0][l], rows.momentum[1][l], rows.momentum[2][l],
@@ -165,6 +169,23 @@ struct CornerScatter {
           store(at, load<H>(at) + motion * H(values.value[node][l]));
         });
       }
+    });
+  }
+
+  /// Of particles with the same nodes, in the lanes.
+  static void add_shared_momentum(const typename CornerPlace<Domain>::Values& values, const MappedRows& rows,
+                                  double* records) {
+    using R = Lanes<8>;
+    using H = Lanes<4>;
+    R motion[4] = {load<R>(rows.momentum[0]), load<R>(rows.momentum[1]), load<R>(rows.momentum[2]), R(0.0)};
+    if constexpr (maps_mass(what)) motion[3] = load<R>(rows.mass);
+    double* lowest = records + width * values.lowest[0];
+    values.with_along([&](auto n) {
+      corner::for_each_record<n, width>([&](int node, int offset) {
+        R mapped[4];
+        for (int i = 0; i < 4; ++i) mapped[i] = load<R>(values.value[node]) * motion[i];
+        store(lowest + offset, load<H>(lowest + offset) + sums_over_lanes(mapped));
+      });
     });
   }
 
@@ -196,6 +217,19 @@ struct CornerInterpolation {
     alignas(64) double row[3][block_lanes];
     const auto& values = place.values();
     values.with_along([&](auto n) {
+      if (values.shared) [[likely]] {
+        const double* lowest = nodes + node_doubles * values.lowest[0];
+        R sum[3] = {0.0, 0.0, 0.0}, plane[3];
+        corner::for_each_record<n, node_doubles>([&](int node, int offset) {
+          for (int a = 0; a < 3; ++a) {
+            if (node % (n * n) == 0) plane[a] = R(0.0);
+            plane[a] += load<R>(values.value[node]) * R(lowest[offset + a]);
+            if (node % (n * n) == n * n - 1) sum[a] += plane[a];
+          }
+        });
+        for (int a = 0; a < 3; ++a) store(row[a], sum[a]);
+        return;
+      }
       for (int l = 0; l < block_lanes; ++l) {
         const double* lowest = nodes + node_doubles * values.lowest[l];
         H sum[n] = {};  // by planes: an addition waits for the one before
