@@ -19,7 +19,7 @@ namespace mpm::core {
 /// The cells of the corners of a block's particles.
 template <class Domain>
 struct CornerCells {
-  alignas(64) double f[corners][3][block_lanes];  ///< of the corners, within their cells
+  alignas(64) double f[3][corners * block_lanes];  ///< of the corners, within their cells
   alignas(64) int node[corners][block_lanes];     ///< lowest of a cell's nodes
 
   explicit CornerCells(const CornerPlace<Domain>& place) {
@@ -29,7 +29,7 @@ struct CornerCells {
       for (int a = 0; a < 3; ++a) {
         const R s = load<R>(place.corner[a][c]);
         cell[a] = min(max(floor(s), R(-1.0)), R(1.0));
-        store(f[c][a], s - cell[a]);
+        store(f[a] + block_lanes * c, s - cell[a]);
       }
       const auto nodes = place.nodes(cell[0] + R(1.0), cell[1] + R(1.0), cell[2] + R(1.0));
       std::memcpy(node[c], &nodes, sizeof nodes);
@@ -39,7 +39,8 @@ struct CornerCells {
   /// The records that the nodes of corner `c`'s cell have from `nodes` on, interpolated to the corner.
   template <class T>
   [[gnu::always_inline]] T interpolated(const double* nodes, int c, int lane) const {
-    const T x(f[c][0][lane]), y(f[c][1][lane]), z(f[c][2][lane]);
+    const int point = block_lanes * c + lane;
+    const T x(f[0][point]), y(f[1][point]), z(f[2][point]);
     const double* lowest = nodes + node_doubles * node[c][lane];
     T edge[4];
     for (int e = 0; e < 4; ++e) {
@@ -107,9 +108,7 @@ struct CornerPoints {
 
   /// Of the nodes of its cell.
   [[gnu::always_inline]] linear::Nodes weights(int point) const {
-    const auto& f = cells.f[point / block_lanes];
-    const int lane = point % block_lanes;
-    return linear::weights_at(f[0][lane], f[1][lane], f[2][lane]);
+    return linear::weights_at(cells.f[0][point], cells.f[1][point], cells.f[2][point]);
   }
 
   /// f(lowest node, points as bits) for each cell that holds corners of the first `used` particles.
