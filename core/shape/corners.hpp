@@ -5,11 +5,12 @@
 //
 // A particle's corners share most of their nodes, and adding a record to a node takes longer than the
 // arithmetic between two additions. Particles to grid: S_i on 27 nodes, particles in the lanes, serves
-// momentum and mass, which are then added one particle at a time, a node's record in the lanes. With forces,
-// each corner is a point with a record of its own; those of a block that lie in the same cell are added up in
-// registers, the cell's nodes in the lanes, as particles are with linear functions. Grid to particles:
-// velocities by S_i again; for strain and motion the nodes' records are interpolated to the corners, and the
-// sums over these that the domain needs are transposed to particles in the lanes.
+// momentum and mass: sums over the lanes where all particles of a block have the same nodes, else one
+// particle at a time, a node's record in the lanes. With forces, each corner is a point with a record of its
+// own; those of a block that lie in the same cell are added up in registers, the cell's nodes in the lanes,
+// as particles are with linear functions. Grid to particles: velocities by S_i again; for strain and motion
+// the nodes' records are interpolated to the corners, and the sums over these that the domain needs are
+// transposed to particles in the lanes.
 #pragma once
 
 #include "core/shape/corner_place.hpp"
@@ -20,7 +21,7 @@ namespace mpm::core {
 template <class Domain>
 struct CornerCells {
   alignas(64) double f[3][corners * block_lanes];  ///< of the corners, within their cells
-  alignas(64) int node[corners][block_lanes];     ///< lowest of a cell's nodes
+  alignas(64) int node[corners][block_lanes];      ///< lowest of a cell's nodes
 
   explicit CornerCells(const CornerPlace<Domain>& place) {
     using R = Lanes<8>;
