@@ -23,6 +23,10 @@ namespace mpm::core {
 inline constexpr NodeBlockShape corner_nodes{1, 1};
 inline constexpr int most_along = 4;  ///< nodes of a particle along an axis
 
+/// Domains that fill the cells of a lattice have corners on its faces, but for round-off: one so close to a
+/// face of its particle's cell, in cells, counts as inside, so that round-off does not lead to further cells.
+inline constexpr double on_face = 1e-12, below_one = 1 - 0x1p-53;
+
 /// Of the sums over the corners.
 template <class T, class Domain>
 struct SumWeights {
@@ -34,6 +38,7 @@ struct SumWeights {
 struct CornerNodes {
   int along;                ///< their number along each axis, 3 or 4
   int lowest[block_lanes];  ///< the first of them
+  bool shared;              ///< by all particles
   /// f(along) with a constant.
   template <class F>
   [[gnu::always_inline]] void with_along(F f) const {
@@ -69,14 +74,16 @@ struct CornerPlace {
     SumWeights<R, Domain> weights;
     Domain::evaluate(frame, layout, block, within, at, reach, weights);
     far = 0;
+#pragma GCC unroll 3
     for (int a = 0; a < 3; ++a) {
-      for (int c = 0; c < corners; ++c) store(corner[a][c], at[a][c]);
-      // So that round-off puts no corner beyond the nodes.
-      const R wide = reach[a] + R(1e-14);
-      // Unused lanes may hold anything; a NaN becomes the lower bound.
-      const R lower = min(max(floor(within[a] - wide), R(-1.0)), R(0.0));
-      store(first[a], lower);
-      far |= bits(lower + R(2.0) < within[a] + wide);
+      // Unused lanes may hold anything.
+      const auto below = within[a] - reach[a] < R(-on_face), beyond = R(1.0 + on_face) < within[a] + reach[a];
+      const R from = select(below, R(-2.0), R(0.0)), to = select(beyond, R(3.0), R(below_one));
+#pragma GCC unroll 8
+      for (int c = 0; c < corners; ++c) store(corner[a][c], max(min(at[a][c], to), from));
+      // As far as a particle has the choice, a block's have the same nodes.
+      store(first[a], select(beyond, R(0.0), R(any(below) ? -1.0 : 0.0)));
+      far |= bits(below & beyond);
       for (int s = 0; s < Domain::sums - Domain::first_slope; ++s)
         store(slope[s][a], weights.slope[s][a] * R(frame.inverse_cell[a]));
     }
@@ -120,6 +127,7 @@ struct CornerHats : CornerNodes {
     for (int a = 0; a < 3; ++a) first[a] = along == most_along ? R(-1.0) : load<R>(place.first[a]);
     const auto nodes = place.nodes(first[0] + R(1.0), first[1] + R(1.0), first[2] + R(1.0));
     std::memcpy(lowest, &nodes, sizeof lowest);
+    shared = std::equal(lowest + 1, lowest + block_lanes, lowest);
     with_along([&](auto n) {
       for (int a = 0; a < 3; ++a)
         for (int c = 0; c < corners; ++c) evaluate<n>(load<R>(place.corner[a][c]), first[a], c, hat[a]);

@@ -5,11 +5,12 @@
 //
 // A particle's corners share most of their nodes, and adding a record to a node takes longer than the
 // arithmetic between two additions. Particles to grid: S_i on 27 nodes, particles in the lanes, serves
-// momentum and mass, which are then added one particle at a time, a node's record in the lanes. With forces,
-// each corner is a point with a record of its own; those of a block that lie in the same cell are added up in
-// registers, the cell's nodes in the lanes, as particles are with linear functions. Grid to particles:
-// velocities by S_i again; for strain and motion the nodes' records are interpolated to the corners, and the
-// sums over these that the domain needs are transposed to particles in the lanes.
+// momentum and mass: sums over the lanes where all particles of a block have the same nodes, else one
+// particle at a time, a node's record in the lanes. With forces, each corner is a point with a record of its
+// own; those of a block that lie in the same cell are added up in registers, the cell's nodes in the lanes,
+// as particles are with linear functions. Grid to particles: velocities by S_i again; for strain and motion
+// the nodes' records are interpolated to the corners, and the sums over these that the domain needs are
+// transposed to particles in the lanes.
 #pragma once
 
 #include "core/shape/corner_place.hpp"
@@ -19,8 +20,8 @@ namespace mpm::core {
 /// The cells of the corners of a block's particles.
 template <class Domain>
 struct CornerCells {
-  alignas(64) double f[corners][3][block_lanes];  ///< of the corners, within their cells
-  alignas(64) int node[corners][block_lanes];     ///< lowest of a cell's nodes
+  alignas(64) double f[3][corners * block_lanes];  ///< of the corners, within their cells
+  alignas(64) int node[corners][block_lanes];      ///< lowest of a cell's nodes
 
   explicit CornerCells(const CornerPlace<Domain>& place) {
     using R = Lanes<8>;
@@ -29,7 +30,7 @@ struct CornerCells {
       for (int a = 0; a < 3; ++a) {
         const R s = load<R>(place.corner[a][c]);
         cell[a] = min(max(floor(s), R(-1.0)), R(1.0));
-        store(f[c][a], s - cell[a]);
+        store(f[a] + block_lanes * c, s - cell[a]);
       }
       const auto nodes = place.nodes(cell[0] + R(1.0), cell[1] + R(1.0), cell[2] + R(1.0));
       std::memcpy(node[c], &nodes, sizeof nodes);
@@ -39,7 +40,8 @@ struct CornerCells {
   /// The records that the nodes of corner `c`'s cell have from `nodes` on, interpolated to the corner.
   template <class T>
   [[gnu::always_inline]] T interpolated(const double* nodes, int c, int lane) const {
-    const T x(f[c][0][lane]), y(f[c][1][lane]), z(f[c][2][lane]);
+    const int point = block_lanes * c + lane;
+    const T x(f[0][point]), y(f[1][point]), z(f[2][point]);
     const double* lowest = nodes + node_doubles * node[c][lane];
     T edge[4];
     for (int e = 0; e < 4; ++e) {
@@ -67,7 +69,9 @@ template <int n, int width, class F>
 [[gnu::always_inline]] inline void for_each_record(F f) {
   constexpr int side = corner_nodes.side();
   for (int k = 0; k < n; ++k)
+#pragma GCC unroll 4
     for (int j = 0; j < n; ++j)
+#pragma GCC unroll 4
       for (int i = 0; i < n; ++i) f(i + n * (j + n * k), width * (i + side * (j + side * k)));
 }
 
@@ -105,9 +109,7 @@ struct CornerPoints {
 
   /// Of the nodes of its cell.
   [[gnu::always_inline]] linear::Nodes weights(int point) const {
-    const auto& f = cells.f[point / block_lanes];
-    const int lane = point % block_lanes;
-    return linear::weights_at(f[0][lane], f[1][lane], f[2][lane]);
+    return linear::weights_at(cells.f[0][point], cells.f[1][point], cells.f[2][point]);
   }
 
   /// f(lowest node, points as bits) for each cell that holds corners of the first `used` particles.
@@ -155,6 +157,8 @@ struct CornerScatter {
                            double* records) {
     using H = Lanes<4>;
     const auto& values = place.values();
+    if (values.shared && used == block_lanes) [[likely]]
+      return add_shared_momentum(values, rows, records);
     values.with_along([&](auto n) {
       for (int l = 0; l < used; ++l) {
         const H motion = H::vector{rows.momentum[0][l], rows.momentum[1][l], rows.momentum[2][l],
@@ -165,6 +169,23 @@ struct CornerScatter {
           store(at, load<H>(at) + motion * H(values.value[node][l]));
         });
       }
+    });
+  }
+
+  /// Of particles with the same nodes, in the lanes.
+  static void add_shared_momentum(const typename CornerPlace<Domain>::Values& values, const MappedRows& rows,
+                                  double* records) {
+    using R = Lanes<8>;
+    using H = Lanes<4>;
+    R motion[4] = {load<R>(rows.momentum[0]), load<R>(rows.momentum[1]), load<R>(rows.momentum[2]), R(0.0)};
+    if constexpr (maps_mass(what)) motion[3] = load<R>(rows.mass);
+    double* lowest = records + width * values.lowest[0];
+    values.with_along([&](auto n) {
+      corner::for_each_record<n, width>([&](int node, int offset) {
+        R mapped[4];
+        for (int i = 0; i < 4; ++i) mapped[i] = load<R>(values.value[node]) * motion[i];
+        store(lowest + offset, load<H>(lowest + offset) + sums_over_lanes(mapped));
+      });
     });
   }
 
@@ -196,6 +217,19 @@ struct CornerInterpolation {
     alignas(64) double row[3][block_lanes];
     const auto& values = place.values();
     values.with_along([&](auto n) {
+      if (values.shared) [[likely]] {
+        const double* lowest = nodes + node_doubles * values.lowest[0];
+        R sum[3] = {0.0, 0.0, 0.0}, plane[3];
+        corner::for_each_record<n, node_doubles>([&](int node, int offset) {
+          for (int a = 0; a < 3; ++a) {
+            if (node % (n * n) == 0) plane[a] = R(0.0);
+            plane[a] += load<R>(values.value[node]) * R(lowest[offset + a]);
+            if (node % (n * n) == n * n - 1) sum[a] += plane[a];
+          }
+        });
+        for (int a = 0; a < 3; ++a) store(row[a], sum[a]);
+        return;
+      }
       for (int l = 0; l < block_lanes; ++l) {
         const double* lowest = nodes + node_doubles * values.lowest[l];
         H sum[n] = {};  // by planes: an addition waits for the one before

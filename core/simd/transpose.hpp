@@ -53,6 +53,17 @@ namespace mpm::core {
   r[2].v = __builtin_shufflevector(xz0, xz2, 2, 3, 10, 11, 6, 7, 14, 15);
   r[3].v = __builtin_shufflevector(yw0, yw2, 2, 3, 10, 11, 6, 7, 14, 15);
 }
+/// Sums over the lanes of each of four vectors.
+[[gnu::always_inline]] inline Lanes<4> sums_over_lanes(const Lanes<8> (&r)[4]) {
+  using V = Lanes<8>::vector;
+  V pair[2];
+  for (int i = 0; i < 2; ++i)
+    pair[i] = __builtin_shufflevector(r[2 * i].v, r[2 * i + 1].v, 0, 8, 2, 10, 4, 12, 6, 14) +
+              __builtin_shufflevector(r[2 * i].v, r[2 * i + 1].v, 1, 9, 3, 11, 5, 13, 7, 15);
+  const V half = __builtin_shufflevector(pair[0], pair[1], 0, 1, 2, 3, 8, 9, 10, 11) +
+                 __builtin_shufflevector(pair[0], pair[1], 4, 5, 6, 7, 12, 13, 14, 15);
+  return __builtin_shufflevector(half, half, 0, 1, 4, 5) + __builtin_shufflevector(half, half, 2, 3, 6, 7);
+}
 /// Joins two halves.
 [[gnu::always_inline]] inline Lanes<8> join(Lanes<4> low, Lanes<4> high) {
   return __builtin_shufflevector(low.v, high.v, 0, 1, 2, 3, 4, 5, 6, 7);

@@ -229,6 +229,29 @@ TEMPLATE_TEST_CASE("Domains that reach more than a cell are counted, and evaluat
     CHECK(std::abs(place.corner[1][k][2] - fraction) == Approx(1).margin(1e-12));
 }
 
+TEMPLATE_TEST_CASE("Domains that fill a cell stay in it, whatever round-off does to their corners", "", Cpdi,
+                   Cpdi2) {
+  TransferCase<TestType> c({1, 1, 1}, 8, 36);
+  double* block = c.pool.block(c.tile.blocks[0]);
+  const Vector first = position(block, 0);
+  for (int l = 0; l < 8; ++l) {
+    Vector half{};
+    for (int a = 0; a < 3; ++a) {
+      const double h = c.geometry.cell[a], origin = c.geometry.origin[a];
+      const double cell = std::floor((first[static_cast<std::size_t>(a)] - origin) / h);
+      block[block_lanes * a + l] = origin + (cell + 0.25 + 0.5 * (l >> a & 1)) * h;
+      half[static_cast<std::size_t>(a)] = (0.25 + 1e-14 * (l % 3 - 1)) * h;
+    }
+    write_domain<TestType>(c.pool.layout(), mpm::tests::box(half), block + l, block_lanes);
+  }
+  const auto place = c.block_place(block);
+  CHECK(place.far == 0);
+  CHECK(place.values().shared);
+  for (const auto& axis : place.corner)
+    for (const auto& corner : axis)
+      CHECK(std::ranges::all_of(corner, [](double x) { return 0 <= x && x < 1; }));
+}
+
 TEST_CASE("A tangled hexahedron becomes the parallelepiped of its mean edges, or else a cube") {
   TransferCase<Cpdi2> c({1, 1, 1}, 8, 34);
   double* block = c.pool.block(c.tile.blocks[0]);
