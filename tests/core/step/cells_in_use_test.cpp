@@ -73,6 +73,28 @@ TEST_CASE("A brick knows the cells in use in it and around it, and their images 
   }
 }
 
+TEST_CASE("Cells found as particles move are those of a count afterwards, whoever comes and goes") {
+  for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl}) {
+    ReferenceCase c = tumbling_block();
+    c.shape = ReferenceShape::ddmp;
+    c.scheme = scheme;
+    SmallRun run(c);
+    mpm::core::BrickGrid& grid = *run.model.grid;
+    int known = 0, unknown = 0, wrong = 0;
+    for (int i = 0; i < 60; ++i) {
+      run.step(1);
+      for (Slot s = 0; s < grid.owned(); ++s) {
+        if (grid.brick(s).tiles.empty()) continue;
+        ++(grid.own_cells(s) != 0 ? known : unknown);
+        wrong += grid.own_cells(s) != 0 && grid.own_cells(s) != mpm::core::find_cells(run.model, s) ? 1 : 0;
+      }
+    }
+    CHECK(known > 0);
+    CHECK(unknown > 0);  // bricks that particles have left or entered
+    CHECK(wrong == 0);
+  }
+}
+
 TEST_CASE("Only shape functions that need cells in use have phases for them") {
   for (const ReferenceShape shape : reference_shapes) {
     ReferenceCase c = in_a_corner(0);
