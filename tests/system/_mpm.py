@@ -19,7 +19,7 @@ BIN = pathlib.Path(os.environ.get("MPM_BIN", SOURCE / "build/release/bin")).reso
 
 # Root in a container and more ranks than cores are normal here. Ranks that wait let others work: on a machine that
 # is busy otherwise, a rank that spins keeps the one that it waits for from its core. Open MPI's own files go where
-# no run of another test takes away the folder that they have in common.
+# no run of another test takes away the folder that they have in common, and nor does one of the same test (start).
 MPI_FILES = tempfile.TemporaryDirectory(prefix="mpm-mpi-", ignore_cleanup_errors=True)
 ENVIRONMENT = {
     **os.environ,
@@ -95,7 +95,8 @@ def command(arguments, ranks=1, mpirun=(), program="mpm_run"):
 
 def start(arguments, ranks=1, threads=1, mpirun=(), program="mpm_run", drop=(), **more):
     """A running program, with its own process group and its output in pipes; `drop` names parts of ENVIRONMENT."""
-    environment = {**ENVIRONMENT, "OMP_NUM_THREADS": str(threads)}
+    environment = {**ENVIRONMENT, "OMP_NUM_THREADS": str(threads),
+                   "OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(prefix="", dir=MPI_FILES.name)}
     return subprocess.Popen(command(arguments, ranks, mpirun, program), stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True,
                             env={key: value for key, value in environment.items() if key not in drop}, **more)

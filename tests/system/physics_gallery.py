@@ -210,10 +210,11 @@ class Gallery(_mpm.Case):
         self.assertLess(abs(found["drift"]), 3)
 
     def test_sand_column(self):
-        """Lube's run-out; with these cells, a tenth of the foot, it is 17 % too far. The sand stops and keeps its density."""
+        """Lube's run-out; with these cells, a tenth of the foot, it is 17 % too far. The heap stops and keeps its density; lone grains, which
+        nothing slows down, keep some 1e-4 of the energy."""
         found = self.measured("sand_column", _granular.sand_column(1, 10), _granular.measure_sand_column, 1)
         self.assertLess(abs(found["error"]), 20)
-        self.assertLess(found["kinetic"], 1e-4)
+        self.assertLess(found["heap"], 1e-5)
         self.assertGreater(found["pressed"], 0.99)
 
     def test_aluminium_rods(self):
