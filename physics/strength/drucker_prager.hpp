@@ -24,7 +24,8 @@ namespace mpm::physics {
 
 struct DruckerPrager : IsotropicElasticity {
   static constexpr std::string_view name = "DruckerPrager";
-  static constexpr std::string_view summary = "soil: friction, cohesion, dilation, tension cut-off";
+  static constexpr std::string_view summary =
+      "soil: friction, cohesion, dilation, tension cut-off; opens to a volume of 8 m/rho0 at most";
   using has_tangent = DruckerPrager;
   /// The plastic volumetric strain is what the cut-off has let open and is not closed yet; with `closes`
   /// only.
