@@ -25,7 +25,7 @@ inline constexpr int most_along = 4;  ///< nodes of a particle along an axis
 
 /// Domains that fill the cells of a lattice have corners on its faces, but for round-off: one so close to a
 /// face of its particle's cell, in cells, counts as inside, so that round-off does not lead to further cells.
-inline constexpr double on_face = 1e-12, below_one = 1 - 0x1p-53;
+inline constexpr double face_round_off = 1e-12, below_one = 1 - 0x1p-53;
 
 /// Of the sums over the corners.
 template <class T, class Domain>
@@ -77,7 +77,8 @@ struct CornerPlace {
 #pragma GCC unroll 3
     for (int a = 0; a < 3; ++a) {
       // Unused lanes may hold anything.
-      const auto below = within[a] - reach[a] < R(-on_face), beyond = R(1.0 + on_face) < within[a] + reach[a];
+      const auto below = within[a] - reach[a] < R(-face_round_off),
+                 beyond = R(1.0 + face_round_off) < within[a] + reach[a];
       const R from = select(below, R(-2.0), R(0.0)), to = select(beyond, R(3.0), R(below_one));
 #pragma GCC unroll 8
       for (int c = 0; c < corners; ++c) store(corner[a][c], max(min(at[a][c], to), from));
