@@ -97,8 +97,8 @@ class Run {
     if (case_.restart && options_.restart_input)
       log_->say(
           "note       particles keep their state: geometry, initial velocities, E0, random failure "
-          "thresholds "
-          "and initial porosity of the new input act on bodies alone that the restart file does not have");
+          "thresholds and initial porosity of the new input act on bodies alone that the restart file does "
+          "not have");
     stepper_.emplace(model_, communication_);
     describe(model_, *stepper_, communication_.reductions, threads_, *log_);
     warn_of_long_step(model_, *log_);

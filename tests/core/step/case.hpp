@@ -192,21 +192,19 @@ constexpr ReferenceShape reference_shape(std::type_identity<core::CubicBSpline>)
   return ReferenceShape::cubic_bspline;
 }
 
-/// Whether this build has the passes of the shape: a sanitizer build has one of each kind
+/// The shapes of the program's list that this build has: a sanitizer build has one of each kind
 /// (CMakePresets.json).
-constexpr bool has_passes(ReferenceShape shape) {
-  return []<class... S>(ReferenceShape sought, std::type_identity<std::tuple<S...>>) {
-    return ((core::is_built<S> && reference_shape(std::type_identity<S>()) == sought) || ...);
-  }(shape, std::type_identity<core::Shapes>());
-}
-
-/// The shapes of the program's list that this build has.
 inline const std::vector<ReferenceShape> reference_shapes =
     []<class... S>(std::type_identity<std::tuple<S...>>) {
       std::vector<ReferenceShape> built;
       ((core::is_built<S> ? built.push_back(reference_shape(std::type_identity<S>())) : void()), ...);
       return built;
     }(std::type_identity<core::Shapes>());
+
+/// Whether this build has the passes of the shape.
+inline bool has_passes(ReferenceShape shape) {
+  return std::ranges::find(reference_shapes, shape) != reference_shapes.end();
+}
 
 /// Whether a brief test of all shapes, each with one scheme in turn, leaves this pair out.
 inline bool left_out(ReferenceShape shape, ReferenceScheme scheme) {

@@ -73,7 +73,7 @@ TEST_CASE("A brick knows the cells in use in it and around it, and their images 
   }
 }
 
-TEST_CASE("Cells found as particles move are those of a count afterwards, whoever comes and goes") {
+TEST_CASE("The pass that moves the particles of a brick finds the cells that a later count finds") {
   for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl}) {
     ReferenceCase c = tumbling_block();
     c.shape = ReferenceShape::ddmp;
