@@ -109,6 +109,9 @@ class Contact {
   /// `rigid`: the rigid bodies; null without.
   Contact(const Model& model, const RigidBodies* rigid);
 
+  /// The part of the particles' velocities that the transfer takes from the nodes in this step.
+  void set_share_of_nodes(double share) { share_of_nodes_ = share; }
+
   /// Gives the grid's bricks their fields. Collective, with the neighbouring ranks.
   void find_fields(BrickGrid& grid, NodeHalo& halo, Reductions& ranks);
 
@@ -162,8 +165,9 @@ class Contact {
                         std::vector<RigidNode>& to) const;
   void respond(const RigidNode& node, std::span<RigidResponse> to) const;
 
-  /// MUSL's strain velocity comes after that of the end of the step, which the fields' motion still has.
-  enum class Velocity { of_end, of_strain, of_strain_after_end };
+  /// MUSL's strain velocity comes after that of the end of the step, which the fields' motion still has. So
+  /// do the corrected velocities of XPIC and FMPM, which come in its place.
+  enum class Velocity { of_end, of_strain, of_strain_after_end, of_correction };
   /// Changes the velocities of the fields that a brick sees where they meet, and of those at the end of the
   /// step the increments that the particles get. Adds to `sums` what happens at nodes that no later brick
   /// has.
@@ -199,6 +203,8 @@ class Contact {
   void take_rigid_contacts(Node& at) const;
   void hold_pairs(Node& at) const;
   void resolve_strain(Node& at, Velocity which) const;
+  static void keep_strain(const Node& at);
+  void book_correction(const Node& at, ContactSums& sums) const;
   static Vec3<double> increment(const Node& at, std::size_t field);
   double share_of_particles(const Node& at, const ContactPair& pair) const;
   void correct_start(Node& at, ContactInput::Method method) const;
@@ -214,6 +220,7 @@ class Contact {
   std::optional<double> largest_gap_;  ///< length
   bool to_faces_ = false;              ///< gaps between the particles' faces
   bool limits_time_step_ = false;
+  double share_of_nodes_ = 0;
   std::vector<bool> has_failed_;  ///< by component; all false unless their normals are excluded
   std::vector<double> weight_;    ///< of normals, by component
   std::vector<double> wave_;      ///< largest wave speed at the start, by component; 0: rigid, or failed

@@ -35,8 +35,9 @@ struct Contact::Node {
   std::vector<Vec3<double>> start, nodal_start, taken;
   std::vector<double> share, friction;
   std::vector<Vec3<double>> first_impulse;
-  /// Of each pair the impulse that stops the approach at the start, as far as the particles may get it.
-  std::vector<Vec3<double>> stops;
+  /// Of each pair the impulse that stops the approach at the start: as far as the particles may get it by
+  /// their increments, and what they get of it in all.
+  std::vector<Vec3<double>> stops, given;
 
   void clear() {
     fields.clear(), rigid.clear(), wave.clear(), records.clear(), number.clear(), pairs.clear(),
@@ -122,15 +123,43 @@ void Contact::hold_pairs(Node& at) const {
 }
 
 void Contact::resolve_strain(Node& at, Velocity which) const {
-  if (which == Velocity::of_strain_after_end) hold_pairs(at);
+  if (which != Velocity::of_strain) hold_pairs(at);
   // With Pan's method the particles still approach. Friction in proportion to that would shear the bodies,
   // and the particles would not get its impulse: energy without a source. What slides strains as it slides.
-  if (method_ == ContactInput::Method::pan && !at.free_body)
+  // Corrected velocities have had their friction: what holds them along the normal is as often a pull.
+  if ((method_ == ContactInput::Method::pan && !at.free_body) || which == Velocity::of_correction)
     for (ContactPair& pair : at.pairs) pair.friction = 0;
   resolve_contacts(at.fields, at.pairs);
+}
+
+/// The strain velocities of the deformable fields.
+void Contact::keep_strain(const Node& at) {
   for (std::size_t f = 0; f < at.records.size(); ++f)
     for (int a = 0; at.rigid[f] < 0 && a < 3; ++a)
       at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
+}
+
+/// Energy and impulses of resolve_strain() with corrected velocities, which are still in the records.
+void Contact::book_correction(const Node& at, ContactSums& sums) const {
+  const auto before = [&](std::size_t f) {
+    const double* v = at.records[f].strain_velocity();
+    return at.rigid[f] < 0 ? Vec3<double>{v[0], v[1], v[2]} : at.fields[f].velocity;
+  };
+  for (std::size_t p = 0; p < at.pairs.size(); ++p) {
+    const ContactPair& pair = at.pairs[p];
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    const Vec3<double> mean = 0.5 * (before(a) + at.fields[a].velocity - before(b) - at.fields[b].velocity);
+    const double all = dot(pair.impulse, mean);
+    sums.record.dissipated.add(all);
+    sums.record.add(at.recorded[p], pair.impulse,
+                    all - dot(pair.impulse, pair.normal) * dot(mean, pair.normal));
+    for (const auto& [f, sign] : {std::pair(a, -1.0), std::pair(b, 1.0)}) {
+      if (at.rigid[f] < 0) continue;
+      const Vec3<double> on_it = sign * pair.impulse;
+      sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
+          on_it, at.place - rigid_->state(at.rigid[f]).centre, dot(on_it, at.fields[f].velocity));
+    }
+  }
 }
 
 /// The increment of a field that the particles get; of a rigid body by contact, where it is known before.
@@ -154,7 +183,8 @@ double Contact::share_of_particles(const Node& at, const ContactPair& pair) cons
 /// Stops the approach of the velocities at the start, and finds of what stops it the part that the particles
 /// may get: their share along the normal, and all of the friction, which is that of this share (4-48). With
 /// that of the rest the nodes would slide more slowly than their particles, and contact would book heat that
-/// these do not lose.
+/// these do not lose. A transfer that takes velocities from the nodes gives them as much of the whole
+/// impulse.
 void Contact::find_first_impulses(Node& at) const {
   for (std::size_t f = 0; f < at.fields.size(); ++f) at.fields[f].velocity = at.start[f];
   at.friction.clear();
@@ -163,7 +193,7 @@ void Contact::find_first_impulses(Node& at) const {
     at.pairs[p].friction *= at.share[p];
   }
   resolve_contacts(at.fields, at.pairs);
-  at.stops.clear();
+  at.stops.clear(), at.given.clear();
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     ContactPair& pair = at.pairs[p];
     const double share = at.share[p];
@@ -171,6 +201,7 @@ void Contact::find_first_impulses(Node& at) const {
     if (pair.friction > 0 && share < 1)
       stops = stops + (1 - share) * (pair.impulse - dot(pair.impulse, pair.normal) * pair.normal);
     at.stops.push_back(stops);
+    at.given.push_back(stops + share_of_nodes_ * (pair.impulse - stops));
     pair.friction = at.friction[p];
   }
 }
@@ -182,14 +213,14 @@ void Contact::correct_start(Node& at, ContactInput::Method method) const {
     at.nodal_start[f] = at.fields[f].velocity;
     at.fields[f].velocity = at.fields[f].velocity + increment(at, f);
   }
-  at.first_impulse = at.stops;
+  at.first_impulse = at.given;
   if (method != ContactInput::Method::pan) return;
   for (std::size_t f = 0; f < count; ++f) at.taken[f] = at.fields[f].velocity;
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    at.taken[a] = at.taken[a] + (1 / at.fields[a].mass) * at.first_impulse[p];
-    at.taken[b] = at.taken[b] - (1 / at.fields[b].mass) * at.first_impulse[p];
+    at.taken[a] = at.taken[a] + (1 / at.fields[a].mass) * at.stops[p];
+    at.taken[b] = at.taken[b] - (1 / at.fields[b].mass) * at.stops[p];
   }
 }
 
@@ -199,7 +230,7 @@ void Contact::find_blows(const Node& at, std::span<Vec3<double>> by_field) const
   std::ranges::fill(by_field, Vec3<double>{});
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
-    const Vec3<double> first = at.stops[p], all = pair.impulse + at.first_impulse[p];
+    const Vec3<double> first = at.given[p], all = pair.impulse + at.first_impulse[p];
     const double size = dot(first, first);
     if (!(size > 0)) continue;
     const Vec3<double> blow = std::clamp(dot(all, first) / size, 0.0, 1.0) * first;
@@ -265,8 +296,8 @@ void Contact::book(const Node& at, ContactSums& sums) const {
     const Vec3<double> mean = at.start[a] - at.start[b] + 0.5 * (given(a) - given(b));
     // The part of Pan's first impulses that the particles do not get stops the approach of the nodes without
     // stopping theirs, and the strain follows the nodes: their approach counts.
-    const Vec3<double> stopped =
-        (1 - at.share[p]) * (at.nodal_start[a] - at.start[a] - (at.nodal_start[b] - at.start[b]));
+    const Vec3<double> stopped = (1 - share_of_nodes_) * (1 - at.share[p]) *
+                                 (at.nodal_start[a] - at.start[a] - (at.nodal_start[b] - at.start[b]));
     const double pressing = dot(impulse, pair.normal);
     const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
     sums.record.dissipated.add(pressing * dot(mean + stopped, pair.normal) + heat);
@@ -358,6 +389,8 @@ void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<F
     if (!take_node(grid, s, which, fields, node, at)) continue;
     if (!of_end) {
       resolve_strain(at, which);
+      if (which == Velocity::of_correction && node.counts) book_correction(at, sums);
+      keep_strain(at);
       continue;
     }
     resolve_end(at, sums, node.counts);

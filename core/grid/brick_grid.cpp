@@ -86,7 +86,8 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   component_begin_.clear();
   components_.clear();
   cells_around_.clear();
-  own_cells_.assign(bricks_.size(), 0);
+  cells_of_fields_.clear();
+  own_cells_.assign(bricks_.size(), {});
   allocate_nodes(bricks_.size() + ghosts_.size());
   ++revision_;
 }
@@ -112,7 +113,7 @@ void BrickGrid::set_components(const std::vector<std::vector<std::int32_t>>& of_
   extra_begin_.assign(1, 0);
   for (const std::vector<std::int32_t>& of : of_slot)
     extra_begin_.push_back(extra_begin_.back() + std::max(static_cast<Slot>(of.size()), Slot{1}) - 1);
-  allocate_nodes(of_slot.size() + static_cast<std::size_t>(extra_begin_.back()));
+  allocate_nodes(field_count());
   ++revision_;
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -92,10 +93,10 @@ class BrickGrid {
   }
   /// Of one of its velocity fields; field 0 is the one above.
   double* contributions(NodeArray of, Slot s, int field) {
-    return contributions(of, field == 0 ? s : extra_block(s, field));
+    return array(of).data() + stride(of) * field_index(s, field);
   }
   const double* contributions(NodeArray of, Slot s, int field) const {
-    return contributions(of, field == 0 ? s : extra_block(s, field));
+    return array(of).data() + stride(of) * field_index(s, field);
   }
 
   /// Gives every component a velocity field of its own in each brick that holds particles of it (contact).
@@ -124,17 +125,38 @@ class BrickGrid {
                                       extra_begin_[static_cast<std::size_t>(s)];
   }
 
-  /// Of an owned brick, in this step; null unless the shape functions need them
-  /// (core/step/cells_in_use.hpp).
+  /// Place of a field in arrays over the fields of all slots: after the first fields of all slots come the
+  /// further ones.
+  std::size_t field_index(Slot s, int field) const {
+    const auto at = static_cast<std::size_t>(s);
+    if (field == 0) return at;
+    return bricks_.size() + ghosts_.size() + static_cast<std::size_t>(extra_begin_[at] + field - 1);
+  }
+  /// Of all owned and ghost slots together.
+  std::size_t field_count() const {
+    const Slot extra = extra_begin_.empty() ? 0 : extra_begin_.back();
+    return bricks_.size() + ghosts_.size() + static_cast<std::size_t>(extra);
+  }
+
+  /// The cells that hold particles of a field of an owned brick, or of any, in this step; null unless the
+  /// shape functions need them (core/step/cells_in_use.hpp).
+  const CellsAround* cells_in_use(Slot s, int field) const {
+    if (!has_fields_by_component()) return cells_in_use(s);
+    return cells_of_fields_.empty() ? nullptr : &cells_of_fields_[field_index(s, field)];
+  }
   const CellsAround* cells_in_use(Slot s) const {
     return cells_around_.empty() ? nullptr : &cells_around_[static_cast<std::size_t>(s)];
   }
+  CellsAround& cells_around(Slot s, int field) { return cells_of_fields_[field_index(s, field)]; }
   CellsAround& cells_around(Slot s) { return cells_around_[static_cast<std::size_t>(s)]; }
   /// None in use, for every owned brick.
-  void reset_cells_around() { cells_around_.assign(bricks_.size(), {}); }
-  /// Those that hold particles of an owned brick, where a pass that has moved these has found them and none
-  /// has come or gone since: cell (i, j, k) in bit i + 4 j + 16 k; 0 where they are to be found.
-  std::uint64_t& own_cells(Slot s) { return own_cells_[static_cast<std::size_t>(s)]; }
+  void reset_cells_around() {
+    cells_around_.assign(bricks_.size(), {});
+    cells_of_fields_.assign(has_fields_by_component() ? field_count() : 0, {});
+  }
+  /// Those that hold particles of an owned brick, where the pass that has moved these has found them:
+  /// cell (i, j, k) in bit i + 4 j + 16 k.
+  std::optional<std::uint64_t>& own_cells(Slot s) { return own_cells_[static_cast<std::size_t>(s)]; }
 
   /// Incremented whenever the set of bricks changes; communication plans are then rebuilt.
   std::uint64_t revision() const { return revision_; }
@@ -144,11 +166,6 @@ class BrickGrid {
   std::size_t stride(NodeArray of) const {
     constexpr int line = 8;
     return static_cast<std::size_t>((shape_.nodes() * record_doubles(of) + line - 1) / line * line);
-  }
-  /// Node blocks of further fields are stored after the first-field blocks of all slots.
-  Slot extra_block(Slot s, int field) const {
-    return static_cast<Slot>(bricks_.size() + ghosts_.size()) + extra_begin_[static_cast<std::size_t>(s)] +
-           field - 1;
   }
   void allocate_nodes(std::size_t blocks);
   AlignedDoubles& array(NodeArray of) { return nodes_[static_cast<std::size_t>(of)]; }
@@ -165,10 +182,11 @@ class BrickGrid {
       extra_begin_;  ///< by slot: index of its first extra block; empty while all have one field
   std::vector<std::size_t> component_begin_;  ///< by slot, in `components_`; empty while fields are for all
   std::vector<std::int32_t> components_;
-  std::vector<CellsAround> cells_around_;  ///< by owned slot, or empty
+  std::vector<CellsAround> cells_around_;     ///< by owned slot, or empty
+  std::vector<CellsAround> cells_of_fields_;  ///< by field_index(), where there are fields by component
   int boundary_ = 0;
   std::uint64_t revision_ = 0;
-  std::vector<std::uint64_t> own_cells_;  ///< by owned slot
+  std::vector<std::optional<std::uint64_t>> own_cells_;  ///< by owned slot
 };
 
 }  // namespace mpm::core

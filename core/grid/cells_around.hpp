@@ -20,6 +20,7 @@ class CellsAround {
   void add(int i, int j, int k) { row_[index(j, k)] |= static_cast<std::uint8_t>(1u << (i + 1)); }
   /// Cells by bits, as row() returns them.
   void add_row(int j, int k, unsigned cells) { row_[index(j, k)] |= static_cast<std::uint8_t>(cells); }
+  void add_all() { row_ = all_; }
   /// Cell i of the row in bit i + 1.
   unsigned row(int j, int k) const { return row_[index(j, k)]; }
   /// The eight cells around point (i, j, k), the lowest one of cell (i, j, k): how many are in use.

@@ -15,7 +15,7 @@ bool ImplicitPassesWith<S>::map_forces(const AlignedDoubles& displacements) {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   std::atomic<bool> usable = true;
   for_fields([&](const BrickField& field, Scratch& at) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     double* const contributions = clear_contributions(field);
     at.displacements.take_strain(frame, records(displacements, field));
     for_each_tile(field, false, [&](const ParticleTile& tile, const Body& body) {
@@ -57,7 +57,7 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   std::mutex matrix_lock;
   for_fields([&](const BrickField& field, Scratch& at) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     StiffnessBlock& stiffness = at.stiffness;
     stiffness.begin(unknowns.of(field), unknowns.nodes());
     if (displacements != nullptr) at.displacements.take_strain(frame, records(*displacements, field));

@@ -78,6 +78,8 @@ const char* ImplicitIntegrator::name_of_solution() const {
 
 std::vector<Phase> ImplicitIntegrator::phases() {
   std::vector<Phase> step;
+  // First: every exchange sends what there is in each of these fields.
+  if (contact_) step.push_back({"velocity fields of components", [this] { find_fields(); }});
   if (cells_) {
     step.push_back({"cells in use", [this] { cells_->find(); }});
     step.push_back({"exchange cells", [this] { cells_->finish_exchange(); }});
@@ -95,8 +97,7 @@ double ImplicitIntegrator::next_step(const Clock& clock) const {
 
 /// Components that may meet have fields of their own.
 void ImplicitIntegrator::find_fields() {
-  if (contact_) model_.grid->set_components(components_by_slot(*model_.grid, halo_));
-  fields_.find(*model_.grid);
+  model_.grid->set_components(components_by_slot(*model_.grid, halo_));
 }
 
 void ImplicitIntegrator::find_contacts() {
@@ -114,7 +115,7 @@ void ImplicitIntegrator::distribute(std::span<const double> u) {
 void ImplicitIntegrator::prepare() {
   const double dt = model_.clock.dt;
   rule_ = TimeRule::of(input_, dt);
-  find_fields();
+  fields_.find(*model_.grid);
   passes_->begin_step(dt, rule_.dynamic() ? 0.5 : 1.0);
   if (contact_) contact_->begin_step(passes_->loads(), dt);
   passes_->map_start();

@@ -15,7 +15,7 @@ void ImplicitPassesWith<S>::map_start() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   const Vec3<double> cell = model_.grid->geometry().cell;
   for_fields([&](const BrickField& field, Scratch&) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     double* const contributions = clear_contributions(field);
     for_each_block(
         field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
@@ -43,7 +43,7 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_motion() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   for_fields([&](const BrickField& field, Scratch&) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     double* const contributions = clear_contributions(field);
     for_each_block(
         field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
@@ -76,7 +76,7 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::map_surface() {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   for_fields([&](const BrickField& field, Scratch&) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     double* const contributions = clear_contributions(field);
     const auto map = [&](const ParticleTile&, const ColumnLayout& layout, const double* block, int used) {
       const Place place(frame, layout, block);
@@ -101,7 +101,7 @@ template <class Has, class F>
 void ImplicitPassesWith<S>::map_vectors(Has has, F vector) {
   const Vec3<double> inverse_cell = model_.grid->geometry().inverse_cell;
   for_fields([&](const BrickField& field, Scratch&) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     double* const contributions = clear_contributions(field);
     for_each_block(field, false,
                    [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
@@ -147,7 +147,7 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::add_reactions(const AlignedDoubles& impulses) {
   const GridGeometry& g = model_.grid->geometry();
   for_fields([&](const BrickField& field, Scratch& at) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     const BrickCoord brick = model_.grid->brick(field.slot).coord;
     const double* of_nodes = records(impulses, field);
     for_each_block(

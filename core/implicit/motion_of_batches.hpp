@@ -55,7 +55,7 @@ template <ShapePolicy S>
 StepMotion ImplicitPassesWith<S>::motion_of(const AlignedDoubles& displacements) {
   for (const auto& w : scratch_) w->motion = StepMotion(model_.bodies.size());
   for_fields([&](const BrickField& field, Scratch& at) {
-    const BrickFrame frame(*model_.grid, field.slot);
+    const BrickFrame frame(*model_.grid, field.slot, field.number);
     at.displacements.take_strain(frame, records(displacements, field));
     at.displacements.take_motion(records(displacements, field));
     for_each_tile(field, true, [&](const ParticleTile& tile, const Body& body) {

@@ -100,7 +100,7 @@ template <ShapePolicy S>
 void ImplicitPassesWith<S>::move_field(const BrickField& field, const AlignedDoubles& displacements,
                                        const AlignedDoubles* velocities, const AlignedDoubles* lags,
                                        std::vector<DepartingParticle>& departing, Scratch& at) {
-  const BrickFrame frame(*model_.grid, field.slot);
+  const BrickFrame frame(*model_.grid, field.slot, field.number);
   at.displacements.take_strain(frame, records(displacements, field));
   at.displacements.take_motion(records(displacements, field));
   if (velocities != nullptr) at.velocities.take_motion(records(*velocities, field));

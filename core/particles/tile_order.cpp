@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/contact/failed_component.hpp"
-#include "core/shape/linear.hpp"
+#include "core/shape/cells_of_particles.hpp"
 #include "core/threads.hpp"
 
 namespace mpm::core {
@@ -124,10 +124,16 @@ void insert_particles(Model& model, const MigrationBuffer& particles) {
   }
   groups.push_back(arrivals.size());
   for_each_by_threads(std::size_t{0}, groups.size() - 1, 16, [&](std::size_t g) {
-    model.grid->own_cells(arrivals[groups[g]].slot) = 0;
+    const Slot slot = arrivals[groups[g]].slot;
+    Brick& brick = model.grid->brick(slot);
+    const BrickFrame frame(model.grid->geometry(), brick.coord);
+    std::optional<std::uint64_t>& cells = model.grid->own_cells(slot);
     for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
       const Arrival& a = arrivals[i];
-      append(model, model.grid->brick(a.slot), a.body, &particles.columns[particles.offsets[a.index]]);
+      const double* columns = &particles.columns[particles.offsets[a.index]];
+      append(model, brick, a.body, columns);
+      const ColumnLayout& layout = model.bodies[static_cast<std::size_t>(a.body)].pool->layout();
+      if (cells) *cells |= cell_of(frame, columns + layout.index(Column::position_x));
     }
   });
 }

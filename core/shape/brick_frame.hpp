@@ -13,9 +13,12 @@ struct BrickFrame {
   Vec3<double> lowest, beyond;
   const CellsAround* cells = nullptr;  ///< in use, for shape functions that need them
 
-  /// Of an owned brick.
+  /// Of an owned brick, with the cells in use of all its fields or of one.
   BrickFrame(const BrickGrid& grid, Slot s) : BrickFrame(grid.geometry(), grid.brick(s).coord) {
     cells = grid.cells_in_use(s);
+  }
+  BrickFrame(const BrickGrid& grid, Slot s, int field) : BrickFrame(grid.geometry(), grid.brick(s).coord) {
+    cells = grid.cells_in_use(s, field);
   }
   BrickFrame(const GridGeometry& g, BrickCoord b) : origin(g.origin), inverse_cell(g.inverse_cell) {
     const std::int32_t coord[3] = {b.x, b.y, b.z};

@@ -8,9 +8,10 @@
 // Particles to grid is the adjoint: f_i = -sum_p V_p alpha sigma_p grad S_i - sum_j G_ji T_j, with T_j =
 // sum_p (1 - alpha) S_j V_p sigma_p.
 //
-// A cell is in use where it holds particles. Beyond a free or nonreflecting face of the grid none is.
-// Beyond a fixed, symmetry or rigid face the mirror images of cells in use are, and the outer nodes follow
-// the rules of BoundaryFaces: half a body at a symmetry face moves as half of the whole.
+// A cell is in use where it holds particles, in contact those of the component. Beyond a free or
+// nonreflecting face of the grid none is. Beyond a fixed, symmetry or rigid face the mirror images of cells
+// in use are, and the outer nodes follow the rules of BoundaryFaces: half a body at a symmetry face moves as
+// half of the whole.
 //
 // Limits: a particle exactly on the face of a cell that holds no other one maps force to nodes that get no
 // mass of it, as with trilinear functions.

@@ -71,7 +71,7 @@ template <NodeFields what, class F>
 void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F before) {
   BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
-  const BrickFrame frame = this->frame(s);
+  const BrickFrame frame = this->frame(s, component);
   constexpr int width = record_doubles(what.array);
   const int field = field_of(s, component);
   double* contributions = grid.contributions(what.array, s, field);
@@ -145,7 +145,7 @@ void PassesWith<S, T>::add_weight(Slot s, int field, const Vec3<double>& acceler
 /// Those of a brick with few particles, inside the grid's faces and without loads.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::find_reached(Slot s) {
-  if constexpr (selects) {
+  if constexpr (Traits::selects) {
     const BrickGrid& grid = *model_.grid;
     const Brick& brick = grid.brick(s);
     if (!has_few_particles(s)) return sparse_.set_all(s);
@@ -199,13 +199,14 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
 /// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the
 /// corrected velocities into at.corrected.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::take_updated_nodes(Slot s, Scratch& at) {
+void PassesWith<S, T>::take_updated_nodes(Slot s, [[maybe_unused]] std::int32_t component,
+                                          [[maybe_unused]] std::size_t k, Scratch& at) {
   take_solved_motion(s, at);
   at.field.take_motion(at.nodes.data(), reached(s));
-  if constexpr (corrects) {
+  if constexpr (Traits::corrects) {
     if (!correcting_) return;
-    add_order(s, orders_, at);
-    at.corrected.take_motion(corrected_nodes(s));
+    if (!has_meetings(s)) add_order(s, orders_, component, k, at);
+    at.corrected.take_motion(corrected_nodes(s, k));
   }
 }
 
@@ -217,7 +218,7 @@ template <ShapePolicy S, TransferPolicy T>
                                                                      const Place& place,
                                                                      const ColumnLayout& layout,
                                                                      double* block, Scratch& at) const {
-  if constexpr (corrects) {
+  if constexpr (Traits::corrects) {
     if (correcting_) return transfer_.template take_velocities<S>(place, layout, at.corrected, block);
   }
   transfer_.template update_velocities<S>(frame, place, layout, at.field, transfer_step_, block);
@@ -279,7 +280,7 @@ void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* bl
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
   if (follows_grid_) [[likely]] {
     motion.move(layout, dt, block);
-    if constexpr (settles) motion.carry(layout, dt, block);
+    if constexpr (Traits::settles) motion.carry(layout, dt, block);
     return;
   }
   if (const int number = rigid(body); number >= 0) return rigid_->move(number, layout, block);
@@ -290,7 +291,7 @@ void PassesWith<S, T>::move(int body, const MotionOfBlock<S>& motion, double* bl
     move_at_own_velocity(layout, dt, block);
   else
     motion.move(layout, dt, block);
-  if constexpr (settles) motion.carry(layout, dt, block);
+  if constexpr (Traits::settles) motion.carry(layout, dt, block);
   if (does_work) add_work_of_motion(weight, layout, block, used, at);
 }
 
@@ -301,20 +302,21 @@ template <ShapePolicy S, TransferPolicy T>
                                                                     const ColumnLayout& layout, int b,
                                                                     double* block, int used, Scratch& at) {
   if (rigid(body) >= 0) return;
-  if constexpr (deforms)
+  if constexpr (Traits::deforms)
     at.statistics.domains += S::deform(frame, layout, at.batch.gradient, block_lanes * b, dt, block, used);
-  if constexpr (settles)
+  if constexpr (Traits::settles)
     at.statistics.domains +=
         S::settle(frame, layout, loads_.motion(body).kind == BodyMotion::Kind::free, block, used);
 }
 
 template <ShapePolicy S, TransferPolicy T>
 [[gnu::noinline]] void PassesWith<S, T>::velocities_of_brick(Slot s, std::int32_t component, Scratch& at) {
-  const BrickFrame frame = this->frame(s);
-  for_each_block(s, component, columns_to_mass,
-                 [&](int, std::size_t, int body, const ColumnLayout& layout, double* block, int used) {
-                   update_velocities(s, frame, body, Place(frame, layout, block), block, used, at);
-                 });
+  const BrickFrame frame = this->frame(s, component);
+  for_each_block(
+      s, component, columns_to_mass,
+      [&](std::size_t, std::size_t, int body, const ColumnLayout& layout, double* block, int used) {
+        update_velocities(s, frame, body, Place(frame, layout, block), block, used, at);
+      });
   at.add_work_of_brick();
 }
 
@@ -322,46 +324,62 @@ template <ShapePolicy S, TransferPolicy T>
 template <ShapePolicy S, TransferPolicy T>
 [[gnu::noinline]] double PassesWith<S, T>::velocities_and_motion_of_brick(Slot s, std::int32_t component,
                                                                           Scratch& at) {
-  const BrickFrame frame = this->frame(s);
+  const BrickFrame frame = this->frame(s, component);
   auto first = prefetch_nodes<NodeArray::first>(s);
   auto second = prefetch_nodes<NodeArray::second>(s);
   double fastest_square = 0;
   // The forces of this step were mapped with the domains of its start; those follow now, by the gradient of
   // the velocity that moves the particles.
-  typename S::Field moving;
-  if constexpr (deforms) {
-    const double* nodes = moving_nodes(s, at);
-    for (int n = 0; n < shared_.nodes(); ++n)
-      std::copy_n(nodes + node_doubles * n + Motion::velocity_at, 3,
-                  at.sums.data() + node_doubles * n + Motion::strain_velocity_at);
-    moving.take_strain(frame, at.sums.data());
+  const typename S::Field* moving = &moving_field(at);
+  [[maybe_unused]] typename S::Field with_gradient;
+  if constexpr (Traits::deforms) {
+    double* const nodes = at.sums.data();
+    std::copy_n(moving_nodes(s, seen_number(s, component), at), record_count(), nodes);
+    for (int n = 0; n < record_count(); n += node_doubles)
+      std::copy_n(nodes + n + Motion::velocity_at, 3, nodes + n + Motion::strain_velocity_at);
+    with_gradient.take_motion(nodes);
+    with_gradient.take_strain(frame, nodes);
+    moving = &with_gradient;
   }
-  for_each_block(s, component, columns_to_mass,
-                 [&](int c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
-                   first.next();
-                   second.next();
-                   const Place place(frame, layout, block);
-                   update_velocities(s, frame, body, place, block, used, at);
-                   move(body, {place, moving_field(at)}, block, used, at);
-                   if constexpr (deforms) S::gradient(frame, place, moving, at.batch.gradient, 0);
-                   update_domains(body, frame, layout, 0, block, used, at);
-                   for (int l = 0; l < used; l += real_width)
-                     fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
-                   find_departing(c, b, frame, erosion_volume(body),
-                                  failed_.of(model_.grid->brick(s).tiles[static_cast<std::size_t>(c)]),
-                                  layout, block, used, departing_[static_cast<std::size_t>(s)]);
-                 });
+  for_each_block(
+      s, component, columns_to_mass,
+      [&](std::size_t c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
+        first.next();
+        second.next();
+        const Place place(frame, layout, block);
+        update_velocities(s, frame, body, place, block, used, at);
+        const MotionOfBlock<S> motion{place, *moving};
+        move(body, motion, block, used, at);
+        if constexpr (Traits::deforms) motion.gradient(frame, at.batch.gradient, 0);
+        update_domains(body, frame, layout, 0, block, used, at);
+        for (int l = 0; l < used; l += real_width)
+          fastest_square = largest_lane(squared_speed(layout, block, l), used - l, fastest_square);
+        find_departing(s, c, b, frame, layout, block, at);
+      });
   at.add_work_of_brick();
   return std::sqrt(fastest_square);
 }
 
-/// The cells of a brick whose particles have moved, while these are in the cache; unless some leave it, or
-/// rigid bodies are yet to move theirs.
+/// Block `b` of tile `c` has moved: records the particles that leave, and the cells of the others.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::find_own_cells([[maybe_unused]] Slot s) {
+[[gnu::always_inline]] inline void PassesWith<S, T>::find_departing(Slot s, std::size_t c, std::size_t b,
+                                                                    const BrickFrame& frame,
+                                                                    const ColumnLayout& layout,
+                                                                    const double* block, Scratch& at) {
+  const ParticleTile& tile = model_.grid->brick(s).tiles[c];
+  [[maybe_unused]] const unsigned staying =
+      mpm::core::find_departing(static_cast<int>(c), b, frame, erosion_volume(tile.body), failed_.of(tile),
+                                layout, block, tile.used_lanes(b), departing_[static_cast<std::size_t>(s)]);
+  if constexpr (needs_cells<S>) at.cells.add(frame, layout, block, staying);
+}
+
+/// The cells of a brick whose particles have moved, unless rigid bodies are yet to move theirs.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::keep_own_cells([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
   if constexpr (needs_cells<S>) {
-    const bool settled = departing_[static_cast<std::size_t>(s)].empty() && rigid_ == nullptr;
-    model_.grid->own_cells(s) = settled ? find_cells(model_, s) : 0;
+    model_.grid->own_cells(s).reset();
+    if (rigid_ == nullptr) model_.grid->own_cells(s) = at.cells.cells();
+    at.cells = {};
   }
 }
 
@@ -433,7 +451,7 @@ template <bool moves, class F>
 [[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, std::int32_t component,
                                                          Velocities velocities, Scratch& at,
                                                          F prefetch_nodes) {
-  const BrickFrame frame = this->frame(s);
+  const BrickFrame frame = this->frame(s, component);
   Batch& batch = at.batch;
   double fastest = 0;
   const bool averages = averages_volume_change();
@@ -456,7 +474,7 @@ template <bool moves, class F>
       update_domains(body, frame, *batch.layout, b, batch.block[b], used, at);
     } else {
       S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
-      if constexpr (traps) {
+      if constexpr (Traits::traps) {
         if (!averages)
           release_from_faces(frame, at.places[b], at.field.nodes, dt, *batch.layout, batch.block[b], used,
                              batch.gradient, block_lanes * b);
@@ -470,7 +488,7 @@ template <bool moves, class F>
       at.averages.relax_pressures(sites, *batch.layout, batch.block[b], relaxation.rate, relaxation.modulus,
                                   batch.gradient, block_lanes * b);
   };
-  const auto stress = [&](std::size_t c, std::size_t first, const ParticleTile& tile) {
+  const auto stress = [&]([[maybe_unused]] std::size_t c, std::size_t first, const ParticleTile& tile) {
     update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
     if (velocities == Velocities::of_next_step)
       at.statistics.fastest = fastest_particle(batch, wave_weight_, at.statistics.fastest);
@@ -479,9 +497,7 @@ template <bool moves, class F>
     if constexpr (moves) {
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);
-        find_departing(static_cast<int>(c), at_block, frame, erosion_volume(tile.body), failed_.of(tile),
-                       *batch.layout, batch.block[b], tile.used_lanes(at_block),
-                       departing_[static_cast<std::size_t>(s)]);
+        find_departing(s, c, at_block, frame, *batch.layout, batch.block[b], at);
       }
     }
   };

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/shape/cells_of_particles.hpp"
 #include "core/shape/list.hpp"
 #include "core/step/prefetch.hpp"
 #include "core/threads.hpp"
@@ -53,93 +54,114 @@ void add_mirror_images(const GridGeometry& geometry, BrickCoord brick, CellsArou
 
 }  // namespace
 
-std::uint64_t find_cells(const Model& model, Slot s) {
-  using Cells = std::uint64_t;
+std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component) {
   const BrickGrid& grid = *model.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), brick.coord);
   constexpr int columns = static_cast<int>(Column::position_x) + 3;
-  using Wide = LaneMask<block_lanes>::vector;
-  constexpr Wide lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
-  Wide of_lanes{};
+  CellsOfParticles found;
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
+    if (component != all_components && tile.component != component) continue;
     const BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
     const BlockPrefetch prefetch(model, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       prefetch.request<Linear>(b, pool.layout(), columns);
-      const double* x = pool.block(tile.blocks[b]) + pool.layout().offset(Column::position_x);
-      const auto p =
-          locate_in_sites<Lanes<block_lanes>, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
-      Wide cell;
-      for (int l = 0; l < block_lanes; ++l) cell[l] = p.node[l];
-      of_lanes |= (lane_numbers < std::int64_t{tile.used_lanes(b)} ? Wide{} + 1 : Wide{}) << cell;
+      found.add(frame, pool.layout(), pool.block(tile.blocks[b]), (1u << tile.used_lanes(b)) - 1);
     }
   }
-  Cells cells = 0;
-  for (int l = 0; l < block_lanes; ++l) cells |= static_cast<Cells>(of_lanes[l]);
-  return cells;
+  return found.cells();
+}
+
+void CellsInUse::find_own(Slot s) {
+  BrickGrid& grid = *model_.grid;
+  prefetch_coming_bricks(grid, s);
+  if (!grid.has_fields_by_component()) {
+    const std::optional<Cells> known = grid.own_cells(s);
+    cells(s, 0) = known ? *known : find_cells(model_, s);
+    return;
+  }
+  cells(s, 0) = 0;
+  for (int f = 0; const std::int32_t component : grid.components(s))
+    cells(s, f++) = find_cells(model_, s, component);
 }
 
 void CellsInUse::write_to_nodes(Slot s) {
   BrickGrid& grid = *model_.grid;
   constexpr int width = record_doubles(field.array);
-  double* at = grid.contributions(field.array, s) + field.first;
-  for (int n = 0; n < grid.shape().nodes(); ++n) at[width * n] = 0;
-  const Cells cells = cells_[static_cast<std::size_t>(s)];
-  for_each_cell_of(grid.shape(), [&](Cells bit, int node) { at[width * node] = (cells & bit) != 0 ? 1 : 0; });
+  for (int f = 0; f < grid.velocity_fields(s); ++f) {
+    double* at = grid.contributions(field.array, s, f) + field.first;
+    for (int n = 0; n < grid.shape().nodes(); ++n) at[width * n] = 0;
+    const Cells own = cells(s, f);
+    for_each_cell_of(grid.shape(), [&](Cells bit, int node) { at[width * node] = (own & bit) != 0 ? 1 : 0; });
+  }
 }
 
-CellsInUse::Cells CellsInUse::read_from_nodes(Slot s) const {
+void CellsInUse::read_from_nodes(Slot s) {
   const BrickGrid& grid = *model_.grid;
   constexpr int width = record_doubles(field.array);
-  const double* at = grid.contributions(field.array, s) + field.first;
-  Cells cells = 0;
-  for_each_cell_of(grid.shape(), [&](Cells bit, int node) { cells |= at[width * node] != 0 ? bit : 0; });
-  return cells;
+  for (int f = 0; f < grid.velocity_fields(s); ++f) {
+    const double* at = grid.contributions(field.array, s, f) + field.first;
+    Cells found = 0;
+    for_each_cell_of(grid.shape(), [&](Cells bit, int node) { found |= at[width * node] != 0 ? bit : 0; });
+    cells(s, f) = found;
+  }
 }
 
 void CellsInUse::find() {
   BrickGrid& grid = *model_.grid;
-  cells_.resize(static_cast<std::size_t>(grid.owned() + grid.ghosts()));
-  const auto of_brick = [&](Slot s) {
-    prefetch_coming_bricks(grid, s);
-    const Cells known = grid.own_cells(s);
-    cells_[static_cast<std::size_t>(s)] = known != 0 ? known : find_cells(model_, s);
-  };
+  cells_.resize(grid.field_count());
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
-    of_brick(s);
+    find_own(s);
     write_to_nodes(s);
   });
   halo_.begin(grid, field);
-  for_each_by_threads(grid.boundary(), grid.owned(), 4, of_brick);
+  for_each_by_threads(grid.boundary(), grid.owned(), 4, [&](int s) { find_own(s); });
 }
 
 void CellsInUse::finish_exchange() {
   BrickGrid& grid = *model_.grid;
   halo_.end(grid);
-  for (int g = 0; g < grid.ghosts(); ++g) {
-    const Slot s = grid.owned() + g;
-    cells_[static_cast<std::size_t>(s)] = read_from_nodes(s);
-  }
+  for (int g = 0; g < grid.ghosts(); ++g) read_from_nodes(grid.owned() + g);
   grid.reset_cells_around();
-  for_each_by_threads(0, grid.owned(), 16, [&](int s) { combine(static_cast<Slot>(s)); });
+  for_each_by_threads(0, grid.owned(), 16, [&](int slot) {
+    const auto s = static_cast<Slot>(slot);
+    combine(s, all_components, grid.cells_around(s));
+    if (!grid.has_fields_by_component()) return;
+    for (int f = 0; const std::int32_t component : grid.components(s))
+      combine(s, component, grid.cells_around(s, f++));
+  });
 }
 
-void CellsInUse::combine(Slot s) {
-  BrickGrid& grid = *model_.grid;
+/// Of one component, or of all.
+CellsInUse::Cells CellsInUse::cells_of(Slot s, std::int32_t component) const {
+  const BrickGrid& grid = *model_.grid;
+  const auto of_field = [&](int f) { return cells_[grid.field_index(s, f)]; };
+  if (component != all_components) {
+    const int f = grid.field_of(s, component);
+    return f < 0 ? 0 : of_field(f);
+  }
+  Cells all = 0;
+  for (int f = 0; f < grid.velocity_fields(s); ++f) all |= of_field(f);
+  return all;
+}
+
+void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around) const {
+  const BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
-  CellsAround& around = grid.cells_around(s);
+  const auto is_full = [&](Slot from) { return from != no_slot && cells_of(from, component) == ~Cells{0}; };
+  if (std::ranges::all_of(brick.neighbour, is_full)) return around.add_all();
   for (int n = 0; n < neighbourhood; ++n) {
     const Slot from = brick.neighbour[static_cast<std::size_t>(n)];
     if (from == no_slot) continue;
-    const Cells cells = cells_[static_cast<std::size_t>(from)];
+    const Cells there = cells_of(from, component);
+    if (there == 0) continue;
     const BrickCoord d = neighbour_offset(n);
     const auto lowest = [](int offset) { return offset < 0 ? brick_cells - 1 : 0; };
     const auto highest = [](int offset) { return offset > 0 ? 0 : brick_cells - 1; };
     for (int k = lowest(d.z); k <= highest(d.z); ++k) {
       for (int j = lowest(d.y); j <= highest(d.y); ++j) {
-        const auto row = static_cast<unsigned>(cells >> brick_cells * (j + brick_cells * k)) & 15u;
+        const auto row = static_cast<unsigned>(there >> brick_cells * (j + brick_cells * k)) & 15u;
         const unsigned within = d.x < 0 ? row >> 3 : d.x > 0 ? (row & 1u) << 5 : row << 1;
         around.add_row(j + brick_cells * d.y, k + brick_cells * d.z, within);
       }

@@ -1,6 +1,7 @@
 // The cells that hold particles at the beginning of a step: for every brick, its own and one layer around it
-// (core/grid/cells_around.hpp), stored in the grid. A brick's 64 cells are the bits of a word; other ranks
-// get them as a nodal field, in the record of each cell's lowest node.
+// (core/grid/cells_around.hpp), stored in the grid; where components have velocity fields of their own
+// (contact), also those of each field. A brick's 64 cells are the bits of a word; other ranks get them as a
+// nodal field, in the record of each cell's lowest node.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +13,8 @@
 
 namespace mpm::core {
 
-/// The cells that hold a brick's particles, (i, j, k) in bit i + 4 j + 16 k.
-std::uint64_t find_cells(const Model& model, Slot s);
+/// The cells that hold a brick's particles of a component, (i, j, k) in bit i + 4 j + 16 k.
+std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = all_components);
 
 class CellsInUse {
  public:
@@ -26,13 +27,16 @@ class CellsInUse {
 
  private:
   using Cells = std::uint64_t;
+  void find_own(Slot s);
   void write_to_nodes(Slot s);
-  Cells read_from_nodes(Slot s) const;
-  void combine(Slot s);
+  void read_from_nodes(Slot s);
+  Cells& cells(Slot s, int field) { return cells_[model_.grid->field_index(s, field)]; }
+  Cells cells_of(Slot s, std::int32_t component) const;
+  void combine(Slot s, std::int32_t component, CellsAround& around) const;
 
   Model& model_;
   NodeHalo& halo_;
-  std::vector<Cells> cells_;  ///< by slot, ghosts included
+  std::vector<Cells> cells_;  ///< by BrickGrid::field_index()
 };
 
 /// Null for shape functions that do not depend on which cells are in use.

@@ -28,6 +28,23 @@ template <class F>
   for (const std::int32_t component : fields) f(component);
 }
 
+/// f(component, k) for the velocity fields that a brick sees, k their number; one for all components where
+/// none meet.
+template <ShapePolicy S, TransferPolicy T>
+template <class F>
+[[gnu::always_inline]] inline void PassesWith<S, T>::for_each_seen_field(Slot s, F f) {
+  if (!contact_ || !contact_->meets(s)) return f(all_components, std::size_t{0});
+  for (std::size_t k = 0; k < contact_->seen(s).size(); ++k) f(contact_->seen(s)[k], k);
+}
+
+/// The number of a field of a brick's particles among those that the brick sees.
+template <ShapePolicy S, TransferPolicy T>
+std::size_t PassesWith<S, T>::seen_number(Slot s, std::int32_t component) const {
+  if (!contact_ || !contact_->meets(s) || model_.grid->components(s).empty()) return 0;
+  const std::int32_t mine = component == all_components ? model_.grid->components(s).front() : component;
+  return static_cast<std::size_t>(std::ranges::find(contact_->seen(s), mine) - contact_->seen(s).begin());
+}
+
 /// For the velocity fields that a brick sees: update(component, k) brings the motion of the field number k
 /// into at.nodes; where fields meet, their velocities are then resolved; f(component, k) uses at.nodes, for
 /// the fields in which the brick has particles.
@@ -42,7 +59,7 @@ template <class Update, class F>
     return;
   }
   const std::span<const std::int32_t> seen = contact_->seen(s);
-  const bool resolves = !contact_->meetings(s).nodes.empty();
+  const bool resolves = has_meetings(s);
   if (resolves) meet(s, at, which, update);
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (model_.grid->field_of(s, seen[k]) < 0) continue;
@@ -79,6 +96,7 @@ template <class Update>
   for (const FieldNodes& field : at.fields)
     if (model_.grid->field_of(s, field.component) >= 0 && !contact_->is_rigid(field.component))
       book_blows(s, field, at);
+  if (correcting_) meet_corrected(s, at);
 }
 
 /// The kinetic energy that a field's particles get from blows (contact_impulses.cpp). The nodes' velocities c
@@ -86,7 +104,7 @@ template <class Update>
 /// sum m_i c_i^2/2, since c ends at the surface: what is struck loses more energy than its nodes.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::book_blows(Slot s, const FieldNodes& field, Scratch& at) {
-  const BrickFrame frame = this->frame(s);
+  const BrickFrame frame = this->frame(s, field.component);
   const auto blow = [&](int node) {
     const double* c = field.blow.data() + node_doubles * node + Motion::velocity_at;
     return Vec3<double>{c[0], c[1], c[2]};
@@ -95,7 +113,7 @@ void PassesWith<S, T>::book_blows(Slot s, const FieldNodes& field, Scratch& at) 
   for (int n = 0; n < model_.grid->shape().nodes(); ++n)
     if (blow(n) != Vec3<double>{}) near.add(*model_.grid, s, n, S::nodes_per_axis);
   for_each_block(s, field.component, columns_to_mass,
-                 [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+                 [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                    const unsigned wanted = near.lanes(layout, block, used);
                    if (wanted == 0) return;
                    const Place place(frame, layout, block);
@@ -115,8 +133,9 @@ template <ShapePolicy S, TransferPolicy T>
 [[gnu::noinline]] void PassesWith<S, T>::keep_motion_of_others(Slot s, const Scratch& at) {
   if (contact_->meetings(s).nodes.empty()) return;
   for (std::size_t k = 0; k < at.fields.size(); ++k) {
-    if (model_.grid->field_of(s, at.fields[k].component) < 0)
-      keep_motion(moving_shared_.summed(), at.fields[k].motion.data(), motion(s, k));
+    if (model_.grid->field_of(s, at.fields[k].component) >= 0) continue;
+    const double* of_end = moves_corrected() ? corrected_nodes(s, k) : at.fields[k].motion.data();
+    keep_motion(moving_shared_.summed(), of_end, motion(s, k));
   }
 }
 
@@ -128,7 +147,7 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
   constexpr NodeFields what = mapped::surface;
   constexpr int width = record_doubles(what.array);
   BrickGrid& grid = *model_.grid;
-  const BrickFrame frame = this->frame(s);
+  const BrickFrame frame = this->frame(s, component);
   double* contributions = grid.contributions(what.array, s, field_of(s, component));
   std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
   if (grid.components(s).empty()) return;
@@ -136,7 +155,7 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
   const AxisBox near = contact_->zone(s, mine).wider(S::nodes_per_axis - 1, grid.geometry().cell);
   for_each_block(
       s, component, columns_to_mass,
-      [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+      [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
         const unsigned wanted = near.lanes(layout, block, used);
         if (wanted == 0) return;
         const Place place(frame, layout, block);
@@ -162,7 +181,7 @@ void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
   constexpr int width = record_doubles(mapped::reach.array);
   BrickGrid& grid = *model_.grid;
   const NodeBlockShape shape = grid.shape();
-  const BrickFrame frame = this->frame(s);
+  const BrickFrame frame = this->frame(s, component);
   double* reach = grid.contributions(mapped::reach.array, s, field_of(s, component));
   std::fill_n(reach, width * shape.nodes(), no_reach);
   const MeetingNodes& meetings = contact_->meetings(s);
@@ -184,7 +203,7 @@ void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
     at[static_cast<std::size_t>(node)] = {near.add(grid, s, node, S::nodes_per_axis), normal, true};
   }
   for_each_block(s, component, columns_to_mass + 1,
-                 [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+                 [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                    const unsigned wanted = near.lanes(layout, block, used);
                    if (wanted == 0) return;
                    const double* x = block + layout.offset(Column::position_x);

@@ -8,43 +8,47 @@ namespace mpm::core {
 
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::begin_corrections() {
-  if constexpr (corrects) {
+  if constexpr (Traits::corrects) {
     correcting_ = transfer_.corrects(model_.clock.step + 1);
-    if (correcting_)
-      corrected_.resize(static_cast<std::size_t>(record_count()) *
-                        static_cast<std::size_t>(model_.grid->owned()));
+    if (correcting_) corrected_.resize(static_cast<std::size_t>(record_count()) * seen_fields());
   }
 }
 
 /// Order 1 from the updated nodes in at.nodes, the others from the increments that the particles have mapped.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int order,
+                                 [[maybe_unused]] std::int32_t component, [[maybe_unused]] std::size_t k,
                                  [[maybe_unused]] Scratch& at) {
-  if constexpr (corrects) {
+  if constexpr (Traits::corrects) {
+    double* const to = corrected_nodes(s, k);
     if (order == 1)
-      return begin_correction(!transfer_.of_end, faces(s), shared_.nodes(), at.nodes.data(),
-                              corrected_nodes(s));
-    sum_contributions<NodeArray::third>(*model_.grid, momentum_shared_, s, at.sums.data());
-    continue_correction(faces(s), at.sums.data(), shared_.nodes(), corrected_nodes(s));
+      return begin_correction(!transfer_.of_end, faces(s), shared_.nodes(), at.nodes.data(), to);
+    double* const sums = at.sums.data();
+    if (component == all_components)
+      sum_contributions<NodeArray::third>(*model_.grid, momentum_shared_, s, sums);
+    else
+      sum_contributions<NodeArray::third>(*model_.grid, momentum_shared_, s, component, sums);
+    continue_correction(faces(s), sums, shared_.nodes(), to);
   }
 }
 
-/// Maps m sum S dv of the brick's particles, dv being the increments of these records.
+/// Maps m sum S dv of the brick's particles of a component, dv being the increments of these records.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] const double* increments,
+void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] std::int32_t component,
+                                      [[maybe_unused]] const double* increments,
                                       [[maybe_unused]] Scratch& at) {
-  if constexpr (corrects || solves) {
+  if constexpr (Traits::corrects || Traits::solves) {
     constexpr NodeFields what = mapped::correction;
-    const BrickFrame frame = this->frame(s);
+    const BrickFrame frame = this->frame(s, component);
     const int doubles = record_doubles(what.array) * shared_.nodes();
-    double* contributions = model_.grid->contributions(what.array, s);
+    double* contributions = model_.grid->contributions(what.array, s, field_of(s, component));
     std::fill_n(contributions, doubles, 0.0);
     typename S::template Sums<what> sums(contributions);
     typename S::template Scatter<what> cell;
     cell.clear();
     at.corrected.take_motion(increments);
-    for_each_block(s, all_components, columns_to_mass,
-                   [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+    for_each_block(s, component, columns_to_mass,
+                   [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                      const Place place(frame, layout, block);
                      MappedRows rows;
                      increment_momentum<S>(place, layout, at.corrected, block, rows);
@@ -56,16 +60,66 @@ void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] 
   }
 }
 
+/// Order 1 of the fields that a brick sees, from the velocities that contact leaves. What contact does there
+/// is booked when the particles take it.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::begin_orders(Slot s, Scratch& at) {
+  const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
+  const bool meets = has_meetings(s);
+  if (meets) {
+    ContactSums unbooked;
+    take_fields(s, at, update);
+    contact_->resolve(*model_.grid, s, Contact::Velocity::of_end, at.fields, unbooked);
+  }
+  for_each_seen_field(s, [&](std::int32_t component, std::size_t k) {
+    if (meets)
+      std::ranges::copy(at.fields[k].motion, at.nodes.data());
+    else
+      update(component, k);
+    add_order(s, 1, component, k, at);
+  });
+}
+
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::correct_velocities([[maybe_unused]] int order) {
-  if constexpr (corrects) {
+  if constexpr (Traits::corrects) {
     if (!correcting_) return;
     // All nodes first: their sums read the contributions of the order before, which are then replaced.
     for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch& at) {
-      if (order == 2) sum_and_update_nodes(s, all_components, at);
-      add_order(s, order - 1, at);
+      if (order == 2) return begin_orders(s, at);
+      for_each_seen_field(
+          s, [&](std::int32_t component, std::size_t k) { add_order(s, order - 1, component, k, at); });
     });
-    map_bricks<mapped::correction>([&](Slot s, Scratch& at) { map_increments(s, corrected_nodes(s), at); });
+    map_bricks<mapped::correction>([&](Slot s, Scratch& at) {
+      for_each_own_field(s, [&](std::int32_t component) {
+        map_increments(s, component, corrected_nodes(s, seen_number(s, component)), at);
+      });
+    });
+  }
+}
+
+/// The sums v(m) of the fields in at.fields, whose motion is that of the end of the step; where the fields
+/// touch, contact acts on these sums too.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::meet_corrected([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
+  if constexpr (Traits::corrects) {
+    constexpr int velocity = Motion::velocity_at, strain_velocity = Motion::strain_velocity_at;
+    at.corrected_fields.resize(at.fields.size());
+    for (std::size_t k = 0; k < at.fields.size(); ++k) {
+      FieldNodes& field = at.corrected_fields[k];
+      field.component = at.fields[k].component;
+      field.motion = at.fields[k].motion;
+      add_order(s, orders_, field.component, k, at);
+      const double* corrected = corrected_nodes(s, k);
+      for (int n = 0; n < record_count(); n += node_doubles)
+        std::copy_n(corrected + n + velocity, 3, field.motion.data() + n + strain_velocity);
+    }
+    contact_->resolve(*model_.grid, s, Contact::Velocity::of_correction, at.corrected_fields, at.contact);
+    for (std::size_t k = 0; k < at.fields.size(); ++k) {
+      const double* resolved = at.corrected_fields[k].motion.data();
+      for (int n = 0; n < record_count(); n += node_doubles)
+        std::copy_n(resolved + n + strain_velocity, 3, corrected_nodes(s, k) + n + velocity);
+    }
   }
 }
 

@@ -161,9 +161,9 @@ void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch
   if (warn.negative_internal_energy) name(batch.negative, statistics.negative);
 }
 
-void find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
-                    const FailedComponent::Membership& membership, const ColumnLayout& layout,
-                    const double* block, int used, std::vector<DepartingParticle>& departing) {
+unsigned find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
+                        const FailedComponent::Membership& membership, const ColumnLayout& layout,
+                        const double* block, int used, std::vector<DepartingParticle>& departing) {
   const auto add = [&](int lane, bool eroded) {
     departing.push_back(
         {tile, static_cast<std::uint32_t>(block_lanes * b) + static_cast<std::uint32_t>(lane), eroded});
@@ -182,7 +182,8 @@ void find_departing(int tile, std::size_t b, const BrickFrame& frame, double ero
   unsigned outside = lanes_outside(frame, layout, block, used);
   if (membership.rule != nullptr) outside |= membership.misplaced(layout, block, used);
   outside &= ~gone;
-  for (; outside != 0; outside &= outside - 1) add(__builtin_ctz(outside), false);
+  for (unsigned left = outside; left != 0; left &= left - 1) add(__builtin_ctz(left), false);
+  return ((1u << used) - 1) & ~(gone | outside);
 }
 
 }  // namespace mpm::core

@@ -77,9 +77,9 @@ double work_of_stress(const Batch& batch);
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch, StepStatistics& statistics);
 
 /// Records the particles of a block that are eroded, have left the brick, or belong to another tile of it.
-/// Particles smaller than `erosion_volume` are eroded.
-void find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
-                    const FailedComponent::Membership& membership, const ColumnLayout& layout,
-                    const double* block, int used, std::vector<DepartingParticle>& departing);
+/// Particles smaller than `erosion_volume` are eroded. Returns the lanes of those that stay.
+unsigned find_departing(int tile, std::size_t b, const BrickFrame& frame, double erosion_volume,
+                        const FailedComponent::Membership& membership, const ColumnLayout& layout,
+                        const double* block, int used, std::vector<DepartingParticle>& departing);
 
 }  // namespace mpm::core

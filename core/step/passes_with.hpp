@@ -14,6 +14,7 @@
 
 #include "core/contact/contact.hpp"
 #include "core/shape/cell_mass.hpp"
+#include "core/shape/cells_of_particles.hpp"
 #include "core/shape/face_traps.hpp"
 #include "core/simd/denormals.hpp"
 #include "core/step/cells_in_use.hpp"
@@ -23,6 +24,7 @@
 #include "core/step/mass_solution.hpp"
 #include "core/step/particle_motion.hpp"
 #include "core/step/particles_to_grid.hpp"
+#include "core/step/pass_traits.hpp"
 #include "core/step/passes.hpp"
 #include "core/step/prefetch.hpp"
 #include "core/step/shared_nodes.hpp"
@@ -47,16 +49,21 @@ class PassesWith final : public Passes {
     if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, length);
     if (selects_) sparse_.begin_step(*model_.grid);
     follows_grid_ = follow_grid();
-    begin_corrections();
     begin_mass();
+    if (!contact_) begin_corrections();
   }
   double largest_strain_rate(double above) override;
   void shorten_step(const StepLength& length) override {
     set_step(length);
     if (rigid_ != nullptr) rigid_->shorten_step(loads_, forces_.gravity, length);
+    if (contact_) contact_->set_share_of_nodes(share_of_nodes());
   }
 
-  void find_fields(Reductions& ranks) override { contact_->find_fields(*model_.grid, halo_, ranks); }
+  void find_fields(Reductions& ranks) override {
+    contact_->find_fields(*model_.grid, halo_, ranks);
+    begin_corrections();
+    contact_->set_share_of_nodes(share_of_nodes());
+  }
   void map_surfaces() override;
   void find_meetings() override;
   void map_reach() override;
@@ -82,54 +89,22 @@ class PassesWith final : public Passes {
 
  private:
   using Place = typename S::Place;
-  /// Whether particles have domains that deform with them.
-  static constexpr bool deforms = requires { &S::template deform<Row[9]>; };
-  static constexpr bool settles = requires { &S::settle; };
-  /// Whether gradients jump at the faces of cells, where USF traps particles.
-  static constexpr bool traps = std::is_same_v<S, Linear>;
-  /// Whether the transfer corrects velocities (core/transfer/corrected.hpp).
-  static constexpr bool corrects = corrects_velocities<T>;
-  /// Whether the nodes that a particle reaches are known by its lowest one.
-  static constexpr bool selects = requires(const Place& place) { S::lowest_of(place, 0); };
-  /// Whether bricks with few particles are treated apart: where nothing else uses the contributions to nodes
-  /// or the motion of nodes that no particle of the brick reaches.
-  static bool selects_nodes(const Model& model) {
-    return selects && !corrects && !solves && !model.scene->contact.enable && !conducts_heat(model);
-  }
-  /// Whether what particles move with is kept as their field has it, not at the nodes.
-  static constexpr bool can_keep_field = requires(typename S::Field field, double* kept) {
-    field.keep_velocity(nullptr, kept);
-  };
-  /// What MUSL maps back to the grid. Where the motion of all nodes is not found (moving_block) or kept, the
-  /// strain velocities need the masses once more.
-  static constexpr NodeFields mapped_back =
-      momentum_block<S> == S::node_block && !can_keep_field ? mapped::momentum : mapped::momentum_mass;
-  /// Whether it solves with the consistent mass matrix (core/transfer/consistent.hpp).
-  static constexpr bool solves = solves_mass<T>;
-  /// The nodes of a brick whose motion is found: with MUSL those that its particles take it from, unless
-  /// contact, a correction, a solution, the work of a surface load or a rigid wall (node_update.hpp) needs
-  /// all of them.
-  static NodeBlockShape moving_block(const Model& model) {
-    return moves_all_nodes(model) ? S::node_block : momentum_block<S>;
-  }
-  static bool moves_all_nodes(const Model& model) {
-    const SolutionInput& solution = model.scene->solution;
-    return corrects || solves || solution.scheme != Scheme::musl || model.scene->contact.enable ||
-           has_surface_loads(*model.scene) ||
-           std::ranges::count(model.grid->geometry().boundary, Boundary::rigid_wall) > 0;
-  }
+  using Traits = PassTraits<S, T>;
   struct Nothing {};
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
     typename S::Field field;
-    std::vector<FieldNodes> fields;  ///< where components meet
+    CellsOfParticles cells;                    ///< of the current brick
+    std::vector<FieldNodes> fields;            ///< where components meet
+    std::vector<FieldNodes> corrected_fields;  ///< the same with v(m) as strain velocities
     RegressionScratch regression;
     ContactSums contact;
     std::vector<RigidNode> rigid_nodes;
     SiteAverages averages;   ///< of the current tile; empty where volume changes are not averaged
     double strain_rate = 0;  ///< largest of the thread's bricks
     std::tuple<CarriedSums<NodeArray::first>, CarriedSums<NodeArray::second>> carried;  ///< of this pass
-    [[no_unique_address]] std::conditional_t<corrects || solves, typename S::Field, Nothing> corrected;
+    [[no_unique_address]] std::conditional_t<Traits::corrects || Traits::solves, typename S::Field, Nothing>
+        corrected;
   };
 
   void set_step(const StepLength& length) {
@@ -144,6 +119,11 @@ class PassesWith final : public Passes {
   static constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
   static constexpr int columns_to_mass = static_cast<int>(Column::mass) + 1;
 
+  double share_of_nodes() const {
+    return Traits::corrects && !correcting_ ? Flip::share_of_nodes(transfer_step_)
+                                            : transfer_.share_of_nodes(transfer_step_);
+  }
+
   // Order of bricks and blocks.
   template <class F>
   void for_bricks(int first, int last, F f);
@@ -155,12 +135,26 @@ class PassesWith final : public Passes {
   bool holds(const ParticleTile& tile, std::int32_t component) const {
     return component == all_components || tile.component == component;
   }
+  /// Place of the field number `k` of those that a brick sees, among those of all owned bricks.
+  std::size_t seen_index(Slot s, std::size_t k) const {
+    return (contact_ ? contact_->first_seen(s) : static_cast<std::size_t>(s)) + k;
+  }
+  std::size_t seen_fields() const {
+    return contact_ ? contact_->all_seen() : static_cast<std::size_t>(model_.grid->owned());
+  }
+  /// Whether a brick sees nodes where fields meet.
+  bool has_meetings(Slot s) const {
+    return contact_ && contact_->meets(s) && !contact_->meetings(s).nodes.empty();
+  }
   /// Velocity field of a component in a brick that holds particles of it.
   int field_of(Slot s, std::int32_t component) const {
     return component == all_components ? 0 : model_.grid->field_of(s, component);
   }
   template <class F>
   void for_each_own_field(Slot s, F f);
+  template <class F>
+  void for_each_seen_field(Slot s, F f);
+  std::size_t seen_number(Slot s, std::int32_t component) const;
   template <class Update, class F>
   void for_each_field(Slot s, Scratch& at, Contact::Velocity which, Update update, F f);
   template <class Update>
@@ -198,7 +192,7 @@ class PassesWith final : public Passes {
   }
   /// The nodes that the particles of a brick reach; null: all of them.
   const NodeMask* reached(Slot s) const {
-    if constexpr (selects)
+    if constexpr (Traits::selects)
       return selects_ && s < model_.grid->owned() ? sparse_.reached(s) : nullptr;
     else
       return nullptr;
@@ -222,10 +216,12 @@ class PassesWith final : public Passes {
   template <NodeArray of>
   void sum_fields(Slot s, Scratch& at);
   void sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at);
-  void take_updated_nodes(Slot s, Scratch& at);
+  void take_updated_nodes(Slot s, std::int32_t component, std::size_t k, Scratch& at);
   void velocities_of_brick(Slot s, std::int32_t component, Scratch& at);
   double velocities_and_motion_of_brick(Slot s, std::int32_t component, Scratch& at);
-  void find_own_cells(Slot s);
+  void find_departing(Slot s, std::size_t c, std::size_t b, const BrickFrame& frame,
+                      const ColumnLayout& layout, const double* block, Scratch& at);
+  void keep_own_cells(Slot s, Scratch& at);
   /// Whether the particles' velocities are already those at the start of the next step.
   enum class Velocities { of_last_step, of_next_step };
   template <bool moves, class F>
@@ -233,11 +229,14 @@ class PassesWith final : public Passes {
 
   // Corrections of the velocities (correct_velocities.hpp).
   void begin_corrections();
-  void add_order(Slot s, int order, Scratch& at);
-  void map_increments(Slot s, const double* increments, Scratch& at);
-  /// The nodes' sums of velocities v(l), in MotionRecords.
-  double* corrected_nodes(Slot s) {
-    return corrected_.data() + static_cast<std::size_t>(record_count()) * static_cast<std::size_t>(s);
+  void add_order(Slot s, int order, std::int32_t component, std::size_t k, Scratch& at);
+  void map_increments(Slot s, std::int32_t component, const double* increments, Scratch& at);
+  void begin_orders(Slot s, Scratch& at);
+  void meet_corrected(Slot s, Scratch& at);
+  /// The nodes' sums of velocities v(l) of the field number `k` of those that the brick sees, in
+  /// MotionRecords.
+  double* corrected_nodes(Slot s, std::size_t k) {
+    return corrected_.data() + static_cast<std::size_t>(record_count()) * seen_index(s, k);
   }
   /// Doubles of a brick's node records.
   int record_count() const { return node_doubles * shared_.nodes(); }
@@ -265,19 +264,19 @@ class PassesWith final : public Passes {
 
   /// Whether particles move with the corrected velocities in this step.
   bool moves_corrected() const {
-    if constexpr (corrects) return correcting_ && transfer_.of_end;
+    if constexpr (Traits::corrects) return correcting_ && transfer_.of_end;
     return false;
   }
   /// The same as a field. MUSL moves particles in a later pass, by the motion kept for it.
   const typename S::Field& moving_field(const Scratch& at) const {
-    if constexpr (corrects) {
+    if constexpr (Traits::corrects) {
       if (moves_corrected() && scheme_ != Scheme::musl) return at.corrected;
     }
     return at.field;
   }
-  /// The nodes' velocities and masses that move a brick's particles.
-  const double* moving_nodes(Slot s, const Scratch& at) {
-    return moves_corrected() ? corrected_nodes(s) : at.nodes.data();
+  /// The nodes' velocities and masses that move a brick's particles of the field number `k`.
+  const double* moving_nodes(Slot s, std::size_t k, const Scratch& at) {
+    return moves_corrected() ? corrected_nodes(s, k) : at.nodes.data();
   }
 
   /// Number of the rigid body in contact that is this body; -1: its particles move with the grid or alone.
@@ -312,7 +311,9 @@ class PassesWith final : public Passes {
   PressureRelaxation relaxation_of(const Body& body) const;
   bool averages_volume_change() const { return model_.scene->solution.averaging == VolumeAveraging::cell; }
   BoundaryFaces faces(Slot s) const { return {*model_.grid, s}; }
-  BrickFrame frame(Slot s) const { return {*model_.grid, s}; }
+  BrickFrame frame(Slot s, std::int32_t component = all_components) const {
+    return {*model_.grid, s, field_of(s, component)};
+  }
   /// Prefetches the contributions to the next brick's nodes while this brick's blocks are processed.
   template <NodeArray of>
   [[gnu::always_inline]] ContributionPrefetch<of> prefetch_nodes(Slot s) const {
@@ -326,14 +327,13 @@ class PassesWith final : public Passes {
     return of == NodeArray::first ? shared_ : momentum_shared_;
   }
   int motion_doubles() const {
-    if constexpr (can_keep_field)
+    if constexpr (Traits::can_keep_field)
       if (keeps_field_) return S::Field::kept_doubles;
     return motion_width * moving_shared_.summed().nodes();
   }
   /// Of the field number `k` of those that the brick sees.
   double* motion(Slot s, std::size_t k = 0) {
-    const std::size_t first = contact_ ? contact_->first_seen(s) : static_cast<std::size_t>(s);
-    return motion_.data() + static_cast<std::size_t>(motion_doubles()) * (first + k);
+    return motion_.data() + static_cast<std::size_t>(motion_doubles()) * seen_index(s, k);
   }
   /// Prefetches the next brick's stored nodal motion.
   SpreadPrefetch prefetch_motion(Slot s) {
@@ -369,7 +369,7 @@ class PassesWith final : public Passes {
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
-  AlignedDoubles corrected_;    ///< by slot; XPIC, FMPM: corrected_nodes()
+  AlignedDoubles corrected_;    ///< XPIC, FMPM: corrected_nodes()
   AlignedDoubles solution_;     ///< by slot; consistent mass: solution()
   AlignedDoubles cell_masses_;  ///< by slot; consistent mass: cell_masses()
   bool masses_known_ = false;   ///< in this step
@@ -394,9 +394,9 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       rigid_(rigid),
       shared_(model.grid->shape()),
       momentum_shared_(model.grid->shape(), momentum_block<S>),
-      moving_shared_(model.grid->shape(), model.grid->shape(), moving_block(model)),
-      keeps_field_(can_keep_field && !moves_all_nodes(model)),
-      selects_(selects_nodes(model)),
+      moving_shared_(model.grid->shape(), model.grid->shape(), Traits::moving_block(model)),
+      keeps_field_(Traits::can_keep_field && !Traits::moves_all_nodes(model)),
+      selects_(Traits::selects_nodes(model)),
       loads_(model),
       failed_(model),
       transfer_(model.scene->solution),
@@ -460,7 +460,7 @@ template <class F>
     const BlockPrefetch prefetch(model_, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       prefetch.template request<S>(b, pool.layout(), columns);
-      f(static_cast<int>(c), b, tile.body, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
+      f(c, b, tile.body, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
     }
   }
 }

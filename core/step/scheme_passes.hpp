@@ -49,24 +49,24 @@ double PassesWith<S, T>::largest_strain_rate(double above) {
 
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_velocities_and_map_back() {
-  motion_.resize(static_cast<std::size_t>(motion_doubles()) *
-                 (contact_ ? contact_->all_seen() : static_cast<std::size_t>(model_.grid->owned())));
-  map_bricks<mapped_back>([&](Slot s, Scratch& at) {
+  motion_.resize(static_cast<std::size_t>(motion_doubles()) * seen_fields());
+  map_bricks<Traits::mapped_back>([&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
     for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
-      take_updated_nodes(s, at);
-      if constexpr (can_keep_field) {
+      take_updated_nodes(s, component, k, at);
+      if constexpr (Traits::can_keep_field) {
         if (keeps_field_) at.field.keep_velocity(reached(s), motion(s, k));
       }
-      if (!keeps_field_) keep_motion(moving_shared_.summed(reached(s)), moving_nodes(s, at), motion(s, k));
+      if (!keeps_field_) keep_motion(moving_shared_.summed(reached(s)), moving_nodes(s, k, at), motion(s, k));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       SpreadPrefetch room = prefetch_motion(s);
-      const BrickFrame frame = this->frame(s);
-      map_brick<mapped_back>(s, component, at, [&](int body, const Place& place, double* block, int used) {
-        nodes.next();
-        room.next();
-        update_velocities(s, frame, body, place, block, used, at);
-      });
+      const BrickFrame frame = this->frame(s, component);
+      map_brick<Traits::mapped_back>(s, component, at,
+                                     [&](int body, const Place& place, double* block, int used) {
+                                       nodes.next();
+                                       room.next();
+                                       update_velocities(s, frame, body, place, block, used, at);
+                                     });
     });
     if (contact_ && contact_->meets(s)) keep_motion_of_others(s, at);
     at.add_work_of_brick();
@@ -81,21 +81,21 @@ void PassesWith<S, T>::update_stress_and_move() {
     const auto update = [&](std::int32_t component, std::size_t k) {
       const NodeMask* some = reached(s);
       if (!keeps_field_) recall_motion(moving_shared_.summed(some), motion(s, k), at.nodes.data());
-      if constexpr (solves) return take_solved_strain(s, at);
+      if constexpr (Traits::solves) return take_solved_strain(s, at);
       double *const sums = at.sums.data(), *const nodes = at.nodes.data();
       sum<NodeArray::second>(momentum_shared_, s, component, at, sums, some);
-      constexpr bool maps_again = maps_mass(mapped_back);
+      constexpr bool maps_again = maps_mass(Traits::mapped_back);
       second_velocities(maps_again ? grid.geometry().mass_cutoff : 0, sums, maps_again ? sums : nodes,
                         faces(s), shared_.summed(some), nodes);
     };
     for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
                    [&](std::int32_t component, std::size_t k) {
                      const NodeMask* some = reached(s);
-                     if constexpr (can_keep_field) {
+                     if constexpr (Traits::can_keep_field) {
                        if (keeps_field_) at.field.recall_velocity(some, motion(s, k));
                      }
                      if (!keeps_field_) at.field.take_motion(at.nodes.data(), some);
-                     at.field.take_strain(frame(s), at.nodes.data(), some);
+                     at.field.take_strain(frame(s, component), at.nodes.data(), some);
                      auto nodes = prefetch_nodes<NodeArray::second>(s);
                      SpreadPrefetch room = prefetch_motion(s);
                      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
@@ -103,7 +103,7 @@ void PassesWith<S, T>::update_stress_and_move() {
                        room.next();
                      });
                    });
-    find_own_cells(s);
+    keep_own_cells(s, at);
   });
 }
 
@@ -120,7 +120,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
       take_solved_strain(s, at);
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
-      at.field.take_strain(frame(s), at.nodes.data(), reached(s));
+      at.field.take_strain(frame(s, component), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::second>(s);
       stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
       map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});
@@ -134,15 +134,15 @@ void PassesWith<S, T>::update_velocities_and_move() {
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t) {
-      take_updated_nodes(s, at);
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
+      take_updated_nodes(s, component, k, at);
       // The wave speeds are those of the stress pass; the largest of each brick serves for all of its
       // particles.
       at.statistics.fastest =
           std::max(at.statistics.fastest,
                    critical_[static_cast<std::size_t>(s)] + velocities_and_motion_of_brick(s, component, at));
     });
-    find_own_cells(s);
+    keep_own_cells(s, at);
   });
 }
 
@@ -152,16 +152,16 @@ void PassesWith<S, T>::update_all() {
   departing_.resize(static_cast<std::size_t>(grid.owned()));
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
-    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t) {
-      take_updated_nodes(s, at);
+    for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
+      take_updated_nodes(s, component, k, at);
       velocities_of_brick(s, component, at);
       regularised_velocities(velocity_dt * (forces_.gravity + weight_of(s, component).acceleration), faces(s),
                              shared_.nodes(), at.nodes.data());
-      at.field.take_strain(frame(s), at.nodes.data(), reached(s));
+      at.field.take_strain(frame(s, component), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
       stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
     });
-    find_own_cells(s);
+    keep_own_cells(s, at);
   });
 }
 

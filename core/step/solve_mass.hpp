@@ -8,7 +8,7 @@ namespace mpm::core {
 
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::begin_mass() {
-  if constexpr (solves) {
+  if constexpr (Traits::solves) {
     const auto owned = static_cast<std::size_t>(model_.grid->owned());
     solution_.resize(static_cast<std::size_t>(record_count()) * owned);
     direction_.resize(static_cast<std::size_t>(record_count()) * owned);
@@ -21,7 +21,7 @@ void PassesWith<S, T>::begin_mass() {
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] MassSystem system,
                                       [[maybe_unused]] Scratch& at) {
-  if constexpr (solves) {
+  if constexpr (Traits::solves) {
     const double cutoff = model_.grid->geometry().mass_cutoff;
     const int nodes = shared_.nodes();
     MotionVector from = Motion::velocity_at, stopped = Motion::velocity_at, u = Motion::velocity_at;
@@ -52,7 +52,7 @@ void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] 
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::end_solution([[maybe_unused]] Slot s, [[maybe_unused]] MassSystem system,
                                     [[maybe_unused]] Scratch& at) {
-  if constexpr (solves) {
+  if constexpr (Traits::solves) {
     if (system == MassSystem::increment && scheme_ == Scheme::usf) {
       sum_and_update_nodes(s, all_components, at);
       add_increment(faces(s), shared_.nodes(), at.nodes.data(), solution(s));
@@ -64,13 +64,13 @@ void PassesWith<S, T>::end_solution([[maybe_unused]] Slot s, [[maybe_unused]] Ma
 /// The moments of the brick's cells, once per step.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::sum_cell_masses([[maybe_unused]] Slot s) {
-  if constexpr (solves && trilinear_on_lattice<S>) {
+  if constexpr (Traits::solves && trilinear_on_lattice<S>) {
     const BrickFrame frame = this->frame(s);
     double* moments = cell_masses(s);
     std::fill_n(moments, cell_mass_doubles, 0.0);
     cell_mass::Sums sums;
     for_each_block(s, all_components, columns_to_mass,
-                   [&](int, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
+                   [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                      const Place place(frame, layout, block);
                      const double* m = block + layout.offset(Column::mass);
                      for (int i = 0; i < used; ++i) sums.add(place, i, m[i], moments);
@@ -82,7 +82,7 @@ void PassesWith<S, T>::sum_cell_masses([[maybe_unused]] Slot s) {
 /// Maps the product of the consistent mass with the directions: by cells, or by particles.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::map_product([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
-  if constexpr (solves && trilinear_on_lattice<S>) {
+  if constexpr (Traits::solves && trilinear_on_lattice<S>) {
     constexpr NodeFields what = mapped::correction;
     const BrickFrame frame = this->frame(s);
     const double* moments = cell_masses(s);
@@ -101,14 +101,14 @@ void PassesWith<S, T>::map_product([[maybe_unused]] Slot s, [[maybe_unused]] Scr
     }
     sums.finish(frame);
     if constexpr (S::node_block != NodeBlockShape{}) faces(s).fold(what, contributions);
-  } else if constexpr (solves) {
-    map_increments(s, direction(s), at);
+  } else if constexpr (Traits::solves) {
+    map_increments(s, all_components, direction(s), at);
   }
 }
 
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::solve_mass([[maybe_unused]] MassSystem system) {
-  if constexpr (solves) {
+  if constexpr (Traits::solves) {
     const int owned = model_.grid->owned();
     const MotionVector u = system == MassSystem::increment ? Motion::increment_at : Motion::velocity_at;
     for_bricks(0, owned, [&](Slot s, Scratch& at) {
@@ -134,7 +134,7 @@ void PassesWith<S, T>::solve_mass([[maybe_unused]] MassSystem system) {
 /// The solved velocities and increments in the place of the lumped ones in at.nodes.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::take_solved_motion([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
-  if constexpr (solves) {
+  if constexpr (Traits::solves) {
     const int nodes = shared_.nodes();
     take_solution(nodes, solution(s), Motion::increment_at, Motion::increment_at, at.nodes.data());
     if (scheme_ == Scheme::usf || loads_.any())
@@ -145,7 +145,7 @@ void PassesWith<S, T>::take_solved_motion([[maybe_unused]] Slot s, [[maybe_unuse
 /// The solved velocity for the strain; with MUSL for the motion too.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::take_solved_strain([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
-  if constexpr (solves) {
+  if constexpr (Traits::solves) {
     const int nodes = shared_.nodes();
     take_solution(nodes, solution(s), Motion::velocity_at, Motion::strain_velocity_at, at.nodes.data());
     if (scheme_ == Scheme::musl)

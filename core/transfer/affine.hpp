@@ -49,6 +49,10 @@ struct Affine {
     }
   }
 
+  static double share_of_nodes(const TransferStep& step) {
+    return kind == Transfer::aflip ? aflip_damping * step.courant : 1;
+  }
+
   template <ShapePolicy S>
   void update_velocities(const BrickFrame& frame, const typename S::Place& place, const ColumnLayout& layout,
                          const typename S::Field& field, const TransferStep& step, double* block) const {
@@ -63,7 +67,7 @@ struct Affine {
     for (int a = 0; a < 3; ++a) v[a] = block + layout.offset(next(Column::velocity_x, a));
     if constexpr (kind == Transfer::aflip) {
       const typename S::Interpolation dv(place, field.increment());
-      const double pic = aflip_damping * step.courant;
+      const double pic = share_of_nodes(step);
       for (int a = 0; a < 3; ++a) store(v[a], R(1 - pic) * (load<R>(v[a]) + dv.value[a]) + R(pic) * u[a]);
     } else {
       for (int a = 0; a < 3; ++a) store(v[a], u[a]);

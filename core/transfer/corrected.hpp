@@ -19,9 +19,11 @@
 // Every dv keeps the boundary conditions: on a fixed or symmetry face it has no such component, and outer
 // nodes follow as those of velocities do; a node at rest at a rigid wall stays so, and one whose sum would
 // lead through that wall comes to rest (and with FMPM and MUSL strains nothing then). Nodes below the mass
-// cutoff take no part. Each order beyond the first is a pass over the particles and an exchange. With an
-// interval n only every n-th step corrects, by its number; the others are FLIP. Shown by
-// tests/core/step/correction_test.cpp and oracle_test.cpp.
+// cutoff take no part. In contact each component has maps of its own; dv(1) follows from the velocities that
+// contact leaves, and contact acts on v(m) again: what it has brought to rest against each other stays so
+// along the normal, and nothing else approaches (core/contact/contact_impulses.cpp). Each order beyond the
+// first is a pass over the particles and an exchange. With an interval n only every n-th step corrects, by
+// its number; the others are FLIP. Shown by tests/core/step/correction_test.cpp and oracle_test.cpp.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +39,9 @@ struct Corrected : Flip {
 
   /// Whether the step with this number, from 1, corrects.
   bool corrects(std::int64_t step) const { return step % interval == 0; }
+
+  /// Of a step that corrects.
+  static double share_of_nodes(const TransferStep&) { return 1; }
 
   /// v = sum S v(m).
   template <ShapePolicy S>

@@ -39,6 +39,7 @@ struct Flip {
   static ColumnSet columns() { return {}; }
   using Rows = MappedRows;
   explicit Flip(const SolutionInput&) {}
+  static double share_of_nodes(const TransferStep&) { return 0; }
 
   template <ShapePolicy S>
   [[gnu::always_inline]] static void momentum(const BrickFrame&, const typename S::Place&,
@@ -64,6 +65,7 @@ struct FlipPic : Flip {
   static constexpr std::string_view name = "PIC";
   explicit FlipPic(const SolutionInput& solution)
       : Flip(solution), flip(solution.transfer == Transfer::pic ? 0 : solution.flip_fraction) {}
+  double share_of_nodes(const TransferStep&) const { return 1 - flip; }
 
   template <ShapePolicy S>
   void update_velocities(const BrickFrame&, const typename S::Place& place, const ColumnLayout& layout,

@@ -6,6 +6,7 @@
 //   Rows                what a block maps: MappedRows, or AffineRows
 //   momentum            rows of mass and momentum that a block maps
 //   update_velocities   the particles' velocities from the nodal motion
+//   share_of_nodes      the part of these that the nodes' velocities are, not those before and increments
 #pragma once
 
 #include "core/scene/solution.hpp"
@@ -25,7 +26,8 @@ struct TransferStep {
 };
 
 template <class T>
-concept TransferPolicy = requires {
+concept TransferPolicy = requires(const T& transfer, const TransferStep& step) {
+  { transfer.share_of_nodes(step) } -> std::convertible_to<double>;
   { T::name } -> std::convertible_to<std::string_view>;
   { T::columns() } -> std::same_as<ColumnSet>;
   typename T::Rows;

@@ -1,4 +1,5 @@
-"""Small random scenes by the thousand: every law, shape, transfer, scheme and boundary type, random sizes and speeds.
+"""Small random scenes by the thousand: every law, shape, transfer, scheme and boundary type, random sizes and speeds, with contact and
+without.
 
 Each runs 200 steps and has to end well, or with exit code 3 and a message that says what failed; pairs that do not go
 together have to be refused. A failure is any other exit code, a hang, a NaN or an infinity in a file, or energy that
@@ -21,6 +22,7 @@ AFFINE_SHAPES = ["uGIMP", "cpGIMP", "QuadraticBSpline", "CubicBSpline"]
 TRANSFERS = ['transfer="FLIP"', 'transfer="FLIP" flip_fraction="0.95"', 'transfer="PIC"', 'transfer="XPIC" xpic_order="3"',
              'transfer="FMPM" xpic_order="2" xpic_interval="3"', 'transfer="FLIP" mass="consistent"']
 AFFINE = ['transfer="APIC"', 'transfer="TPIC"', 'transfer="AFLIP"']
+CONTACT = '<Contact enable="1" contact_type="{}" {} contact_normal="{}" record_contact_force="1"/>'
 OUTPUT = '<Console print_time="1e-12"/><PostProcessing time_interval="1e-6" h5part="1" var="seqv|epef|pres|density|fail"/>'
 
 
@@ -61,7 +63,12 @@ def scene(number, seed):
     materials = [bits_laws.material(name) for name in laws]
     if number % 4 == 1:
         materials = [text.replace("<StrengthModel ", '<StrengthModel limiter="shock" ') for text in materials]
-    return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'), solution, materials, OUTPUT, lit)
+    contact = ""
+    if len(bodies) == 2 and rng.random() < 0.5 and "consistent" not in transfer:
+        bodies.insert(1, '</Component><Component name="other">')
+        contact = CONTACT.format(rng.randrange(3), rng.choice(("", 'distance_type="1" min_distance="1"', 'distance_type="2" min_distance="0.1"')),
+                                 rng.choice(("automatic", "mass_gradient", "regression")))
+    return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'), solution, materials, OUTPUT, lit + contact)
 
 
 def judge(number, seed, folder):

@@ -73,14 +73,17 @@ class Contact(Case):
         self.assertNotIn("overlap at the start", again.out + again.err)
 
     def test_other_methods_and_restart(self):
-        for n, (shape, algorithm, kind, distance, more) in enumerate((
+        corrected = 'transfer="{}" xpic_order="3" xpic_interval="2"'
+        for n, (shape, algorithm, kind, distance, more, *transfer) in enumerate((
                 ("QuadraticBSpline", "MUSL", 0, "", 'auto_normal_vector_weight="1"'),
+                ("linear", "MUSL", 1, "", 'contact_normal="regression"', corrected.format("FMPM")),
+                ("QuadraticBSpline", "USF", 0, 'distance_type="2" min_distance="0.1"', "", corrected.format("XPIC")),
                 ("uGIMP", "USF", 2, 'distance_type="1" min_distance="0.9"', 'contact_time_step="1"'),
                 ("SGMP", "USL", 1, 'distance_type="2" min_distance="0.1"', ""),
-                ("uGIMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
+                ("DDMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
                 ("QuadraticBSpline", "USF", 1, "", 'contact_normal="regression"'))):
-            with self.subTest(shape=shape, algorithm=algorithm, kind=kind):
-                text = scene(shape, algorithm, kind, distance, more=more)
+            with self.subTest(shape=shape, algorithm=algorithm, kind=kind, transfer=transfer):
+                text = scene(shape, algorithm, kind, distance, more=more).replace("<Solution ", f"<Solution {' '.join(transfer)} ")
                 alone = self.run_of(text, f"alone{n}")
                 self.assertEqual(self.run_of(text, f"other{n}", ranks=3 - n % 2, threads=1 + n % 2), alone)
                 halfway = _mpm.restarts(self.folder / f"other{n}")[0]

@@ -10,9 +10,11 @@ import _cases
 import _mpm
 import numpy as np
 
-SHAPES = ("linear", "uGIMP", "QuadraticBSpline", "SGMP")
+SHAPES = ("linear", "uGIMP", "QuadraticBSpline", "SGMP", "DDMP")
 SHARED_NODE, SURFACES = "", 'distance_type="2" min_distance="0.05"'
 YOUNG = 1000.0
+PLAIN, AFFINE = ("FLIP", "PIC", 'FLIP" flip_fraction="0.95'), ("APIC", "TPIC", "AFLIP")
+CORRECTED = ('XPIC" xpic_order="3', 'FMPM" xpic_order="4')
 EVERY_STEP = '<TimeHistory var="pres"><Point x="1" y="1" z="0.5"/></TimeHistory>'
 
 
@@ -21,13 +23,13 @@ def component(name, bodies, weight=0.0):
 
 
 def scene(components, grid, solution, output, shape="linear", kind=1, distance=SURFACES, friction=0.0, young=YOUNG,
-          normal="mass_gradient"):
+          normal="mass_gradient", transfer="FLIP"):
     material = _mpm.material(strength=f'type="IsoElastic" Young="{young}" Poisson="0.3" bq1="0" bq2="0"')
     rubs = f'<Friction><Coefficient value="{friction}" mat1="soft" mat2="soft"/></Friction>'
     return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">', material, rubs, *components,
                       grid.replace("<Grid>", f'<Grid shape="{shape}">'),
                       f'<Contact enable="1" contact_type="{kind}" {distance} record_contact_force="1" '
-                      f'contact_normal="{normal}"/>', solution,
+                      f'contact_normal="{normal}"/>', solution.replace("<Solution ", f'<Solution transfer="{transfer}" '),
                       f"<Output>{output}</Output>", "</PeneBlast>", ""])
 
 
@@ -261,6 +263,34 @@ class Contact(_mpm.Case):
                 self.assertLess(moved, 1e-3)
                 self.assertLess(status["friction_heat"][-1], 0.005)  # of 10 where it slides with 0.3
 
+    def test_sliding_with_corrected_velocities(self):
+        """Contact acts on the sums of the orders, too."""
+        for transfer, shape in itertools.product(CORRECTED, ("linear", "QuadraticBSpline")):
+            with self.subTest(transfer=transfer, shape=shape):
+                acceleration, slid, heat, across, _ = self.slide(0.3, 1, SURFACES, shape, transfer=transfer)
+                most = 0.02 if shape == "linear" else 0.01
+                self.assertGreater(slid, 1.2)
+                self.assertAlmostEqual(acceleration, 1, delta=most)
+                self.assertAlmostEqual(heat, 1, delta=most)
+                self.assertLess(abs(across), 1e-3)
+
+    def test_recorded_impulses(self):
+        """They are those that the bodies get, also where particles take velocities from the nodes. With type 0 these had 2 to 6 % more."""
+        for shape, transfers in (("linear", PLAIN + CORRECTED), ("QuadraticBSpline", PLAIN + CORRECTED + AFFINE)):
+            for transfer, kind in itertools.product(transfers, (0, 1, 2)):
+                with self.subTest(transfer=transfer, shape=shape, kind=kind):
+                    _, summary, status = self.go(discs(kind, SURFACES, shape, transfer=transfer))
+                    time, force = self.forces()
+                    of_both = max(np.abs(status[f"p{a}"]).max() for a in "xyz") / status["px[body:left]"][0]
+                    gained = status["px[body:right]"][-1] - status["px[body:right]"][0]
+                    recorded = np.sum(force[1:, 0] * np.diff(time))
+                    print(f"impulses {transfer:24} {shape:16} type {kind} recorded/gained - 1 {recorded / gained - 1:+.1e} momentum {of_both:.1e} "
+                          f"restitution {status['vx[body:right]'][-1] / 0.5:.4f} lost {1 - status['total'][-1] / status['total'][0]:+.4f} "
+                          f"drift {summary['energy']['relative_drift']:+.1e}")
+                    self.assertLess(of_both, 2e-12)
+                    self.assertEqual(force[-1, 0], 0, "they have parted")
+                    self.assertAlmostEqual(recorded / gained, 1, delta=2e-4)
+
     def test_rebound_of_discs(self):
         """Head on: the energy that is left, kinetic and elastic, and the gap at the first force. Discs keep vibrating."""
         for shape, kind, distance, normal in [
@@ -361,7 +391,7 @@ class Contact(_mpm.Case):
                 self.assertGreater(total, 0.85)
                 self.assertLess(total, 1.02)
                 if distance == SURFACES:
-                    self.assertAlmostEqual((time[on[-1]] - time[on[0]]) / (20 / speed), 1.05, delta=0.05)
+                    self.assertAlmostEqual((time[on[-1]] - time[on[0]]) / (20 / speed), 1.04, delta=0.06)
                 if kind != 0:
                     self.assertLess(abs(summary["energy"]["relative_drift"]), 0.15)
 
