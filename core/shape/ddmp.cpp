@@ -320,18 +320,42 @@ void nodes_to_lattice(const double* nodes, double* lattice) {
   });
 }
 
-void velocity_rows(const double* nodes, double* velocity) {
+namespace {
+/// f(row of nodes, four of their components from `first` on).
+template <class F>
+[[gnu::always_inline]] inline void for_each_row_of(const double* nodes, int first, F f) {
   using Half = Lanes<4>;
   for (int n = 0; n < side * side; ++n) {
     const auto at = [&](int i) {
-      return i < side ? load<Half>(nodes + node_doubles * (side * n + i) + Motion::strain_velocity_at)
-                      : Half(0.0);
+      return i < side ? load<Half>(nodes + node_doubles * (side * n + i) + first) : Half(0.0);
     };
     Row r[4];
     for (int i = 0; i < 4; ++i) r[i] = join(at(i), at(i + 4));
     transpose_pairs(r);
-    for (int c = 0; c < 3; ++c) store(velocity + NodeRows::doubles * c + row_doubles * n, r[c]);
+    f(n, r);
   }
+}
+
+inline void store_rows(double* velocity, int n, const Row (&v)[4]) {
+  for (int c = 0; c < 3; ++c) store(velocity + NodeRows::doubles * c + row_doubles * n, v[c]);
+}
+}  // namespace
+
+void velocity_rows(const double* nodes, double* velocity) {
+  for_each_row_of(nodes, Motion::strain_velocity_at,
+                  [&](int n, const Row(&v)[4]) { store_rows(velocity, n, v); });
+}
+
+void velocity_rows(double cutoff, const double* momenta, double* velocity) {
+  static_assert(Motion::mass_at == 3);
+  const Row least(cutoff), none(0.0);
+  for_each_row_of(momenta, 0, [&](int n, const Row(&p)[4]) {
+    const auto has_mass = least < p[3];
+    const Row inverse = Row(1.0) / max(p[3], least);
+    Row v[4];
+    for (int c = 0; c < 3; ++c) v[c] = select(has_mass, p[c] * inverse, none);
+    store_rows(velocity, n, v);
+  });
 }
 
 void edge_gradients(const Vec3<double>& inverse_cell, const double* velocity, double* gradient) {

@@ -165,8 +165,10 @@ class PointSums {
 
 /// The records of the lattice's points among those of the nodes.
 void nodes_to_lattice(const double* nodes, double* lattice);
-/// The strain velocities of nodes' records in rows, three components.
+/// The strain velocities of nodes' records in rows, three components; or those of their momenta and masses,
+/// zero where there is no more mass than `cutoff`.
 void velocity_rows(const double* nodes, double* velocity);
+void velocity_rows(double cutoff, const double* momenta, double* velocity);
 /// Gradients of them, nine components in the order of Mat3, each of all points of the lattice: along the
 /// edges from a point to the next ones, and D_j = sum_i v_i (x) G_ji.
 void edge_gradients(const Vec3<double>& inverse_cell, const double* velocity, double* gradient);
@@ -200,8 +202,12 @@ struct Ddmp {
     }
     void take_strain(const BrickFrame& frame, const double* nodes, const NodeMask* = nullptr) {
       ddmp::velocity_rows(nodes, velocity_);
-      ddmp::edge_gradients(frame.inverse_cell, velocity_, edge_);
-      ddmp::averaged_gradients(frame, velocity_, gradient_);
+      find_gradients(frame);
+    }
+    /// The same from records of momentum and mass.
+    void take_strain(const BrickFrame& frame, double mass_cutoff, const double* momenta) {
+      ddmp::velocity_rows(mass_cutoff, momenta, velocity_);
+      find_gradients(frame);
     }
     const double* velocity() const { return motion_ + Motion::velocity_at; }
     const double* increment() const { return motion_ + Motion::increment_at; }
@@ -211,6 +217,10 @@ struct Ddmp {
     const double* averaged_gradient() const { return gradient_; }
 
    private:
+    void find_gradients(const BrickFrame& frame) {
+      ddmp::edge_gradients(frame.inverse_cell, velocity_, edge_);
+      ddmp::averaged_gradients(frame, velocity_, gradient_);
+    }
     alignas(64) double motion_[node_doubles * lattice_points.nodes()];
     alignas(64) double velocity_[3 * ddmp::NodeRows::doubles];
     alignas(64) double edge_[9 * ddmp::gradient_doubles], gradient_[9 * ddmp::gradient_doubles];

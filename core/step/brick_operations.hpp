@@ -210,6 +210,17 @@ void PassesWith<S, T>::take_updated_nodes(Slot s, [[maybe_unused]] std::int32_t 
   }
 }
 
+/// Brings the strain velocities into at.field: those of at.nodes, or of momenta where it takes these.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::take_strain(Slot s, std::int32_t component, [[maybe_unused]] const double* momenta,
+                                   Scratch& at) {
+  const BrickFrame frame = this->frame(s, component);
+  if constexpr (Traits::takes_momenta) {
+    if (takes_momenta(s)) return at.field.take_strain(frame, model_.grid->geometry().mass_cutoff, momenta);
+  }
+  at.field.take_strain(frame, at.nodes.data(), reached(s));
+}
+
 // --- particles --------------------------------------------------------------------------------------------
 
 /// What the transfer gives the particles.

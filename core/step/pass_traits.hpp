@@ -40,6 +40,11 @@ struct PassTraits {
   static constexpr bool can_keep_field = requires(typename S::Field field, double* kept) {
     field.keep_velocity(nullptr, kept);
   };
+  /// Whether the field can take strain velocities as momenta and masses.
+  static constexpr bool takes_momenta =
+      !solves && requires(typename S::Field field, const BrickFrame& frame) {
+    field.take_strain(frame, 0.0, static_cast<const double*>(nullptr));
+  };
   /// What MUSL maps back to the grid. Where the motion of all nodes is not found (moving_block) or kept, the
   /// strain velocities need the masses once more.
   static constexpr NodeFields mapped_back =

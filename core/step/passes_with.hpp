@@ -216,6 +216,9 @@ class PassesWith final : public Passes {
   template <NodeArray of>
   void sum_fields(Slot s, Scratch& at);
   void sum_and_update_nodes(Slot s, std::int32_t component, Scratch& at);
+  /// Whether a brick's field takes its strain velocities as momenta and masses: where nothing changes them.
+  bool takes_momenta(Slot s) const { return Traits::takes_momenta && !contact_ && faces(s).none(); }
+  void take_strain(Slot s, std::int32_t component, const double* momenta, Scratch& at);
   void take_updated_nodes(Slot s, std::int32_t component, std::size_t k, Scratch& at);
   void velocities_of_brick(Slot s, std::int32_t component, Scratch& at);
   double velocities_and_motion_of_brick(Slot s, std::int32_t component, Scratch& at);

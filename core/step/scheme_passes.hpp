@@ -84,6 +84,7 @@ void PassesWith<S, T>::update_stress_and_move() {
       if constexpr (Traits::solves) return take_solved_strain(s, at);
       double *const sums = at.sums.data(), *const nodes = at.nodes.data();
       sum<NodeArray::second>(momentum_shared_, s, component, at, sums, some);
+      if (takes_momenta(s)) return;
       constexpr bool maps_again = maps_mass(Traits::mapped_back);
       second_velocities(maps_again ? grid.geometry().mass_cutoff : 0, sums, maps_again ? sums : nodes,
                         faces(s), shared_.summed(some), nodes);
@@ -95,7 +96,7 @@ void PassesWith<S, T>::update_stress_and_move() {
                        if (keeps_field_) at.field.recall_velocity(some, motion(s, k));
                      }
                      if (!keeps_field_) at.field.take_motion(at.nodes.data(), some);
-                     at.field.take_strain(frame(s, component), at.nodes.data(), some);
+                     take_strain(s, component, at.sums.data(), at);
                      auto nodes = prefetch_nodes<NodeArray::second>(s);
                      SpreadPrefetch room = prefetch_motion(s);
                      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
@@ -116,11 +117,12 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
       const NodeMask* some = reached(s);
       double* const nodes = at.nodes.data();
       sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
+      if (takes_momenta(s)) return;
       second_velocities(grid.geometry().mass_cutoff, nodes, nodes, faces(s), shared_.summed(some), nodes);
       take_solved_strain(s, at);
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
-      at.field.take_strain(frame(s, component), at.nodes.data(), reached(s));
+      take_strain(s, component, at.nodes.data(), at);
       auto nodes = prefetch_nodes<NodeArray::second>(s);
       stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
       map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});

@@ -10,7 +10,7 @@ SOFT = _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="{
 RAM = _mpm.material("ram", 1.0, 'type="Rigid"')
 SIDE = 3.0  # of the block; a quarter of the whole, with symmetry planes
 # Functions wider than a cell cannot have a kink at the plate's face: a layer is strained less, of about this part of a cell.
-LAYERS = {"linear": 0.03, "CPDI2": 0.03, "QuadraticBSpline": 0.7}
+LAYERS = {"linear": 0.03, "CPDI2": 0.03, "QuadraticBSpline": 0.7, "DDMP": 0.7}
 
 
 def scene(block, plate, velocity, shape="linear", friction=0.0, steps=5, faces="202010", kind="quasistatic", end=1.0,
