@@ -6,8 +6,9 @@
 //   bardenhagen           the velocities at the end of the step, after all other forces; all of it
 //   pan                   first those at its start, then those that the corrected ones and the forces lead
 //                         to; the particles get the second impulses, which oppose the nodal forces. The
-//                         first change the velocities that strain and move, and not the particles' momenta,
-//                         unless the approach is as fast as waves
+//                         first change the velocities that strain and move, and the particles' momenta only
+//                         as far as the approach is as fast as waves, or the transfer takes velocities from
+//                         the nodes
 //   improved_bardenhagen  as pan; the particles get both
 // Nodes at which a free rigid body is follow bardenhagen's.
 //
@@ -109,8 +110,13 @@ class Contact {
   /// `rigid`: the rigid bodies; null without.
   Contact(const Model& model, const RigidBodies* rigid);
 
-  /// The part of the particles' velocities that the transfer takes from the nodes in this step.
-  void set_share_of_nodes(double share) { share_of_nodes_ = share; }
+  /// What it has to know of the transfer in a step: the part of the particles' velocities that the nodes'
+  /// velocities are, and whether these are corrected.
+  struct TransferOfStep {
+    double share_of_nodes = 0;
+    bool corrects = false;
+  };
+  void set_transfer(const TransferOfStep& transfer) { transfer_ = transfer; }
 
   /// Gives the grid's bricks their fields. Collective, with the neighbouring ranks.
   void find_fields(BrickGrid& grid, NodeHalo& halo, Reductions& ranks);
@@ -201,7 +207,7 @@ class Contact {
   bool find_pairs(std::span<const FieldNodes> fields, std::span<const MeetingNodes::Pair> pairs,
                   Node& at) const;
   void take_rigid_contacts(Node& at) const;
-  void hold_pairs(Node& at) const;
+  void hold_pairs(Node& at, Velocity which) const;
   void resolve_strain(Node& at, Velocity which) const;
   static void keep_strain(const Node& at);
   void book_correction(const Node& at, ContactSums& sums) const;
@@ -220,7 +226,7 @@ class Contact {
   std::optional<double> largest_gap_;  ///< length
   bool to_faces_ = false;              ///< gaps between the particles' faces
   bool limits_time_step_ = false;
-  double share_of_nodes_ = 0;
+  TransferOfStep transfer_;
   std::vector<bool> has_failed_;  ///< by component; all false unless their normals are excluded
   std::vector<double> weight_;    ///< of normals, by component
   std::vector<double> wave_;      ///< largest wave speed at the start, by component; 0: rigid, or failed

@@ -105,8 +105,10 @@ void Contact::take_rigid_contacts(Node& at) const {
 }
 
 /// An impulse of this step has done its work where the end of the step finds two fields at rest against each
-/// other. The strain must then not part them: that would be work without a source.
-void Contact::hold_pairs(Node& at) const {
+/// other. The strain must then not part them: that would be work without a source. Corrected velocities
+/// become those of particles: there two that have not moved yet are free, as nothing presses them, and one
+/// that slides without friction stays free along the surface.
+void Contact::hold_pairs(Node& at, Velocity which) const {
   constexpr double round_off = 1e-10;
   const auto of_end = [&](std::size_t f) {
     const double* v = at.records[f].velocity();
@@ -117,16 +119,19 @@ void Contact::hold_pairs(Node& at) const {
                        b = of_end(static_cast<std::size_t>(pair.second)), relative = a - b;
     const double most = round_off * std::sqrt(std::max(dot(a, a), dot(b, b)));
     if (!(std::abs(dot(relative, pair.normal)) <= most)) continue;
-    const bool sticks = std::sqrt(dot(relative, relative)) <= most;
+    const bool corrects = which == Velocity::of_correction;
+    if (corrects && most == 0) continue;
+    const bool sticks = std::sqrt(dot(relative, relative)) <= most && !(corrects && pair.friction == 0);
     pair.holds = sticks ? ContactPair::Holds::all : ContactPair::Holds::normal;
   }
 }
 
 void Contact::resolve_strain(Node& at, Velocity which) const {
-  if (which != Velocity::of_strain) hold_pairs(at);
+  if (which != Velocity::of_strain) hold_pairs(at, which);
   // With Pan's method the particles still approach. Friction in proportion to that would shear the bodies,
   // and the particles would not get its impulse: energy without a source. What slides strains as it slides.
-  // Corrected velocities have had their friction: what holds them along the normal is as often a pull.
+  // What slides with corrected velocities has had its friction: what holds it along the normal is as often a
+  // pull.
   if ((method_ == ContactInput::Method::pan && !at.free_body) || which == Velocity::of_correction)
     for (ContactPair& pair : at.pairs) pair.friction = 0;
   resolve_contacts(at.fields, at.pairs);
@@ -139,26 +144,19 @@ void Contact::keep_strain(const Node& at) {
       at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
 }
 
-/// Energy and impulses of resolve_strain() with corrected velocities, which are still in the records.
+/// Impulses of resolve_strain() with corrected velocities. They slide without friction, and so take no heat.
 void Contact::book_correction(const Node& at, ContactSums& sums) const {
-  const auto before = [&](std::size_t f) {
-    const double* v = at.records[f].strain_velocity();
-    return at.rigid[f] < 0 ? Vec3<double>{v[0], v[1], v[2]} : at.fields[f].velocity;
-  };
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
-    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const Vec3<double> mean = 0.5 * (before(a) + at.fields[a].velocity - before(b) - at.fields[b].velocity);
-    const double all = dot(pair.impulse, mean);
-    sums.record.dissipated.add(all);
-    sums.record.add(at.recorded[p], pair.impulse,
-                    all - dot(pair.impulse, pair.normal) * dot(mean, pair.normal));
-    for (const auto& [f, sign] : {std::pair(a, -1.0), std::pair(b, 1.0)}) {
-      if (at.rigid[f] < 0) continue;
-      const Vec3<double> on_it = sign * pair.impulse;
+    sums.record.add(at.recorded[p], pair.impulse, 0);
+    const auto on = [&](int field, const Vec3<double>& on_it) {
+      const auto f = static_cast<std::size_t>(field);
+      if (at.rigid[f] < 0) return;
       sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
           on_it, at.place - rigid_->state(at.rigid[f]).centre, dot(on_it, at.fields[f].velocity));
-    }
+    };
+    on(pair.first, -1.0 * pair.impulse);
+    on(pair.second, pair.impulse);
   }
 }
 
@@ -201,7 +199,7 @@ void Contact::find_first_impulses(Node& at) const {
     if (pair.friction > 0 && share < 1)
       stops = stops + (1 - share) * (pair.impulse - dot(pair.impulse, pair.normal) * pair.normal);
     at.stops.push_back(stops);
-    at.given.push_back(stops + share_of_nodes_ * (pair.impulse - stops));
+    at.given.push_back(stops + transfer_.share_of_nodes * (pair.impulse - stops));
     pair.friction = at.friction[p];
   }
 }
@@ -283,24 +281,28 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
 
 /// Energy and impulses of resolve_end().
 void Contact::book(const Node& at, ContactSums& sums) const {
+  const double nodal = transfer_.share_of_nodes;
   const auto given = [&](std::size_t f) {
-    const bool known = at.rigid[f] < 0 || static_cast<int>(f) == at.moves;
-    return known ? increment(at, f) : at.fields[f].velocity - at.taken[f];
+    if (at.rigid[f] < 0)
+      return (1 - nodal) * increment(at, f) + nodal * (at.fields[f].velocity - at.start[f]);
+    return static_cast<int>(f) == at.moves ? increment(at, f) : at.fields[f].velocity - at.taken[f];
   };
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
     const Vec3<double> impulse = pair.impulse + at.first_impulse[p];
     // Of the kinetic energy that a step changes, an impulse P takes P.(u + u')/2, where the relative velocity
-    // of the fields is u at its start and u' with all increments that the particles get.
+    // of the fields is u at its start and u' with all that the particles get.
     const Vec3<double> mean = at.start[a] - at.start[b] + 0.5 * (given(a) - given(b));
     // The part of Pan's first impulses that the particles do not get stops the approach of the nodes without
-    // stopping theirs, and the strain follows the nodes: their approach counts.
-    const Vec3<double> stopped = (1 - share_of_nodes_) * (1 - at.share[p]) *
+    // stopping theirs, and the strain follows the nodes: their approach counts for the second impulses.
+    const Vec3<double> stopped = (1 - nodal) * (1 - at.share[p]) *
                                  (at.nodal_start[a] - at.start[a] - (at.nodal_start[b] - at.start[b]));
-    const double pressing = dot(impulse, pair.normal);
-    const double heat = dot(impulse, mean) - pressing * dot(mean, pair.normal);
-    sums.record.dissipated.add(pressing * dot(mean + stopped, pair.normal) + heat);
+    const double pressing = dot(impulse, pair.normal) * dot(mean, pair.normal) +
+                            dot(pair.impulse, pair.normal) * dot(stopped, pair.normal);
+    const double heat = dot(impulse, mean) - dot(impulse, pair.normal) * dot(mean, pair.normal);
+    // The velocities of order 1 approach in every step, smooth as they are; those of the particles do not.
+    sums.record.dissipated.add(transfer_.corrects ? heat : pressing + heat);
     sums.record.add(at.recorded[p], impulse, heat);
     const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
       if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
@@ -389,8 +391,8 @@ void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<F
     if (!take_node(grid, s, which, fields, node, at)) continue;
     if (!of_end) {
       resolve_strain(at, which);
-      if (which == Velocity::of_correction && node.counts) book_correction(at, sums);
       keep_strain(at);
+      if (which == Velocity::of_correction && node.counts) book_correction(at, sums);
       continue;
     }
     resolve_end(at, sums, node.counts);
@@ -400,7 +402,7 @@ void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<F
       double* const to = Motion{fields[at.number[f]].blow.data() + node_doubles * node.number}.velocity();
       for (int a = 0; a < 3; ++a) to[a] = blows[f][a];
       // Of the nodes, for that of the particles (contact_operations.hpp, book_blows()).
-      if (node.counts && at.rigid[f] < 0)
+      if (node.counts && at.rigid[f] < 0 && !transfer_.corrects)
         sums.record.dissipated.add(0.5 * at.fields[f].mass * dot(blows[f], blows[f]));
     }
   }

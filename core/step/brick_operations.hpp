@@ -205,7 +205,8 @@ void PassesWith<S, T>::take_updated_nodes(Slot s, [[maybe_unused]] std::int32_t 
   at.field.take_motion(at.nodes.data(), reached(s));
   if constexpr (Traits::corrects) {
     if (!correcting_) return;
-    if (!has_meetings(s)) add_order(s, orders_, component, k, at);
+    if (!has_meetings(s) && !(contact_ && model_.grid->components(s).empty()))
+      add_order(s, orders_, component, k, at);
     at.corrected.take_motion(corrected_nodes(s, k));
   }
 }

@@ -93,10 +93,10 @@ template <class Update>
   take_fields(s, at, update);
   contact_->resolve(*model_.grid, s, which, at.fields, at.contact);
   if (which != Contact::Velocity::of_end) return;
+  if (correcting_) return meet_corrected(s, at);
   for (const FieldNodes& field : at.fields)
     if (model_.grid->field_of(s, field.component) >= 0 && !contact_->is_rigid(field.component))
       book_blows(s, field, at);
-  if (correcting_) meet_corrected(s, at);
 }
 
 /// The kinetic energy that a field's particles get from blows (contact_impulses.cpp). The nodes' velocities c

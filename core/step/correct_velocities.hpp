@@ -109,6 +109,7 @@ void PassesWith<S, T>::meet_corrected([[maybe_unused]] Slot s, [[maybe_unused]] 
       FieldNodes& field = at.corrected_fields[k];
       field.component = at.fields[k].component;
       field.motion = at.fields[k].motion;
+      if (orders_ == 1) std::ranges::copy(field.motion, at.nodes.data());
       add_order(s, orders_, field.component, k, at);
       const double* corrected = corrected_nodes(s, k);
       for (int n = 0; n < record_count(); n += node_doubles)

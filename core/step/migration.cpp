@@ -90,7 +90,10 @@ void Migration::collect_from(Slot slot, std::vector<DepartingParticle>& departin
     } else {
       const BrickCoord to = grid.geometry().brick_at(x);
       // On the grid's upper face, or within round-off of its own brick.
-      if (to == brick.coord && component_of(model_, tile.body, columns) == tile.component) continue;
+      if (to == brick.coord && component_of(model_, tile.body, columns) == tile.component) {
+        model_.grid->own_cells(slot).reset();  // the pass that moved it has left it out
+        continue;
+      }
       if (!far_ && !adjacent(to, brick.coord)) {
         report(body, " moved by more than one brick in one step");
         continue;

@@ -56,13 +56,13 @@ class PassesWith final : public Passes {
   void shorten_step(const StepLength& length) override {
     set_step(length);
     if (rigid_ != nullptr) rigid_->shorten_step(loads_, forces_.gravity, length);
-    if (contact_) contact_->set_share_of_nodes(share_of_nodes());
+    if (contact_) tell_contact_of_transfer();
   }
 
   void find_fields(Reductions& ranks) override {
     contact_->find_fields(*model_.grid, halo_, ranks);
     begin_corrections();
-    contact_->set_share_of_nodes(share_of_nodes());
+    tell_contact_of_transfer();
   }
   void map_surfaces() override;
   void find_meetings() override;
@@ -119,9 +119,10 @@ class PassesWith final : public Passes {
   static constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
   static constexpr int columns_to_mass = static_cast<int>(Column::mass) + 1;
 
-  double share_of_nodes() const {
-    return Traits::corrects && !correcting_ ? Flip::share_of_nodes(transfer_step_)
-                                            : transfer_.share_of_nodes(transfer_step_);
+  void tell_contact_of_transfer() {
+    const double share = Traits::corrects && !correcting_ ? Flip::share_of_nodes(transfer_step_)
+                                                          : transfer_.share_of_nodes(transfer_step_);
+    contact_->set_transfer({share, correcting_});
   }
 
   // Order of bricks and blocks.

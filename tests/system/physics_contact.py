@@ -290,6 +290,13 @@ class Contact(_mpm.Case):
                     self.assertLess(of_both, 2e-12)
                     self.assertEqual(force[-1, 0], 0, "they have parted")
                     self.assertAlmostEqual(recorded / gained, 1, delta=2e-4)
+                    if transfer in ("PIC", "APIC", "TPIC") and kind == 0:
+                        booked = summary["energy"]["dissipated_by_contact"]
+                    elif transfer in ("PIC", "APIC", "TPIC") and kind == 2:
+                        # Both types give their particles the same.
+                        self.assertAlmostEqual(booked / summary["energy"]["dissipated_by_contact"], 1, delta=1e-6)
+                    if transfer in CORRECTED:
+                        self.assertLess(summary["energy"]["relative_drift"], 0.01, "they lose energy, and gain none")
 
     def test_rebound_of_discs(self):
         """Head on: the energy that is left, kinetic and elastic, and the gap at the first force. Discs keep vibrating."""

@@ -56,7 +56,7 @@ void for_each_method(F f) {
         method.shape = shape;
         method.scheme = scheme;
         method.transfer = transfer;
-        method.order = 3;
+        method.order = static_cast<int>(shape) % 2 == 0 ? 3 : 1;
         f(method);
       }
     }
@@ -92,7 +92,8 @@ TEST_CASE("Two blocks bounce: momentum is exact, they part, and they slide witho
     const Vector after = momentum(run, 0, half_of), other = momentum(run, half_of, 2 * half_of);
     CAPTURE(first, after, other);
     for (std::size_t a = 0; a < 3; ++a) CHECK(std::abs(after[a] + other[a]) < 1e-12 * first[0]);
-    CHECK(after[0] < -0.5 * first[0]);  // it bounced
+    const bool is_pic = method.transfer != ReferenceTransfer::flip && method.order == 1;
+    CHECK(after[0] < (is_pic ? -0.3 : -0.5) * first[0]);  // it bounced
     // Along the faces nothing acts but what the tilted normals at their edges give.
     CHECK(after[1] == Approx(first[1]).epsilon(0.15));
     CHECK(after[2] == Approx(first[2]).epsilon(0.15));

@@ -96,6 +96,25 @@ TEST_CASE("The pass that moves the particles of a brick finds the cells that a l
   }
 }
 
+TEST_CASE("A particle on the grid's upper face, which leaves no brick, is in a cell in use") {
+  ReferenceCase c = in_a_corner(0);
+  ReferenceParticle alone = c.particles.front();
+  alone.x = {c.origin[0] + c.cell[0] * c.cells[0], c.origin[1] + 0.5 * c.cell[1],
+             c.origin[2] + 0.5 * c.cell[2]};
+  alone.v = {};
+  c.particles.push_back(alone);
+  SmallRun run(c);
+  for (int i = 0; i < 5; ++i) {
+    run.step(1);
+    const Slot s =
+        run.model.grid->find(run.model.grid->geometry().brick_at({alone.x[0], alone.x[1], alone.x[2]}));
+    REQUIRE(s != mpm::core::no_slot);
+    const std::optional<std::uint64_t> cells = run.model.grid->own_cells(s);
+    CHECK(cells.value_or(mpm::core::find_cells(run.model, s)) == mpm::core::find_cells(run.model, s));
+    CHECK(mpm::core::find_cells(run.model, s) != 0);
+  }
+}
+
 TEST_CASE("Only shape functions that need cells in use have phases for them") {
   for (const ReferenceShape shape : reference_shapes) {
     ReferenceCase c = in_a_corner(0);
