@@ -80,6 +80,7 @@ class Contact(Case):
                 ("QuadraticBSpline", "USF", 0, 'distance_type="2" min_distance="0.1"', "", corrected.format("XPIC")),
                 ("uGIMP", "USF", 2, 'distance_type="1" min_distance="0.9"', 'contact_time_step="1"'),
                 ("SGMP", "USL", 1, 'distance_type="2" min_distance="0.1"', ""),
+                ("uGIMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
                 ("DDMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
                 ("QuadraticBSpline", "USF", 1, "", 'contact_normal="regression"'))):
             with self.subTest(shape=shape, algorithm=algorithm, kind=kind, transfer=transfer):

@@ -398,7 +398,8 @@ class Contact(_mpm.Case):
                 self.assertGreater(total, 0.85)
                 self.assertLess(total, 1.02)
                 if distance == SURFACES:
-                    self.assertAlmostEqual((time[on[-1]] - time[on[0]]) / (20 / speed), 1.04, delta=0.06)
+                    # Exact: 1. With DDMP 0.99 (type 0) and 1.04.
+                    self.assertAlmostEqual((time[on[-1]] - time[on[0]]) / (20 / speed), 1.02 if shape == "DDMP" else 1.05, delta=0.05)
                 if kind != 0:
                     self.assertLess(abs(summary["energy"]["relative_drift"]), 0.15)
 

@@ -91,7 +91,8 @@ TEST_CASE("The pass that moves the particles of a brick finds the cells that a l
       }
     }
     CHECK(known > 0);
-    CHECK(unknown < known);  // of bricks that particles have entered for the first time
+    CHECK(unknown > 0);  // where particles have entered a brick for the first time
+    CHECK(unknown < known);
     CHECK(wrong == 0);
   }
 }
