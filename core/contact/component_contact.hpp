@@ -10,6 +10,11 @@ namespace mpm::core {
 
 inline bool is_rigid(const MaterialInput& material) { return material.strength.type == "Rigid"; }
 
+/// Whether the motion of a rigid body is given: others have no influence on it.
+inline bool is_driven(const BodyInput& body) {
+  return body.constrain_rigid_position || body.prescribed_velocity.has_value();
+}
+
 /// Whether the reaction of a body is recorded: it is rigid and in contact, or its velocity is prescribed.
 bool has_reaction(const Scene& scene, const BodyInput& body);
 

@@ -144,19 +144,22 @@ void Contact::keep_strain(const Node& at) {
       at.records[f].strain_velocity()[a] = at.fields[f].velocity[a];
 }
 
+/// An impulse on the rigid body with this number, if it is one, that moves with `velocity` there.
+void Contact::book_on_rigid(int number, const Vec3<double>& place, const Vec3<double>& impulse,
+                            const Vec3<double>& velocity, ContactSums& sums) const {
+  if (number < 0 || impulse == Vec3<double>{}) return;
+  sums.rigid[static_cast<std::size_t>(number)].add(impulse, place - rigid_->state(number).centre,
+                                                   dot(impulse, velocity));
+}
+
 /// Impulses of resolve_strain() with corrected velocities. They slide without friction, and so take no heat.
 void Contact::book_correction(const Node& at, ContactSums& sums) const {
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     sums.record.add(at.recorded[p], pair.impulse, 0);
-    const auto on = [&](int field, const Vec3<double>& on_it) {
-      const auto f = static_cast<std::size_t>(field);
-      if (at.rigid[f] < 0) return;
-      sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
-          on_it, at.place - rigid_->state(at.rigid[f]).centre, dot(on_it, at.fields[f].velocity));
-    };
-    on(pair.first, -1.0 * pair.impulse);
-    on(pair.second, pair.impulse);
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    book_on_rigid(at.rigid[a], at.place, -1.0 * pair.impulse, at.fields[a].velocity, sums);
+    book_on_rigid(at.rigid[b], at.place, pair.impulse, at.fields[b].velocity, sums);
   }
 }
 
@@ -304,14 +307,9 @@ void Contact::book(const Node& at, ContactSums& sums) const {
     // The velocities of order 1 approach in every step, smooth as they are; those of the particles do not.
     sums.record.dissipated.add(transfer_.corrects ? heat : pressing + heat);
     sums.record.add(at.recorded[p], impulse, heat);
-    const auto on = [&](std::size_t f, const Vec3<double>& on_it) {
-      if (at.rigid[f] < 0 || on_it == Vec3<double>{}) return;
-      const double work = 0.5 * dot(on_it, at.start[f] + at.fields[f].velocity);
-      sums.rigid[static_cast<std::size_t>(at.rigid[f])].add(
-          on_it, at.place - rigid_->state(at.rigid[f]).centre, work);
-    };
-    on(a, -1.0 * impulse);
-    on(b, impulse);
+    const auto mean_of = [&](std::size_t f) { return 0.5 * (at.start[f] + at.fields[f].velocity); };
+    book_on_rigid(at.rigid[a], at.place, -1.0 * impulse, mean_of(a), sums);
+    book_on_rigid(at.rigid[b], at.place, impulse, mean_of(b), sums);
   }
 }
 
@@ -327,12 +325,8 @@ void Contact::book_rigid(const Node& at, ContactSums& sums) const {
     const double pressing = dot(impulse, c.normal) * dot(relative, c.normal), all = dot(impulse, relative);
     sums.record.dissipated.add(-all);
     sums.record.add(r.recorded, r.is_first ? -1.0 * impulse : impulse, pressing - all);
-    const auto on = [&](int number, const Vec3<double>& on_it, const Vec3<double>& velocity) {
-      sums.rigid[static_cast<std::size_t>(number)].add(on_it, c.place - rigid_->state(number).centre,
-                                                       dot(on_it, velocity));
-    };
-    on(c.free, impulse, mean);
-    on(c.driven, -1.0 * impulse, c.velocity);
+    book_on_rigid(c.free, c.place, impulse, mean, sums);
+    book_on_rigid(c.driven, c.place, -1.0 * impulse, c.velocity, sums);
   }
 }
 

@@ -37,12 +37,18 @@ template <class F>
   for (std::size_t k = 0; k < contact_->seen(s).size(); ++k) f(contact_->seen(s)[k], k);
 }
 
+/// The component of a field of a brick with particles; in contact.
+template <ShapePolicy S, TransferPolicy T>
+std::int32_t PassesWith<S, T>::own_component(Slot s, std::int32_t component) const {
+  return component == all_components ? model_.grid->components(s).front() : component;
+}
+
 /// The number of a field of a brick's particles among those that the brick sees.
 template <ShapePolicy S, TransferPolicy T>
 std::size_t PassesWith<S, T>::seen_number(Slot s, std::int32_t component) const {
   if (!contact_ || !contact_->meets(s) || model_.grid->components(s).empty()) return 0;
-  const std::int32_t mine = component == all_components ? model_.grid->components(s).front() : component;
-  return static_cast<std::size_t>(std::ranges::find(contact_->seen(s), mine) - contact_->seen(s).begin());
+  const std::span<const std::int32_t> seen = contact_->seen(s);
+  return static_cast<std::size_t>(std::ranges::find(seen, own_component(s, component)) - seen.begin());
 }
 
 /// For the velocity fields that a brick sees: update(component, k) brings the motion of the field number k
@@ -151,8 +157,8 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
   double* contributions = grid.contributions(what.array, s, field_of(s, component));
   std::fill_n(contributions, width * grid.shape().nodes(), 0.0);
   if (grid.components(s).empty()) return;
-  const std::int32_t mine = component == all_components ? grid.components(s).front() : component;
-  const AxisBox near = contact_->zone(s, mine).wider(S::nodes_per_axis - 1, grid.geometry().cell);
+  const AxisBox near =
+      contact_->zone(s, own_component(s, component)).wider(S::nodes_per_axis - 1, grid.geometry().cell);
   for_each_block(
       s, component, columns_to_mass,
       [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
@@ -186,9 +192,7 @@ void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
   std::fill_n(reach, width * shape.nodes(), no_reach);
   const MeetingNodes& meetings = contact_->meetings(s);
   if (meetings.nodes.empty() || grid.components(s).empty()) return;
-  const std::span<const std::int32_t> seen = contact_->seen(s);
-  const std::int32_t mine = component == all_components ? grid.components(s).front() : component;
-  const auto field = static_cast<std::size_t>(std::ranges::find(seen, mine) - seen.begin());
+  const std::size_t fields = contact_->seen(s).size(), field = seen_number(s, component);
   // At each node its place and the field's normal; none where the field is alone.
   struct At {
     Vec3<double> node, normal;
@@ -197,7 +201,7 @@ void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
   std::vector<At> at(static_cast<std::size_t>(shape.nodes()));
   NearNodes near;
   for (std::size_t n = 0; n < meetings.nodes.size(); ++n) {
-    const Vec3<double>& normal = meetings.outward[n * seen.size() + field];
+    const Vec3<double>& normal = meetings.outward[n * fields + field];
     if (normal == Vec3<double>{}) continue;
     const int node = meetings.nodes[n].number;
     at[static_cast<std::size_t>(node)] = {near.add(grid, s, node, S::nodes_per_axis), normal, true};

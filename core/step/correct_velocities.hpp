@@ -23,12 +23,8 @@ void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int o
     double* const to = corrected_nodes(s, k);
     if (order == 1)
       return begin_correction(!transfer_.of_end, faces(s), shared_.nodes(), at.nodes.data(), to);
-    double* const sums = at.sums.data();
-    if (component == all_components)
-      sum_contributions<NodeArray::third>(*model_.grid, momentum_shared_, s, sums);
-    else
-      sum_contributions<NodeArray::third>(*model_.grid, momentum_shared_, s, component, sums);
-    continue_correction(faces(s), sums, shared_.nodes(), to);
+    sum<NodeArray::third>(momentum_shared_, s, component, at, at.sums.data());
+    continue_correction(faces(s), at.sums.data(), shared_.nodes(), to);
   }
 }
 

@@ -77,7 +77,7 @@ void check_corrections(const Node& solution, const std::vector<Bodies>& bodies, 
     for (const core::BodyInput* body : of_component) {
       if (body->material >= scene.materials.size() || !core::is_rigid(scene.materials[body->material]))
         continue;
-      if (body->constrain_rigid_position || body->prescribed_velocity) continue;
+      if (core::is_driven(*body)) continue;
       return solution.report(
           context.diagnostics, "transfer",
           fmt::format("is not available in contact with rigid bodies that move freely, as '{}' does: their "

@@ -22,16 +22,13 @@ bool is_rigid(const core::Scene& scene, const core::BodyInput& body) {
 
 /// Contact cannot change the motion of driven rigid bodies.
 void note_driven(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
-  const auto driven = [](const core::BodyInput& body) {
-    return body.constrain_rigid_position || body.prescribed_velocity.has_value();
-  };
   const auto fixed = [](const core::BodyInput& body) {
     return !body.constrain_rigid_position && body.prescribed_velocity == core::Vec3<double>{} &&
            body.prescribed_velocity_expressions.empty();
   };
   const core::BodyInput *moves = nullptr, *other = nullptr;
   core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
-    if (!is_rigid(scene, body) || !driven(body)) return;
+    if (!is_rigid(scene, body) || !core::is_driven(body)) return;
     if (moves == nullptr && !fixed(body))
       moves = &body;
     else

@@ -5,7 +5,7 @@ Prints what it measures."""
 
 import _mpm
 import numpy as np
-from physics_contact import SHARED_NODE, SURFACES
+from _contact import SHARED_NODE, SURFACES
 
 BASE, TOP = "base", "top"
 
