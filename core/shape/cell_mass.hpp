@@ -18,6 +18,7 @@ namespace cell_mass {
 inline constexpr int doubles = 32;
 inline constexpr int in_use = 27;  ///< of a record: whether the cell has particles
 inline constexpr int cells = brick_cells * brick_cells * brick_cells;
+inline constexpr int brick_doubles = doubles * cells;
 
 /// Of a cell by its lowest point, and back.
 constexpr int cell_at(int point) {
@@ -39,34 +40,47 @@ constexpr int moment(int j) { return (j & 1) + 3 * (j >> 1 & 1) + 9 * (j >> 2); 
   return __builtin_shufflevector(low.v, high.v, 0, 1, 3, 4, 9, 10, 12, 13);
 }
 
+/// Lanes of one vector, or of two.
+template <int... lanes>
+[[gnu::always_inline]] inline linear::Nodes pick(const linear::Nodes& a, const linear::Nodes& b) {
+  return __builtin_shufflevector(a.v, b.v, lanes...);
+}
+template <int... lanes>
+[[gnu::always_inline]] inline linear::Nodes pick(const linear::Nodes& a) {
+  return pick<lanes...>(a, a);
+}
+
 /// Sums of m w_i w_j over the particles of the current cell; moments of cells are added to when it changes.
 struct Sums {
-  linear::Nodes row[8];
+  /// One pair for each i + j, with i's bits where it is 1 or 2 along an axis, j's where 2:
+  ///   i  0 1 2 3 4 5 6 7   1 3 5 7 2 3 6 7   4 5 6 7 3 7 5 7   6 7 7
+  ///   j  0 0 0 0 0 0 0 0   1 1 1 1 2 2 2 2   4 4 4 4 3 3 5 5   6 6 7
+  linear::Nodes pairs[4];
   int point = -1;
 
   [[gnu::always_inline]] void add(const LinearPlace& place, int i, double m, double* moments) {
     if (place.node[i] != point) {
       flush(moments);
-      for (linear::Nodes& r : row) r = linear::Nodes(0.0);
+      for (linear::Nodes& p : pairs) p = linear::Nodes(0.0);
       point = place.node[i];
     }
     const linear::Nodes w = linear::weights(place, i), mw = linear::Nodes(m) * w;
-    for (int j = 0; j < 8; ++j) row[j] += mw * linear::Nodes(w[j]);
+    pairs[0] += mw * pick<0, 0, 0, 0, 0, 0, 0, 0>(w);
+    pairs[1] += pick<1, 3, 5, 7, 2, 3, 6, 7>(mw) * pick<1, 1, 1, 1, 2, 2, 2, 2>(w);
+    pairs[2] += pick<4, 5, 6, 7, 3, 7, 5, 7>(mw) * pick<4, 4, 4, 4, 3, 3, 5, 5>(w);
+    pairs[3] += pick<6, 7, 7, 7, 7, 7, 7, 7>(mw) * pick<6, 6, 7, 7, 7, 7, 7, 7>(w);
   }
   void flush(double* moments) const {
     if (point < 0) return;
     double* to = moments + doubles * cell_at(point);
-    // Each moment from one of the pairs with its i + j: M_ij with i's bits where i + j is 1 or 2, j's
-    // where 2.
-    for (int s = 0; s < 27; ++s) {
-      const int along[3] = {s % 3, s / 3 % 3, s / 9};
-      int i = 0, j = 0;
-      for (int a = 0; a < 3; ++a) {
-        if (along[a] > 0) i |= 1 << a;
-        if (along[a] > 1) j |= 1 << a;
-      }
-      to[s] += row[j][i];
-    }
+    const auto add_to = [](double* at, const linear::Nodes& more) {
+      store(at, load<linear::Nodes>(at) + more);
+    };
+    add_to(to, pick<0, 1, 8, 2, 3, 9, 12, 13>(pairs[0], pairs[1]));
+    add_to(to + 8,
+           pick<12, 1, 2, 3, 4, 5, 6, 7>(pick<0, 4, 5, 10, 6, 7, 11, 14>(pairs[0], pairs[1]), pairs[2]));
+    add_to(to + 16, pick<15, 5, 0, 1, 6, 2, 3, 7>(pairs[2], pairs[1]));
+    add_to(to + 24, pairs[3]);
     to[in_use] = 1;
   }
 };

@@ -10,7 +10,9 @@ template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::begin_corrections() {
   if constexpr (Traits::corrects) {
     correcting_ = transfer_.corrects(model_.clock.step + 1);
-    if (correcting_) corrected_.resize(static_cast<std::size_t>(record_count()) * seen_fields());
+    if (!correcting_) return;
+    corrected_.resize(static_cast<std::size_t>(record_count()) * seen_fields());
+    begin_products();
   }
 }
 
@@ -25,34 +27,6 @@ void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int o
       return begin_correction(!transfer_.of_end, faces(s), shared_.nodes(), at.nodes.data(), to);
     sum<NodeArray::third>(momentum_shared_, s, component, at, at.sums.data());
     continue_correction(faces(s), at.sums.data(), shared_.nodes(), to);
-  }
-}
-
-/// Maps m sum S dv of the brick's particles of a component, dv being the increments of these records.
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::map_increments([[maybe_unused]] Slot s, [[maybe_unused]] std::int32_t component,
-                                      [[maybe_unused]] const double* increments,
-                                      [[maybe_unused]] Scratch& at) {
-  if constexpr (Traits::corrects || Traits::solves) {
-    constexpr NodeFields what = mapped::correction;
-    const BrickFrame frame = this->frame(s, component);
-    const int doubles = record_doubles(what.array) * shared_.nodes();
-    double* contributions = model_.grid->contributions(what.array, s, field_of(s, component));
-    std::fill_n(contributions, doubles, 0.0);
-    typename S::template Sums<what> sums(contributions);
-    typename S::template Scatter<what> cell;
-    cell.clear();
-    at.corrected.take_motion(increments);
-    for_each_block(s, component, columns_to_mass,
-                   [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
-                     const Place place(frame, layout, block);
-                     MappedRows rows;
-                     increment_momentum<S>(place, layout, at.corrected, block, rows);
-                     add_particles(cell, frame, place, used, rows, sums.records);
-                   });
-    cell.flush(frame, sums.records);
-    sums.finish(frame);
-    if constexpr (S::node_block != NodeBlockShape{}) faces(s).fold(what, contributions);
   }
 }
 
@@ -88,9 +62,10 @@ void PassesWith<S, T>::correct_velocities([[maybe_unused]] int order) {
     });
     map_bricks<mapped::correction>([&](Slot s, Scratch& at) {
       for_each_own_field(s, [&](std::int32_t component) {
-        map_increments(s, component, corrected_nodes(s, seen_number(s, component)), at);
+        map_product(s, component, corrected_nodes(s, seen_number(s, component)), at);
       });
     });
+    masses_known_ = true;
   }
 }
 

@@ -1,5 +1,5 @@
 // The only place where a run's shape functions and transfer are chosen.
-#include "core/shape/cell_mass.hpp"
+#include "core/step/pass_traits.hpp"
 #include "core/step/passes.hpp"
 #include "core/transfer/list.hpp"
 
@@ -40,11 +40,12 @@ NodeBlockShape node_block_of(const Scene& scene) {
   return with_shape(scene.grid.shape, []<class S>(std::type_identity<S>) { return S::node_block; });
 }
 
-int mass_doubles_of(const Scene& scene) {
-  if (scene.solution.mass == MassMatrix::lumped) return 0;
-  return with_shape(scene.grid.shape, []<class S>(std::type_identity<S>) {
-    const int moments = trilinear_on_lattice<S> ? cell_mass::doubles * cell_mass::cells : 0;
-    return 2 * node_doubles * S::node_block.nodes() + moments;
+int product_doubles_of(const Scene& scene) {
+  const SolutionInput& solution = scene.solution;
+  const int vectors = solution.mass == MassMatrix::consistent ? 2 : is_corrected(solution.transfer) ? 1 : 0;
+  return with_shape(scene.grid.shape, [&]<class S>(std::type_identity<S>) {
+    const int moments = multiplies_by_cells<S>(solution) ? cell_mass::brick_doubles : 0;
+    return vectors * node_doubles * S::node_block.nodes() + moments;
   });
 }
 

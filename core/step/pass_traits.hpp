@@ -8,6 +8,7 @@
 #include "core/grid/node_fields.hpp"
 #include "core/material/batch.hpp"
 #include "core/model.hpp"
+#include "core/shape/cell_mass.hpp"
 #include "core/shape/linear.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/loads.hpp"
@@ -15,6 +16,13 @@
 #include "core/transfer/corrected.hpp"
 
 namespace mpm::core {
+
+/// Whether products with the mass matrix go by the moments of cells: their sums cost about as much as one
+/// product by the particles, which is all that order 2 needs.
+template <ShapePolicy S>
+bool multiplies_by_cells(const SolutionInput& solution) {
+  return trilinear_on_lattice<S> && (solution.mass == MassMatrix::consistent || orders_of(solution) > 2);
+}
 
 template <ShapePolicy S, TransferPolicy T>
 struct PassTraits {

@@ -93,7 +93,7 @@ NodeBlockShape node_block_of(const Scene& scene);
 /// The node arrays that the scene's scheme and its heat conduction use.
 NodeArraySet node_arrays_of(const Scene& scene, bool conducts);
 
-/// Doubles that solutions with the consistent mass matrix keep for a brick; 0 with lumped mass.
-int mass_doubles_of(const Scene& scene);
+/// Doubles that XPIC, FMPM and solutions with the consistent mass matrix keep for a brick; 0 without.
+int product_doubles_of(const Scene& scene);
 
 }  // namespace mpm::core

@@ -1,6 +1,7 @@
 // The passes (passes.hpp) with shape functions S and transfer T. scheme_passes.hpp has what each does in
 // which order, brick by brick; operations on a brick, a block or a batch are functions of their own
-// (map_operations.hpp, brick_operations.hpp, contact_operations.hpp, correct_velocities.hpp, solve_mass.hpp);
+// (map_operations.hpp, brick_operations.hpp, contact_operations.hpp, correct_velocities.hpp, solve_mass.hpp,
+// mass_products.hpp);
 // brick_order.hpp has the order of bricks and blocks and the prefetching. Instantiated once per pair
 // (passes_<shape>.cpp), through make_passes_with alone: the compiler inlines members of a class template that
 // is instantiated explicitly less freely (5 % of MUSL's time).
@@ -236,7 +237,6 @@ class PassesWith final : public Passes {
   // Corrections of the velocities (correct_velocities.hpp).
   void begin_corrections();
   void add_order(Slot s, int order, std::int32_t component, std::size_t k, Scratch& at);
-  void map_increments(Slot s, std::int32_t component, const double* increments, Scratch& at);
   void begin_orders(Slot s, Scratch& at);
   void meet_corrected(Slot s, Scratch& at);
   /// The nodes' sums of velocities v(l) of the field number `k` of those that the brick sees, in
@@ -251,8 +251,6 @@ class PassesWith final : public Passes {
   void begin_mass();
   void begin_solution(Slot s, MassSystem system, Scratch& at);
   void end_solution(Slot s, MassSystem system, Scratch& at);
-  void sum_cell_masses(Slot s);
-  void map_product(Slot s, Scratch& at);
   void take_solved_motion(Slot s, Scratch& at);
   void take_solved_strain(Slot s, Scratch& at);
   /// Their records (mass_solution.hpp).
@@ -263,9 +261,16 @@ class PassesWith final : public Passes {
     return direction_.data() + static_cast<std::size_t>(record_count()) * static_cast<std::size_t>(s);
   }
 
-  static constexpr int cell_mass_doubles = cell_mass::doubles * cell_mass::cells;
-  double* cell_masses(Slot s) {
-    return cell_masses_.data() + static_cast<std::size_t>(cell_mass_doubles) * static_cast<std::size_t>(s);
+  // Products with the mass matrix, for both (mass_products.hpp).
+  using ProductSums = typename S::template Sums<mapped::correction>;
+  void begin_products();
+  void sum_cell_masses(Slot s, std::int32_t component, double* moments);
+  void add_product_by_cells(Slot s, std::int32_t component, Scratch& at, ProductSums& to);
+  void add_product_by_particles(Slot s, std::int32_t component, const Scratch& at, ProductSums& to);
+  void map_product(Slot s, std::int32_t component, const double* increments, Scratch& at);
+  /// The moments of the field number `k` of those that the brick sees.
+  double* cell_masses(Slot s, std::size_t k) {
+    return cell_masses_.data() + static_cast<std::size_t>(cell_mass::brick_doubles) * seen_index(s, k);
   }
 
   /// Whether particles move with the corrected velocities in this step.
@@ -377,7 +382,8 @@ class PassesWith final : public Passes {
   AlignedDoubles motion_;
   AlignedDoubles corrected_;    ///< XPIC, FMPM: corrected_nodes()
   AlignedDoubles solution_;     ///< by slot; consistent mass: solution()
-  AlignedDoubles cell_masses_;  ///< by slot; consistent mass: cell_masses()
+  const bool by_cells_;         ///< multiplies_by_cells()
+  AlignedDoubles cell_masses_;  ///< where by_cells_: cell_masses()
   bool masses_known_ = false;   ///< in this step
   AlignedDoubles direction_;    ///< by slot; consistent mass: direction()
   /// Whether the velocities' ranges tell in which bricks the strain may jump: with affine transfers nodes
@@ -408,6 +414,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       transfer_(model.scene->solution),
       scheme_(model.scene->solution.scheme),
       orders_(orders_of(model.scene->solution)),
+      by_cells_(multiplies_by_cells<S>(model.scene->solution)),
       finds_ranges_(strain_may_jump(model) && !is_affine(model.scene->solution.transfer)) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = solution.gravity;
@@ -440,6 +447,7 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
 #include "core/step/contact_operations.hpp"
 #include "core/step/correct_velocities.hpp"
 #include "core/step/map_operations.hpp"
+#include "core/step/mass_products.hpp"
 #include "core/step/scheme_passes.hpp"
 #include "core/step/solve_mass.hpp"
 

@@ -12,9 +12,7 @@ void PassesWith<S, T>::begin_mass() {
     const auto owned = static_cast<std::size_t>(model_.grid->owned());
     solution_.resize(static_cast<std::size_t>(record_count()) * owned);
     direction_.resize(static_cast<std::size_t>(record_count()) * owned);
-    if constexpr (trilinear_on_lattice<S>)
-      cell_masses_.resize(static_cast<std::size_t>(cell_mass_doubles) * owned);
-    masses_known_ = !trilinear_on_lattice<S>;
+    begin_products();
   }
 }
 
@@ -61,64 +59,17 @@ void PassesWith<S, T>::end_solution([[maybe_unused]] Slot s, [[maybe_unused]] Ma
   }
 }
 
-/// The moments of the brick's cells, once per step.
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::sum_cell_masses([[maybe_unused]] Slot s) {
-  if constexpr (Traits::solves && trilinear_on_lattice<S>) {
-    const BrickFrame frame = this->frame(s);
-    double* moments = cell_masses(s);
-    std::fill_n(moments, cell_mass_doubles, 0.0);
-    cell_mass::Sums sums;
-    for_each_block(s, all_components, columns_to_mass,
-                   [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
-                     const Place place(frame, layout, block);
-                     const double* m = block + layout.offset(Column::mass);
-                     for (int i = 0; i < used; ++i) sums.add(place, i, m[i], moments);
-                   });
-    sums.flush(moments);
-  }
-}
-
-/// Maps the product of the consistent mass with the directions: by cells, or by particles.
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::map_product([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
-  if constexpr (Traits::solves && trilinear_on_lattice<S>) {
-    constexpr NodeFields what = mapped::correction;
-    const BrickFrame frame = this->frame(s);
-    const double* moments = cell_masses(s);
-    double* contributions = model_.grid->contributions(what.array, s);
-    std::fill_n(contributions, record_doubles(what.array) * shared_.nodes(), 0.0);
-    typename S::template Sums<what> sums(contributions);
-    typename S::template Scatter<what> cell;
-    at.corrected.take_motion(direction(s));
-    const double* d = at.corrected.increment();
-    for (int c = 0; c < cell_mass::cells; ++c, moments += cell_mass::doubles) {
-      if (moments[cell_mass::in_use] == 0) continue;
-      cell.clear();
-      cell.node = cell_mass::lowest_point(c);
-      cell_mass::multiply(moments, d, cell.node, cell.sums.px, cell.sums.py, cell.sums.pz);
-      cell.flush(frame, sums.records);
-    }
-    sums.finish(frame);
-    if constexpr (S::node_block != NodeBlockShape{}) faces(s).fold(what, contributions);
-  } else if constexpr (Traits::solves) {
-    map_increments(s, all_components, direction(s), at);
-  }
-}
-
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::solve_mass([[maybe_unused]] MassSystem system) {
   if constexpr (Traits::solves) {
     const int owned = model_.grid->owned();
     const MotionVector u = system == MassSystem::increment ? Motion::increment_at : Motion::velocity_at;
-    for_bricks(0, owned, [&](Slot s, Scratch& at) {
-      if (!masses_known_) sum_cell_masses(s);
-      begin_solution(s, system, at);
-    });
-    masses_known_ = true;
+    for_bricks(0, owned, [&](Slot s, Scratch& at) { begin_solution(s, system, at); });
     bool first = true;
     for (const MassIteration::Step& step : transfer_.iteration.steps()) {
-      map_bricks<mapped::correction>([&](Slot s, Scratch& at) { map_product(s, at); });
+      map_bricks<mapped::correction>(
+          [&](Slot s, Scratch& at) { map_product(s, all_components, direction(s), at); });
+      masses_known_ = true;
       halo_.end(*model_.grid);
       for_bricks(0, owned, [&](Slot s, Scratch& at) {
         sum_contributions<NodeArray::third>(*model_.grid, momentum_shared_, s, at.sums.data());

@@ -21,9 +21,10 @@
 // lead through that wall comes to rest (and with FMPM and MUSL strains nothing then). Nodes below the mass
 // cutoff take no part. In contact each component has maps of its own; dv(1) follows from the velocities that
 // contact leaves, and contact acts on v(m) again: what sticks stays so, what slides is held along the
-// normal, and nothing else approaches (core/contact/contact_impulses.cpp). Each order beyond the
-// first is a pass over the particles and an exchange. With an interval n only every n-th step corrects, by
-// its number; the others are FLIP. Shown by tests/core/step/correction_test.cpp and oracle_test.cpp.
+// normal, and nothing else approaches (core/contact/contact_impulses.cpp). Each order beyond the first is a
+// product with M, over the particles or the cells (core/step/mass_products.hpp), and an exchange. With an
+// interval n only every n-th step corrects, by its number; the others are FLIP. Shown by
+// tests/core/step/correction_test.cpp and oracle_test.cpp.
 #pragma once
 
 #include <cstdint>
