@@ -42,8 +42,8 @@ def energy_factor():
 
 @functools.cache
 def of_source(edge, cells=1200):
-    """Radius and density of the gas at t = 1, when the energy is set free in a sphere with the volume of eight cubes of this
-    edge, and its total energy over that at the start: in one dimension, Lagrangian, with artificial viscosity
+    """Radius, mass over 4 pi and density of shells of the gas at t = 1, when the energy is set free in a sphere with the volume
+    of eight cubes of this edge, and the total energy over that at the start: in one dimension, Lagrangian, with artificial viscosity
     (J. von Neumann and R. D. Richtmyer, J. Appl. Phys. 21 (1950) 232)."""
     node = np.linspace(0, 1.1 * ROOM, cells + 1)
     mass, density = np.diff(node**3) / 3, np.ones(cells)  # of shells, over 4 pi
@@ -68,7 +68,7 @@ def of_source(edge, cells=1200):
         energy = (energy - work * 0.5 * (pressure + before + viscous)) / (1 + 0.5 * (GAMMA - 1) * density * work)
         time, last = time + dt, dt
     total = (mass * energy).sum() + 0.5 * (carried * speed[1:] ** 2).sum()
-    return 0.5 * (node[1:] + node[:-1]), density, total / first
+    return 0.5 * (node[1:] + node[:-1]), mass, density, total / first
 
 
 class Sedov(Case):
@@ -77,8 +77,8 @@ class Sedov(Case):
     about = """An ideal gas (gamma 1.4, density 1) at rest, almost without pressure, in whose corner, between symmetry planes,
 the energy is set free that drives the exact shock of a source without extent to R = 1 at t = 1: in a cube of edge 0.2, or in
 one cell. Reference: of the cube, a sphere of the same volume computed in one dimension with 1,200 cells; of one cell, the
-exact solution. Error: mean over the mass within 1.2 of the density's error over shells, over the density behind the
-shock. *Radius*: where the density, averaged over shells a cell thick, is highest, over that of the reference."""
+exact solution. Error: mean over the mass within 1.2 of the error of the density, over that behind the shock; densities are
+means by mass over shells a cell thick. *Radius*: where that is highest, over the radius of the reference's shock."""
     errors = {"density": Error("L1 error of density, %", ".2f", 100), "radius": Error("radius of the peak, %", "+.1f", 100, order=False),
               "peak": Error("peak density, %", "+.1f", 100, order=False), "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {"cells": Study("cells along the edge of the octant, 1.2; source of 0.2; factor 0.4.", (6, 12, 24, 36), 0.4),
@@ -102,25 +102,32 @@ shock. *Radius*: where the density, averaged over shells a cell thick, is highes
                              materials, support.pictures(1.0, ["density"]))
 
     def reference(self, point):
-        """Radius and density, and the radius of the shock."""
+        """Radius, mass and density of thin shells, and the radius of the shock."""
         if point.study == "cells":
-            r, density, _ = of_source(SOURCE)
-            return r, density, float(r[np.argmax(density)])
-        r, density, _, _ = similarity()
-        return np.append(r, [RADIUS, ROOM]), np.append(JUMP * density, [1, 1]), RADIUS
+            r, mass, density, _ = of_source(SOURCE)
+            return r, mass, density, float(r[np.argmax(density)])
+        r, exact, _, _ = similarity()
+        edge = np.linspace(0, ROOM, 12001)
+        middle = 0.5 * (edge[1:] + edge[:-1])
+        density = np.where(middle < RADIUS, JUMP * np.interp(middle, r, exact), 1.0)
+        return middle, density * np.diff(edge**3) / 3, density, RADIUS
 
     def measure(self, point, folder):
-        states, h = support.States(folder), ROOM / point.cells
+        states, shells = support.States(folder), point.cells
         radius = np.linalg.norm(support.places(states), axis=1)
-        density = states.column("density")
-        inside = radius < ROOM
-        shell = np.floor(radius[inside] / h).astype(int)
-        count = np.maximum(np.bincount(shell), 1)
-        found, middle = np.bincount(shell, density[inside]) / count, np.bincount(shell, radius[inside]) / count
-        r, exact, shock = self.reference(point)
-        wanted = np.interp(middle, r, exact)
+
+        def means(radius, mass, density):
+            """Mass of each shell, its mean radius and density."""
+            inside = radius < ROOM
+            shell = np.floor(radius[inside] * shells / ROOM).astype(int)
+            total = np.bincount(shell, mass[inside], shells)
+            return total, *(np.bincount(shell, (mass * of)[inside], shells) / np.maximum(total, 1e-300) for of in (radius, density))
+
+        _, middle, found = means(radius, np.ones(len(radius)), states.column("density"))
+        r, mass, density, shock = self.reference(point)
+        weight, _, wanted = means(r, mass, density)
         top = np.argmax(found)
-        return {"density": float((np.abs(found - wanted) * count).sum() / count.sum() / JUMP),
+        return {"density": float((np.abs(found - wanted) * weight).sum() / weight.sum() / JUMP),
                 "radius": middle[top] / shock - 1, "peak": found[top] / JUMP - 1, "drift": support.drift(folder)}
 
 
