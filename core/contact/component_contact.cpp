@@ -25,12 +25,12 @@ double normal_weight(const Scene& scene, std::size_t component, std::size_t mate
                                          : scene.components[component].normal_weight;
 }
 
-double friction_of(const Scene& scene, std::size_t material, std::size_t other) {
+Friction friction_of(const Scene& scene, std::size_t material, std::size_t other) {
   for (const FrictionPair& pair : scene.frictions)
     if ((pair.first_material == material && pair.second_material == other) ||
         (pair.first_material == other && pair.second_material == material))
-      return pair.coefficient;
-  return 0;
+      return pair.friction;
+  return {};
 }
 
 }  // namespace mpm::core

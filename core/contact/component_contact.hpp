@@ -22,7 +22,7 @@ bool has_reaction(const Scene& scene, const BodyInput& body);
 /// auto_normal_vector_weight, by stiffness.
 double normal_weight(const Scene& scene, std::size_t component, std::size_t material);
 
-/// Coulomb's coefficient of two materials; 0 where the input gives none.
-double friction_of(const Scene& scene, std::size_t material, std::size_t other);
+/// Of two materials; none where the input gives none.
+Friction friction_of(const Scene& scene, std::size_t material, std::size_t other);
 
 }  // namespace mpm::core

@@ -57,7 +57,7 @@ Contact::Contact(const Model& model, const RigidBodies* rigid)
       regresses_ = regresses_ || input.ignore_failed_normals || weight_[a] != weight_[b] ||
                    by_regression(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
   const std::size_t materials = model.materials.size();
-  friction_.assign(materials * materials, 0.0);
+  friction_.assign(materials * materials, {});
   for (std::size_t a = 0; a < materials; ++a)
     for (std::size_t b = 0; b < materials; ++b) friction_[a * materials + b] = friction_of(scene, a, b);
 }

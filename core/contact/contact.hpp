@@ -58,6 +58,7 @@ struct MeetingNodes {
   struct Pair {
     int first = 0, second = 0;  ///< numbers of the fields, among those that the brick sees
     Vec3<double> normal{};      ///< from the first to the second
+    bool shears = false;        ///< above the rough surface of a rigid body
   };
   struct Node {
     int number = 0;      ///< in the node block
@@ -186,7 +187,7 @@ class Contact {
   ContactSurface surface(const FieldNodes& field, int node) const;
   bool by_regression(std::int32_t a, std::int32_t b) const;
   bool are_rigid_and_meet(std::int32_t a, std::int32_t b) const;
-  double friction(std::int32_t a, std::int32_t b) const;
+  Friction friction(std::int32_t a, std::int32_t b) const;
   /// Number of the rigid body that is a component; -1: none.
   int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
   void take_surfaces(const BrickGrid& grid, const SharedNodes& shared, Slot s,
@@ -229,11 +230,11 @@ class Contact {
   bool to_faces_ = false;              ///< gaps between the particles' faces
   bool limits_time_step_ = false;
   TransferOfStep transfer_;
-  std::vector<bool> has_failed_;  ///< by component; all false unless their normals are excluded
-  std::vector<double> weight_;    ///< of normals, by component
-  std::vector<double> wave_;      ///< largest wave speed at the start, by component; 0: rigid, or failed
-  std::vector<int> material_;     ///< by component; -1 without bodies
-  std::vector<double> friction_;  ///< by two materials
+  std::vector<bool> has_failed_;    ///< by component; all false unless their normals are excluded
+  std::vector<double> weight_;      ///< of normals, by component
+  std::vector<double> wave_;        ///< largest wave speed at the start, by component; 0: rigid, or failed
+  std::vector<int> material_;       ///< by component; -1 without bodies
+  std::vector<Friction> friction_;  ///< by two materials
   ContactPairs pairs_;
   std::vector<std::size_t> seen_begin_{0};
   std::vector<std::int32_t> seen_;

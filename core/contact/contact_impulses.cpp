@@ -46,9 +46,9 @@ struct Contact::Node {
   }
 };
 
-double Contact::friction(std::int32_t a, std::int32_t b) const {
+Friction Contact::friction(std::int32_t a, std::int32_t b) const {
   const int first = material_[static_cast<std::size_t>(a)], second = material_[static_cast<std::size_t>(b)];
-  if (first < 0 || second < 0) return 0;
+  if (first < 0 || second < 0) return {};
   return friction_[static_cast<std::size_t>(first) * model_.materials.size() +
                    static_cast<std::size_t>(second)];
 }
@@ -70,7 +70,8 @@ bool Contact::find_pairs(std::span<const FieldNodes> fields, std::span<const Mee
     if (at.rigid[a] >= 0 && at.rigid[b] >= 0 && rigid_->is_free(at.rigid[a]) == rigid_->is_free(at.rigid[b]))
       continue;
     const std::int32_t first = fields[at.number[a]].component, second = fields[at.number[b]].component;
-    at.pairs.push_back({static_cast<int>(a), static_cast<int>(b), pair.normal, friction(first, second)});
+    const double coefficient = pair.shears ? 0.0 : friction(first, second).coefficient;
+    at.pairs.push_back({static_cast<int>(a), static_cast<int>(b), pair.normal, coefficient});
     at.recorded.push_back(pairs_.number(first, second));
   }
   return !at.pairs.empty();

@@ -97,7 +97,7 @@ void Contact::find_meetings(const BrickGrid& grid, const SharedNodes& shared, Sl
 /// Drops the pairs without a normal, and finds the outward ones.
 void Contact::complete(Slot s, std::span<const FieldNodes> fields) {
   MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
-  at.filter([](std::size_t, const MeetingNodes::Pair& pair) { return pair.normal != Vec3<double>{}; });
+  at.filter([](std::size_t, MeetingNodes::Pair& pair) { return pair.normal != Vec3<double>{}; });
   if (!measures_gaps()) return;
   const int count = static_cast<int>(seen(s).size());
   for (const MeetingNodes::Node& node : at.nodes) {
@@ -352,8 +352,20 @@ void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& share
   const auto held = [&](int field, const double* of_node) {
     return rigid(components[static_cast<std::size_t>(field)]) < 0 || of_node[field] >= lowest_reach;
   };
-  at.filter([&](std::size_t n, const MeetingNodes::Pair& pair) {
+  // Material that sticks to the nodes which a body holds yields in the next layer of cells, on average half a
+  // cell above the highest of them. So the friction of a rough surface acts at the nodes inside the body
+  // alone, on average half a cell below it; it has no bound there that nodes above had to add to.
+  constexpr double round_off = 1e-9;
+  const auto above_rough = [&](const MeetingNodes::Pair& pair, const double* of_node) {
+    const std::int32_t first = components[static_cast<std::size_t>(pair.first)],
+                       second = components[static_cast<std::size_t>(pair.second)];
+    const bool is_first = rigid(first) >= 0;
+    return friction(first, second).rough && is_first != (rigid(second) >= 0) &&
+           of_node[is_first ? pair.first : pair.second] < -round_off * grid.geometry().smallest_cell();
+  };
+  at.filter([&](std::size_t n, MeetingNodes::Pair& pair) {
     const double* of_node = reach.data() + n * components.size();
+    pair.shears = above_rough(pair, of_node);
     const bool holds = held(pair.first, of_node) && held(pair.second, of_node);
     if (!holds && by_regression(components[static_cast<std::size_t>(pair.first)],
                                 components[static_cast<std::size_t>(pair.second)]))

@@ -48,7 +48,7 @@ ImplicitContact::ImplicitContact(Model& model, RigidBodies* rigid, NodeUnknowns&
     stiffness_[c] = std::max(stiffness_[c], body.model->reference_density() * speed * speed * h);
     weight_[c] = std::max(weight_[c], normal_weight(scene, c, static_cast<std::size_t>(body.material)));
   }
-  friction_.assign(components * components, 0.0);
+  friction_.assign(components * components, {});
   for (std::size_t a = 0; a < components; ++a)
     for (std::size_t b = 0; b < components; ++b)
       if (material[a] >= 0 && material[b] >= 0)
@@ -158,7 +158,8 @@ void ImplicitContact::find_nodes(ImplicitPasses& passes, std::span<const double>
         const std::size_t first = turned ? b : a, second = turned ? a : b;
         Vec3<double> normal;
         if (touch(meeting.surfaces[first], meeting.surfaces[second], normal))
-          add_touch(number[first], number[second], meeting.place, normal);
+          add_touch(number[first], number[second], meeting.place, normal,
+                    coefficient(meeting.surfaces[first], meeting.surfaces[second]));
       }
     }
   }
@@ -221,8 +222,18 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
   return first.volume + second.volume >= least_cover * std::max(slope(first), slope(second));
 }
 
+/// Of friction between two components at a node. That of a rough rigid body, the first, acts inside it alone,
+/// as in explicit steps (core/contact/contact_meetings.cpp): where the other one does not fill more of the
+/// node's cell.
+double ImplicitContact::coefficient(const Surface& first, const Surface& second) const {
+  constexpr double round_off = 1e-6;
+  const Friction& of_pair = friction(first.component, second.component);
+  const bool is_above = first.volume < (1 - round_off) * second.volume;
+  return of_pair.rough && rigid(first.component) >= 0 && is_above ? 0.0 : of_pair.coefficient;
+}
+
 void ImplicitContact::add_touch(std::size_t first, std::size_t second, const Vec3<double>& place,
-                                const Vec3<double>& normal) {
+                                const Vec3<double>& normal, double coefficient) {
   const Member &a = members_[first], &b = members_[second];
   if (a.held == 7 && b.held == 7) return;
   const double k_a = stiffness_[static_cast<std::size_t>(a.component)],
@@ -233,7 +244,7 @@ void ImplicitContact::add_touch(std::size_t first, std::size_t second, const Vec
               normal,
               rigidity * std::max(k_a, k_b),
               k_a > 0 && k_b > 0 ? k_a * k_b / (k_a + k_b) : std::max(k_a, k_b),
-              friction(a.component, b.component)};
+              coefficient};
   touch.counts = (a.number >= 0 ? a.own : b.own) != no_own;
   touch.sticks = touch.coefficient > 0;
   const auto last = last_.find(key_of(touch));

@@ -124,7 +124,7 @@ class ImplicitContact {
   }
   /// Whether any two components have friction.
   bool rubs() const {
-    return std::ranges::any_of(friction_, [](double f) { return f > 0; });
+    return std::ranges::any_of(friction_, [](const Friction& f) { return f.coefficient > 0; });
   }
   /// Over this rank's touches.
   struct Changes {
@@ -177,12 +177,13 @@ class ImplicitContact {
   };
   std::vector<Meeting> find_meetings(ImplicitPasses& passes);
   std::size_t add_member(const Surface& surface, const Vec3<double>& place);
-  void add_touch(std::size_t first, std::size_t second, const Vec3<double>& place,
-                 const Vec3<double>& normal);
+  void add_touch(std::size_t first, std::size_t second, const Vec3<double>& place, const Vec3<double>& normal,
+                 double coefficient);
   bool touch(const Surface& first, const Surface& second, Vec3<double>& normal) const;
+  double coefficient(const Surface& first, const Surface& second) const;
   void find_stops(std::span<const double> velocity_at_end, double least_mass);
   int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
-  double friction(std::int32_t a, std::int32_t b) const {
+  const Friction& friction(std::int32_t a, std::int32_t b) const {
     return friction_[static_cast<std::size_t>(a) * stiffness_.size() + static_cast<std::size_t>(b)];
   }
   Vec3<double> relative(const Touch& touch) const {
@@ -193,9 +194,9 @@ class ImplicitContact {
   RigidBodies* rigid_;
   NodeUnknowns& unknowns_;
   ContactPairs pairs_;
-  std::vector<double> stiffness_;  ///< of a cell, by component, force/length; 0: rigid
-  std::vector<double> weight_;     ///< of normals, by component
-  std::vector<double> friction_;   ///< by two components
+  std::vector<double> stiffness_;   ///< of a cell, by component, force/length; 0: rigid
+  std::vector<double> weight_;      ///< of normals, by component
+  std::vector<Friction> friction_;  ///< by two components
   double dt_ = 0;
   std::int64_t step_ = -1;  ///< the last that has been begun
   std::vector<Member> members_;

@@ -63,11 +63,22 @@ struct MaterialInput {
   SourceLocation source;
 };
 
-/// Coulomb friction between two materials; indices into Scene::materials.
+/// Between the surfaces of two materials.
+struct Friction {
+  double coefficient = 0;  ///< Coulomb's, >= 0
+  /// What is pressed together does not slide: the weaker material shears instead.
+  bool rough = false;
+
+  /// Of rough surfaces: more shear for its pressure than any material bears.
+  static constexpr double of_rough = 1e3;
+  bool operator==(const Friction&) const = default;
+};
+
+/// Friction of two materials; indices into Scene::materials.
 struct FrictionPair {
   std::size_t first_material = 0;
   std::size_t second_material = 0;
-  double coefficient = 0;  ///< >= 0
+  Friction friction;
 };
 
 }  // namespace mpm::core

@@ -135,7 +135,13 @@ std::vector<core::FrictionPair> build_frictions(const Node& root,
     if (std::ranges::any_of(
             pairs, [&](const auto& p) { return p.first_material == low && p.second_material == high; }))
       node.report(context.diagnostics, "the friction of this pair of materials is given twice");
-    pairs.push_back({low, high, node.real("value")});
+    const std::optional<double> value = node.given_real("value");
+    const bool rough = node.boolean("rough");
+    if (value && rough)
+      node.report(context.diagnostics, "value", "rough surfaces do not slide: remove value or rough");
+    if (!value && !rough && node.find("value") == nullptr)
+      node.report(context.diagnostics, "expected value, the coefficient of friction, or rough=\"1\"");
+    pairs.push_back({low, high, {rough ? core::Friction::of_rough : node.real("value"), rough}});
   }
   return pairs;
 }

@@ -40,10 +40,11 @@ void check_friction(const Node& node, std::size_t c, const std::vector<Bodies>& 
     for (const std::size_t theirs : materials_of(bodies[other])) {
       for (const std::size_t material : mine) {
         if (material >= scene.materials.size() || theirs >= scene.materials.size()) return;
-        const double friction = core::friction_of(scene, material, theirs),
-                     of_first = core::friction_of(scene, mine.front(), theirs);
+        const core::Friction friction = core::friction_of(scene, material, theirs),
+                             of_first = core::friction_of(scene, mine.front(), theirs);
         // Not-a-number: a wrong value, which has been reported.
-        if (friction == of_first || std::isnan(friction) || std::isnan(of_first)) continue;
+        if (friction == of_first || std::isnan(friction.coefficient) || std::isnan(of_first.coefficient))
+          continue;
         return node.report(
             context.diagnostics,
             fmt::format("its materials '{}' and '{}' have different friction against '{}': contact has one "

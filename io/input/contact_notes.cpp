@@ -95,6 +95,25 @@ void note_free(const Node& root, const core::Scene& scene, std::vector<core::Dia
                                free->name)});
 }
 
+/// Explicit steps know a rigid body's surface only where gaps are measured.
+void note_rough(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const std::optional<Node> friction = root.child("Friction");
+  if (!friction || scene.contact.measures_gaps() || scene.solution.integration == core::Integration::implicit)
+    return;
+  const auto named_rigid = [&](const std::string& name) {
+    const auto material = std::ranges::find(scene.materials, name, &core::MaterialInput::name);
+    return material != scene.materials.end() && core::is_rigid(*material);
+  };
+  for (const Node& pair : friction->children("Coefficient")) {
+    if (!pair.boolean("rough") || !(named_rigid(pair.word("mat1")) || named_rigid(pair.word("mat2"))))
+      continue;
+    notes.push_back(
+        {scene.provenance.path, pair.line(), "Coefficient", "rough", "1",
+         "what sticks is held up to two cells above the rigid body, since gaps are not measured. Give "
+         "Contact distance_type and min_distance"});
+  }
+}
+
 /// The largest set of deformable components whose normals have the same weight; two spheres have no edges.
 std::vector<std::size_t> tied_components(const core::Scene& scene) {
   struct Of {
@@ -218,6 +237,7 @@ void note_contact(const Node& root, const core::Scene& scene, std::vector<core::
   note_driven(scene, notes);
   note_without_law(root, scene, notes);
   note_free(root, scene, notes);
+  note_rough(root, scene, notes);
   note_scheme(root, scene, notes);
   note_tied_weights(root, scene, notes);
   note_pairs(root, scene, notes);

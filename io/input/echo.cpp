@@ -80,7 +80,10 @@ void echo_frictions(XmlWriter& w, const core::Scene& scene) {
   const auto scope = w.element("Friction");
   for (const core::FrictionPair& pair : scene.frictions) {
     const auto element = w.element("Coefficient");
-    w.number("value", pair.coefficient);
+    if (pair.friction.rough)
+      w.flag("rough", true);
+    else
+      w.number("value", pair.friction.coefficient);
     w.text("mat1", scene.materials[pair.first_material].name);
     w.text("mat2", scene.materials[pair.second_material].name);
   }

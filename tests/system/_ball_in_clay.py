@@ -11,9 +11,6 @@ STRENGTH, SHEAR = 0.01, 1.0  # MPa: k, the strength in simple shear, Yield0/sqrt
 WAVES = math.sqrt(SHEAR / DENSITY)  # m/s, of shear
 # Limit load over pi R^2 k, von Mises, without walls: the elements of tests/validation/_ball_flow.py.
 FACTORS = {"smooth": 10.26, "rough": 14.12}
-# Cells by which the rigid body is smaller than the ball. Clay that sticks to it moves with it at the nodes up to 0.7 cells above its
-# surface (docs/contact.md) and shears outside of them; without friction it slides at the surface.
-INSET = {"smooth": 0.0, "rough": 0.7}
 RAMP = 0.02  # of the radius: the way in which the ball gets its speed
 
 
@@ -26,18 +23,20 @@ def ramp_end(speed):
     return 2 * RAMP * RADIUS / (speed * WAVES)
 
 
-def text(cells, ball="rough", shape="QuadraticBSpline", inset=None, speed=0.01, width=4, travel=None, poisson=0.49, averaging="cell", pressure=20,
+def text(cells, ball="rough", shape="QuadraticBSpline", inset=0, friction=None, speed=0.01, width=4, travel=None, poisson=0.49, averaging="cell", pressure=20,
          normal="regression", kind=1, transfer="FLIP", flip=1):
-    """`cells`: over the ball's radius; `speed`: over that of shear waves; `width`: of the quarter of clay and half of its height, and
+    """`cells`: over the ball's radius; `inset`: cells by which the body is smaller than the ball; `friction`: Coulomb's instead of a
+    rough or smooth surface; `speed`: over that of shear waves; `width`: of the quarter of clay and half of its height, and
     `travel`, of the ball: over the radius; `pressure`: in the clay at the start, over k."""
-    cell, inset = RADIUS / cells, INSET[ball] if inset is None else inset
+    cell = RADIUS / cells
+    surface = {"rough": 1} if ball == "rough" and friction is None else {"rough": 0, "value": friction or 0}
     wide, v, ramp = round(width * cells) * cell, speed * WAVES, ramp_end(speed)
     end = ramp / 2 + (travel or travel_of(cells)) * RADIUS / v
     bulk = 2 * SHEAR * (1 + poisson) / (3 * (1 - 2 * poisson))
     changes = _gallery.resolution(cell, shape, normal, kind)
     changes[".//PostProcessing"] |= {"time_interval": end}
     changes |= {".//StrengthModel[@Poisson]": {"Young": 2 * SHEAR * (1 + poisson), "Poisson": poisson},
-                ".//Coefficient": {"value": 10 if ball == "rough" else 0},
+                ".//Coefficient": surface,
                 ".//Geometry[@Outer_Radius]": {"Outer_Radius": RADIUS - inset * cell},
                 ".//PrescribedVelocity": {"vz": f"-{v}*min(1, t/{ramp})"},
                 ".//Body[@name='block']/Geometry": {"lx": wide, "ly": wide, "lz": 2 * wide, "z0": -wide},

@@ -20,7 +20,8 @@ def scene(block, plate, velocity, shape="linear", friction=0.0, steps=5, faces="
     moved = 'vx="{}" vy="{}" vz="{}"'.format(*velocity)
     other = _mpm.block("plate", *plate, of="ram", more=f"<PrescribedVelocity {moved}/>")
     solution = _mpm.solution(end, attributes='Integration="impl"', more=f'<Implicit type="{kind}" time_step="{end / steps}" {more}/>')
-    rub = f'<Friction><Coefficient mat1="soft" mat2="ram" value="{friction}"/></Friction>' if friction else ""
+    surface = 'rough="1"' if friction == "rough" else f'value="{friction}"'
+    rub = f'<Friction><Coefficient mat1="soft" mat2="ram" {surface}/></Friction>' if friction else ""
     text = _mpm.scene([solid], _mpm.grid(*grid, faces).replace("<Grid>", f'<Grid shape="{shape}">'),
                       solution.replace('<TimeStep factor="0.5"/>', ""), [SOFT, RAM], output,
                       f'<Contact enable="1" record_contact_force="1" {contact}/>{rub}')
@@ -82,12 +83,12 @@ class ImplicitContact(_mpm.Case):
                         self.assertLess(np.hypot(*drag), 0.5 * friction * pressure)
                     self.assertLess(abs(self.drift(folder)), 0.05)
 
-    def test_the_edge_of_a_smooth_strip_carries_its_part(self):
-        """L. Prandtl's load of a strip on cohesive soil, (2 + pi) c over its width, is the same without friction: the normal at the
-        strip's edge is that of the soil. Two cells over the half of the width; the normal of a corner lost a third of the load."""
+    def test_the_edge_of_a_strip_carries_its_part(self):
+        """L. Prandtl's load of a strip on cohesive soil, (2 + pi) c over its width, is the same without friction and of a rough strip:
+        the normal at the strip's edge is that of the soil. Two cells over the half of the width; the normal of a corner lost a third of the load."""
         cohesion, half, pressed = 1.0, 2.0, 0.16
         soil = _mpm.material("soft", 1.0, f'type="DruckerPrager" Young="500" Poisson="0.3" qfai="0" kfai="{cohesion}" qpsi="0" ten_f="1e6"')
-        for friction, error in ((0.0, 0.05), (0.3, 0.05)):
+        for friction, error in ((0.0, 0.05), (0.3, 0.05), ("rough", 0.05)):
             with self.subTest(friction=friction):
                 text = scene(((0, 0, 0), (8, 1, 4)), ((0, 0, 4), (half, 1, 2)), (0, 0, -pressed), "QuadraticBSpline", friction, 40, "222210",
                              grid=((0, 0, 0), (8, 1, 8))).replace(SOFT, soil)

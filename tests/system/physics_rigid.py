@@ -19,7 +19,8 @@ def held(vx=0.0, vy=0.0, vz=0.0):
 def scene(bodies, grid, solution, soft, friction=0.0, output="", kind=1, distance=SURFACES):
     components = "".join(f'<Component name="c{i}">{body}</Component>' for i, body in enumerate(bodies))
     return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">', soft, RIGID,
-                      f'<Friction><Coefficient value="{friction}" mat1="soft" mat2="iron"/></Friction>', components, grid,
+                      '<Friction><Coefficient {} mat1="soft" mat2="iron"/></Friction>'.format(
+                          'rough="1"' if friction == "rough" else f'value="{friction}"'), components, grid,
                       f'<Contact enable="1" contact_type="{kind}" {distance} record_contact_force="1"/>', solution,
                       f"<Output>{output}</Output>", "</PeneBlast>", ""])
 
@@ -50,13 +51,13 @@ def pressed(shape, end=6.0, output=""):
                  f'<Console print_time="{end / 40}"/>' + output)
 
 
-def thrown(end=1.5, output="", partition="", kind=1, cells=1, algorithm="MUSL"):
+def thrown(end=1.5, output="", partition="", kind=1, cells=1, algorithm="MUSL", friction=0.2):
     """A free rigid brick that strikes a free elastic block off its centre, in empty space; `cells` of the grid along a length of 1."""
     dp = 0.5 / cells
     soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
     bodies = [_mpm.block("block", (2, 2, 2), (6, 6, 3), dp=dp),
               _mpm.block("brick", (2.3, 2.2, 5.4), (2, 3, 2), (0.4, 0.2, -2), dp, of="iron")]
-    text = scene(bodies, _mpm.grid((0, 0, -2), (12, 12, 12), cell=1 / cells), _mpm.solution(end, algorithm), soft, 0.2,
+    text = scene(bodies, _mpm.grid((0, 0, -2), (12, 12, 12), cell=1 / cells), _mpm.solution(end, algorithm), soft, friction,
                  f'<Console print_time="{end / 20}"/><Restart time_interval="{end / 2}"/>' + output, kind)
     return text.replace("</PeneBlast>", partition + "</PeneBlast>")
 
@@ -346,12 +347,12 @@ class Rigid(_mpm.Case):
     def test_same_bits(self):
         """Ranks, threads, partition and restart, with every scheme."""
         metis = '<DomainDecomposition method="metis"/>'
-        for algorithm, others in (("MUSL", ((2, 1, ""), (3, 2, ""), (4, 1, metis))), ("USF", ((2, 2, ""), (3, 1, metis))),
-                                  ("USL", ((2, 2, metis), (3, 1, "")))):
-            one, summary, _ = self.go(thrown(algorithm=algorithm), "one")
+        for algorithm, friction, others in (("MUSL", 0.2, ((2, 1, ""), (3, 2, ""), (4, 1, metis))), ("USF", "rough", ((2, 2, ""), (3, 1, metis))),
+                                            ("USL", 0.2, ((2, 2, metis), (3, 1, "")))):
+            one, summary, _ = self.go(thrown(algorithm=algorithm, friction=friction), "one")
             for ranks, threads, partition in others:
                 with self.subTest(algorithm=algorithm, ranks=ranks):
-                    other, again, _ = self.go(thrown(partition=partition, algorithm=algorithm), f"r{ranks}", ranks=ranks, threads=threads)
+                    other, again, _ = self.go(thrown(1.5, "", partition, algorithm=algorithm, friction=friction), f"r{ranks}", ranks=ranks, threads=threads)
                     self.assertEqual(other, one)
                     self.assertEqual(again["energy"], summary["energy"])
             restart = _mpm.restarts(self.folder / "one")[0]

@@ -8,21 +8,22 @@ import _common  # first: it says where the next one is
 import _ball_flow
 import _ball_in_clay
 
-COLUMNS = {"ball": ("ball", ""), "cells": ("cells over R", "d"), "inset": ("body smaller by, cells", "g"), "width": ("walls at, R", "g"),
+COLUMNS = {"ball": ("ball", ""), "cells": ("cells over R", "d"), "inset": ("body smaller by, cells", "g"), "friction": ("friction", ""), "width": ("walls at, R", "g"),
            "speed": ("speed over c", "g"), "shape": ("shape", ""), "averaging": ("averaging", ""), "contact": ("contact", ""), "mapped": ("transfer", ""),
            "travel": ("way, R", ".2f"),
            "particles": ("particles", "d"), "steps": ("steps", "d"), "factor": ("N", ".2f"), "error": ("error %", "+.1f"), "growth": ("growth %", "+.1f"),
            "scatter": ("scatter %", ".1f"), "drift": ("energy drift %", "+.2f"), "cpu_seconds": ("processor s", ".1f")}
-SAME = ("shape", "averaging", "contact", "mapped")  # in all rows of the first table
+SAME = ("inset", "friction", "shape", "averaging", "contact", "mapped")  # in all rows of the first table
 
 # What a case has unless it says otherwise.
-CHOICE = {"width": 4, "speed": 0.01, "shape": "QuadraticBSpline", "averaging": "cell", "normal": "regression", "kind": 1, "transfer": "FLIP", "flip": 1}
+CHOICE = {"width": 4, "speed": 0.01, "shape": "QuadraticBSpline", "averaging": "cell", "normal": "regression", "kind": 1, "transfer": "FLIP", "flip": 1, "inset": 0, "friction": None}
 CELLS = [{"ball": "rough", "cells": 4, "travel": 0.5}, {"ball": "rough", "cells": 6, "travel": 0.35},
          {"ball": "smooth", "cells": 4, "travel": 0.5}, {"ball": "smooth", "cells": 5, "travel": 0.4}, {"ball": "smooth", "cells": 6, "travel": 0.35},
          {"ball": "smooth", "cells": 4, "travel": 0.5, "speed": 0.005}]
 SMALL = {"cells": 4, "width": 3, "travel": 0.3}
-ROUGH, SMOOTH = {"ball": "rough", "inset": 0, **SMALL}, {"ball": "smooth", "inset": 0, **SMALL}
-CHOICES = [ROUGH | {"width": 4}, ROUGH | {"cells": 6}, *({"ball": "rough", "cells": 4, "travel": 0.5, "inset": 0.5, "width": width} for width in (3, 4, 5)),
+ROUGH, SMOOTH = {"ball": "rough", **SMALL}, {"ball": "smooth", **SMALL}
+CHOICES = [ROUGH | {"width": 4, "friction": 10}, ROUGH | {"cells": 6, "friction": 10},
+           *({"ball": "rough", "cells": 4, "travel": 0.5, "width": width} for width in (3, 5)), ROUGH | {"cells": 6}, ROUGH | {"cells": 8},
            {"ball": "smooth", "cells": 4, "travel": 0.5, "inset": 0.35}, {"ball": "smooth", "cells": 4, "travel": 0.5, "transfer": "AFLIP"},
            {"ball": "smooth", "cells": 4, "travel": 0.5, "flip": 0.99},
            *({"ball": "smooth", **SMALL, "flip": 0.99, **what} for what in ({"cells": 6, "width": 4}, {"cells": 8, "width": 4}, {"cells": 6}, {"cells": 8})), {"ball": "smooth", **SMALL, "cells": 6},
@@ -32,14 +33,14 @@ CHOICES = [ROUGH | {"width": 4}, ROUGH | {"cells": 6}, *({"ball": "rough", "cell
 
 
 def run(folder, case):
-    case = CHOICE | {"inset": _ball_in_clay.INSET[case["ball"]]} | case
+    case = CHOICE | case
     seconds = _common.run(folder, _ball_in_clay.text(**case), _ball_in_clay.JOB)
     return row(folder, case, seconds)
 
 
 def row(folder, case, seconds):
     mapped = case["transfer"] + (f" {case['flip']:g}" if case["flip"] < 1 else "")
-    found = {**case, "contact": f"type {case['kind']}, {case['normal']}", "mapped": mapped, **_ball_in_clay.measure(folder, case["ball"], case["speed"]), "cpu_seconds": seconds}
+    found = {**case, "friction": case["friction"] or case["ball"], "contact": f"type {case['kind']}, {case['normal']}", "mapped": mapped, **_ball_in_clay.measure(folder, case["ball"], case["speed"]), "cpu_seconds": seconds}
     print(" ".join(f"{key} {value}" for key, value in found.items()), flush=True)
     return found
 

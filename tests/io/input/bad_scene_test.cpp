@@ -180,6 +180,12 @@ TEST_CASE("names that refer to others") {
        "<Friction><Coefficient value='0.1' mat1='cu' mat2='cu'/><Coefficient value='0.2' mat1='cu' "
        "mat2='cu'/></Friction><WorkPlane",
        {"line 10: <Coefficient>: the friction of this pair of materials is given twice"}},
+      {"<WorkPlane",
+       "<Friction><Coefficient value='0.1' rough='1' mat1='cu' mat2='cu'/></Friction><WorkPlane",
+       {"line 10: <Coefficient value=\"0.1\">: rough surfaces do not slide: remove value or rough"}},
+      {"<WorkPlane",
+       "<Friction><Coefficient mat1='cu' mat2='cu'/></Friction><WorkPlane",
+       {"line 10: <Coefficient>: expected value, the coefficient of friction, or rough=\"1\""}},
   });
   // A wrong coefficient is said once, and not again as one that differs from itself.
   std::string text = replaced(
