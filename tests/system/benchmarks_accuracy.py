@@ -107,7 +107,7 @@ class Solutions(unittest.TestCase):
         self.assertAlmostEqual(mass, 1 / 3, delta=1e-4)
         self.assertAlmostEqual(sedov.energy_factor(), 0.8511, delta=5e-4)
         # The reference of an extended source keeps its energy, and tends to the exact solution with a small one.
-        r, _, density, energy = sedov.of_source(0.05, 600)
+        r, _, density, energy = sedov.of_source(0.05)
         self.assertAlmostEqual(energy, 1, delta=2e-4)
         self.assertAlmostEqual(r[np.argmax(density)], sedov.RADIUS, delta=1e-3)
 

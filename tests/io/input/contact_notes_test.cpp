@@ -124,15 +124,18 @@ TEST_CASE("settings of contact that others replace, or that meet no case") {
 
 TEST_CASE("a rough rigid surface that nothing measures") {
   const auto notes = [](const std::string& contact) {
-    std::string text = replaced(two_bodies(rigid_bar(), 6, true), "<WorkPlane",
-                                "<Friction><Coefficient rough='1' mat1='cu' mat2='soft'/></Friction><WorkPlane");
-    text = replaced(text, "<Material ",
-                    "<Material name='soft'><ReferenceDensity value='1'/><StrengthModel type='IsoElastic' Young='1' "
-                    "Poisson='0.3'/></Material><Material ");
+    std::string text =
+        replaced(two_bodies(rigid_bar(), 6, true), "<WorkPlane",
+                 "<Friction><Coefficient rough='1' mat1='cu' mat2='soft'/></Friction><WorkPlane");
+    text = replaced(
+        text, "<Material ",
+        "<Material name='soft'><ReferenceDensity value='1'/><StrengthModel type='IsoElastic' Young='1' "
+        "Poisson='0.3'/></Material><Material ");
     text = replaced(text, "name='second' material='cu'", "name='second' material='soft'");
     return std::ranges::count(
         notes_of(replaced(text, "<Solution>", "<Contact enable='1' " + contact + "/><Solution>"), true),
-        "line 10: <Coefficient rough=\"1\">: what sticks is held up to two cells above the rigid body, since gaps "
+        "line 10: <Coefficient rough=\"1\">: what sticks is held up to two cells above the rigid body, since "
+        "gaps "
         "are not measured. Give Contact distance_type and min_distance");
   };
   CHECK(notes("") == 1);
