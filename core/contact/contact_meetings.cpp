@@ -360,7 +360,7 @@ void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& share
     const std::int32_t first = components[static_cast<std::size_t>(pair.first)],
                        second = components[static_cast<std::size_t>(pair.second)];
     const bool is_first = rigid(first) >= 0;
-    return friction(first, second).rough && is_first != (rigid(second) >= 0) &&
+    return to_faces_ && friction(first, second).rough && is_first != (rigid(second) >= 0) &&
            of_node[is_first ? pair.first : pair.second] < -round_off * grid.geometry().smallest_cell();
   };
   at.filter([&](std::size_t n, MeetingNodes::Pair& pair) {

@@ -222,13 +222,13 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
   return first.volume + second.volume >= least_cover * std::max(slope(first), slope(second));
 }
 
-/// Of friction between two components at a node. That of a rough rigid body, the first, acts inside it alone,
-/// as in explicit steps (core/contact/contact_meetings.cpp): where the other one does not fill more of the
-/// node's cell.
+/// Of friction between two components at a node. That of a rough rigid body, the first, acts inside it alone
+/// (core/contact/contact_meetings.cpp): where the other one does not fill more of the node's cell. At a node
+/// of the body's edge it does.
 double ImplicitContact::coefficient(const Surface& first, const Surface& second) const {
-  constexpr double round_off = 1e-6;
+  constexpr double uneven = 0.1;  // strains change the volume at a face that is at a node
   const Friction& of_pair = friction(first.component, second.component);
-  const bool is_above = first.volume < (1 - round_off) * second.volume;
+  const bool is_above = first.volume < (1 - uneven) * second.volume;
   return of_pair.rough && rigid(first.component) >= 0 && is_above ? 0.0 : of_pair.coefficient;
 }
 
@@ -248,7 +248,7 @@ void ImplicitContact::add_touch(std::size_t first, std::size_t second, const Vec
   touch.counts = (a.number >= 0 ? a.own : b.own) != no_own;
   touch.sticks = touch.coefficient > 0;
   const auto last = last_.find(key_of(touch));
-  if (last != last_.end()) std::tie(touch.sticks, touch.friction) = last->second;
+  if (touch.coefficient > 0 && last != last_.end()) std::tie(touch.sticks, touch.friction) = last->second;
   touches_.push_back(touch);
 }
 

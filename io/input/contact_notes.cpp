@@ -95,11 +95,12 @@ void note_free(const Node& root, const core::Scene& scene, std::vector<core::Dia
                                free->name)});
 }
 
-/// Explicit steps know a rigid body's surface only where gaps are measured.
+/// Explicit steps know a rigid body's surface only where gaps are measured between faces.
 void note_rough(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   const std::optional<Node> friction = root.child("Friction");
-  if (!friction || scene.contact.measures_gaps() || scene.solution.integration == core::Integration::implicit)
-    return;
+  const bool knows_faces =
+      scene.contact.measures_gaps() && scene.contact.distance == core::ContactInput::Distance::surfaces;
+  if (!friction || knows_faces || scene.solution.integration == core::Integration::implicit) return;
   const auto named_rigid = [&](const std::string& name) {
     const auto material = std::ranges::find(scene.materials, name, &core::MaterialInput::name);
     return material != scene.materials.end() && core::is_rigid(*material);
@@ -109,8 +110,8 @@ void note_rough(const Node& root, const core::Scene& scene, std::vector<core::Di
       continue;
     notes.push_back(
         {scene.provenance.path, pair.line(), "Coefficient", "rough", "1",
-         "what sticks is held up to two cells above the rigid body, since gaps are not measured. Give "
-         "Contact distance_type and min_distance"});
+         "friction of the rigid body acts at nodes inside it only with distance_type=\"2\" and min_distance; "
+         "without, what sticks is held above it, as far as contact reaches"});
   }
 }
 

@@ -82,6 +82,7 @@ class Contact(Case):
                 ("SGMP", "USL", 1, 'distance_type="2" min_distance="0.1"', ""),
                 ("uGIMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
                 ("DDMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
+                ("DDMP", "MUSL", 1, 'distance_type="2" min_distance="0.1"', "", corrected.format("FMPM")),
                 ("QuadraticBSpline", "USF", 1, "", 'contact_normal="regression"'))):
             with self.subTest(shape=shape, algorithm=algorithm, kind=kind, transfer=transfer):
                 text = scene(shape, algorithm, kind, distance, more=more).replace("<Solution ", f"<Solution {' '.join(transfer)} ")

@@ -83,6 +83,16 @@ class ImplicitContact(_mpm.Case):
                         self.assertLess(np.hypot(*drag), 0.5 * friction * pressure)
                     self.assertLess(abs(self.drift(folder)), 0.05)
 
+    def test_a_rough_plate_shears_what_it_touches(self):
+        """Its face is at nodes: these hold the block as any coefficient of friction would that is large enough, and it does not slide."""
+        found = []
+        for friction in ("rough", 1000.0):
+            text = scene(((3, 3, 0), (3, 3, 2)), ((1, 1, 2), (7, 7, 2)), (0.1, 0.05, -0.02), "linear", friction, faces="000010", grid=((0, 0, 0), (10, 10, 6)))
+            self.run_in(f"held{friction}", [self.write(text)])
+            found.append(self.forces(f"held{friction}"))
+        np.testing.assert_allclose(found[0], found[1], rtol=1e-6)
+        self.assertGreater(np.hypot(*found[0][-1][:2]), found[0][-1][2])
+
     def test_the_edge_of_a_strip_carries_its_part(self):
         """L. Prandtl's load of a strip on cohesive soil, (2 + pi) c over its width, is the same without friction and of a rough strip:
         the normal at the strip's edge is that of the soil. Two cells over the half of the width; the normal of a corner lost a third of the load."""

@@ -78,7 +78,8 @@ class Sedov(Case):
 the energy is set free that drives the exact shock of a source without extent to R = 1 at t = 1: in a cube of edge 0.2, or in
 one cell. Reference: of the cube, a sphere of the same volume computed in one dimension with 1,200 cells; of one cell, the
 exact solution. Error: mean over the mass within 1.2 of the error of the density, over that behind the shock; densities are
-means by mass over shells a cell thick. *Radius*: where that is highest, over the radius of the reference's shock."""
+means by mass over shells a cell thick. *Radius*: mean radius of the shell with the highest density, *peak*: that density, both over
+those of the reference."""
     errors = {"density": Error("L1 error of density, %", ".2f", 100), "radius": Error("radius of the peak, %", "+.1f", 100, order=False),
               "peak": Error("peak density, %", "+.1f", 100, order=False), "drift": Error("energy drift, %", "+.2f", 100, order=False)}
     studies = {"cells": Study("cells along the edge of the octant, 1.2; source of 0.2; factor 0.4.", (6, 12, 24, 36), 0.4),
@@ -102,15 +103,14 @@ means by mass over shells a cell thick. *Radius*: where that is highest, over th
                              materials, support.pictures(1.0, ["density"]))
 
     def reference(self, point):
-        """Radius, mass and density of thin shells, and the radius of the shock."""
+        """Radius, mass and density of thin shells."""
         if point.study == "cells":
-            r, mass, density, _ = of_source(SOURCE)
-            return r, mass, density, float(r[np.argmax(density)])
+            return of_source(SOURCE)[:3]
         r, exact, _, _ = similarity()
         edge = np.linspace(0, ROOM, 12001)
         middle = 0.5 * (edge[1:] + edge[:-1])
         density = np.where(middle < RADIUS, JUMP * np.interp(middle, r, exact), 1.0)
-        return middle, density * np.diff(edge**3) / 3, density, RADIUS
+        return middle, density * np.diff(edge**3) / 3, density
 
     def measure(self, point, folder):
         states, shells = support.States(folder), point.cells
@@ -124,11 +124,10 @@ means by mass over shells a cell thick. *Radius*: where that is highest, over th
             return total, *(np.bincount(shell, (mass * of)[inside], shells) / np.maximum(total, 1e-300) for of in (radius, density))
 
         _, middle, found = means(radius, np.ones(len(radius)), states.column("density"))
-        r, mass, density, shock = self.reference(point)
-        weight, _, wanted = means(r, mass, density)
-        top = np.argmax(found)
+        weight, exact, wanted = means(*self.reference(point))
+        top, highest = np.argmax(found), np.argmax(wanted)
         return {"density": float((np.abs(found - wanted) * weight).sum() / weight.sum() / JUMP),
-                "radius": middle[top] / shock - 1, "peak": found[top] / JUMP - 1, "drift": support.drift(folder)}
+                "radius": middle[top] / exact[highest] - 1, "peak": found[top] / wanted[highest] - 1, "drift": support.drift(folder)}
 
 
 CASE = Sedov()

@@ -194,7 +194,8 @@ std::string make_all_keywords() {
          "<Header><Name value='n'/><Heading value='h'/><Description value='d'/><Unit time='ms' length='mm' "
          "mass='g'/></Header>\n" +
          materials() +
-         "<Friction><Coefficient value='0.2' mat1='0' mat2='1' rough='0'/></Friction>\n"
+         "<Friction><Coefficient value='0.2' mat1='0' mat2='1' rough='0'/><Coefficient rough='1' mat1='1' "
+         "mat2='1'/></Friction>\n"
          "<WorkPlane name='plane' r0x='0' r0y='0' r0z='0' ex='0' ey='0' ez='2' a11='1' a21='0' a31='0'/>\n"
          "<Component name='c' normal_vector_weight='1'>\n" +
          bodies() +

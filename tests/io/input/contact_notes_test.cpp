@@ -134,11 +134,12 @@ TEST_CASE("a rough rigid surface that nothing measures") {
     text = replaced(text, "name='second' material='cu'", "name='second' material='soft'");
     return std::ranges::count(
         notes_of(replaced(text, "<Solution>", "<Contact enable='1' " + contact + "/><Solution>"), true),
-        "line 10: <Coefficient rough=\"1\">: what sticks is held up to two cells above the rigid body, since "
-        "gaps "
-        "are not measured. Give Contact distance_type and min_distance");
+        "line 10: <Coefficient rough=\"1\">: friction of the rigid body acts at nodes inside it only with "
+        "distance_type=\"2\" and min_distance; without, what sticks is held above it, as far as contact "
+        "reaches");
   };
   CHECK(notes("") == 1);
+  CHECK(notes("distance_type='1' min_distance='0.9'") == 1);
   CHECK(notes("distance_type='2' min_distance='0.05'") == 0);
 }
 
