@@ -31,8 +31,9 @@ def slope_path(motion, time):
     return GRAVITY * (5 / 14 * along if sticks else (along - friction * across) / 2) * time**2
 
 
-def slope(cell, motion, plane="rigid", shape="linear", normal="mass_gradient", kind=1, end=1.0):
-    """`plane`: rigid, or "elastic", ten times as stiff and dense as the ball and held from below."""
+def slope(cell, motion, plane="rigid", shape="linear", normal="mass_gradient", kind=1, end=1.0, shells=False, stiffness=1):
+    """`plane`: rigid, or "elastic", ten times as stiff and dense as the ball and held from below; `shells`: of particles of the ball, in the
+    place of a lattice; `stiffness`: of the ball, over that of the scene."""
     angle, friction = SLOPES[motion]
     root = _gallery.scene("ball_on_a_slope")
     if plane == "elastic":
@@ -44,7 +45,10 @@ def slope(cell, motion, plane="rigid", shape="linear", normal="mass_gradient", k
         root.find(".//ZMin").set("boundary", "1")
         root.find("Component[@name='plane']").set("normal_vector_weight", "1")
     gravity = {"ax": GRAVITY * math.sin(math.radians(angle)), "ay": 0, "az": -GRAVITY * math.cos(math.radians(angle))}
+    young = float(root.find("Material[@name='rubber']/StrengthModel").get("Young"))
     return _gallery.text(root, cells(cell) | contact(shape, normal, kind)
+                         | {"Material[@name='rubber']/StrengthModel": {"Young": stiffness * young}}
+                         | ({".//Geometry[@Outer_Radius]": {"discretization": 1}} if shells else {})
                          | {".//Friction/Coefficient": {"value": friction}, ".//Gravity": gravity, ".//EndTime": {"value": end},
                             ".//PostProcessing": {"vtk_data": 0, "h5part": 0}})
 

@@ -15,6 +15,8 @@ COMMON = {"cell": ("cell", "g"), "shape": ("shape", ""), "normal": ("normals", "
           "particles": ("particles", "d"), "steps": ("steps", "d")}
 END = {"drift": ("energy drift %", "+.2f"), "cpu_seconds": ("processor s", ".1f")}
 SLOPE = {"motion": ("motion", ""), "plane": ("slope", ""), **COMMON, "centre": ("way of the centre, error %", "+.2f"), **END}
+ROLLING = {"particles in": ("ball's particles in", ""), "stiffness": ("stiffness", "g"), "cell": ("cell", "g"), "particles": ("particles", "d"),
+           "steps": ("steps", "d"), "centre": ("way of the centre, error %", "+.2f"), **END}
 BLOCK = {"plates": ("plates", "d"), "weight": ("weight of the plates", "d"), **COMMON, "acceleration": ("acceleration, error %", "+.2f"),
          "plate": ("of the upper plate %", "+.2f"), "across": ("across/along %", ".2f"), "heat": ("heat of friction, error %", "+.2f"),
          "entered": ("enters the base, cells", "+.3f"), **END}
@@ -48,6 +50,18 @@ def slope(options, verdict):
             if abs(c["centre"]) < abs(r["centre"]) < 0.2:
                 print(f"BELOW 0.2 % {name}: the error grows, {c['centre']:+.2f} to {r['centre']:+.2f} %", flush=True)
             verdict.expect(abs(r["centre"]) < max(abs(c["centre"]), 0.2), f"{name}: the error grows, {c['centre']:+.2f} to {r['centre']:+.2f} %")
+    return rows
+
+
+def rolling(options, verdict):
+    """What is soft, and what has steps: particles on a lattice or in shells, and stiffer balls."""
+    rows = []
+    for shells, stiffness, cell in (*itertools.product((False,), (0.3, 1, 3, 10), (0.2,)), *itertools.product((True,), (1, 10), (0.4, 0.2, *options.finest))):
+        case = {"cell": cell, "motion": "rolling", "normal": "automatic", "shells": shells, "stiffness": stiffness}
+        found = row(options, "ball_on_a_slope", _friction.slope(**case), _friction.measure_slope, "rolling", **case)
+        rows.append(found | {"particles in": "shells" if shells else "a lattice"})
+    stiff = [abs(r["centre"]) for r in rows if r["shells"] and r["stiffness"] == 10]
+    verdict.expect(stiff == sorted(stiff, reverse=True), f"a stiff ball in shells: errors of {stiff} % do not fall with the cell")
     return rows
 
 
@@ -109,7 +123,7 @@ def discs(options, verdict):
 
 def main():
     parser = _common.arguments(__doc__, "friction_and_rebound")
-    parts = {"slope": (slope, SLOPE), "block": (block, BLOCK), "cube": (cube, CUBE), "discs": (discs, DISCS)}
+    parts = {"slope": (slope, SLOPE), "rolling": (rolling, ROLLING), "block": (block, BLOCK), "cube": (cube, CUBE), "discs": (discs, DISCS)}
     parser.add_argument("--parts", nargs="+", default=list(parts), choices=parts)
     parser.add_argument("--finest", nargs="*", type=float, default=[], help="cells of further balls on the rigid slope, for example 0.1")
     options = parser.parse_args()
