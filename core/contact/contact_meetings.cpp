@@ -354,7 +354,8 @@ void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& share
   };
   // Material that sticks to the nodes which a body holds yields in the next layer of cells, on average half a
   // cell above the highest of them. So the friction of a rough surface acts at the nodes inside the body
-  // alone, on average half a cell below it; it has no bound there that nodes above had to add to.
+  // alone, the highest of which are on average half a cell below it. It has no bound there, so that nothing
+  // is missing where the nodes above have none.
   constexpr double round_off = 1e-9;
   const auto above_rough = [&](const MeetingNodes::Pair& pair, const double* of_node) {
     const std::int32_t first = components[static_cast<std::size_t>(pair.first)],
