@@ -97,7 +97,7 @@ void Contact::find_meetings(const BrickGrid& grid, const SharedNodes& shared, Sl
 /// Drops the pairs without a normal, and finds the outward ones.
 void Contact::complete(Slot s, std::span<const FieldNodes> fields) {
   MeetingNodes& at = meetings_[static_cast<std::size_t>(s)];
-  at.filter([](std::size_t, MeetingNodes::Pair& pair) { return pair.normal != Vec3<double>{}; });
+  at.filter([](std::size_t, const MeetingNodes::Pair& pair) { return pair.normal != Vec3<double>{}; });
   if (!measures_gaps()) return;
   const int count = static_cast<int>(seen(s).size());
   for (const MeetingNodes::Node& node : at.nodes) {
@@ -364,9 +364,12 @@ void Contact::drop_distant_pairs(const BrickGrid& grid, const SharedNodes& share
     return to_faces_ && friction(first, second).rough && is_first != (rigid(second) >= 0) &&
            of_node[is_first ? pair.first : pair.second] < -round_off * grid.geometry().smallest_cell();
   };
-  at.filter([&](std::size_t n, MeetingNodes::Pair& pair) {
-    const double* of_node = reach.data() + n * components.size();
-    pair.shears = above_rough(pair, of_node);
+  const auto reach_at = [&](std::size_t n) { return reach.data() + n * components.size(); };
+  for (std::size_t n = 0; n < at.nodes.size(); ++n)
+    for (std::size_t p = at.nodes[n].first_pair; p < at.nodes[n].last_pair; ++p)
+      at.pairs[p].shears = above_rough(at.pairs[p], reach_at(n));
+  at.filter([&](std::size_t n, const MeetingNodes::Pair& pair) {
+    const double* of_node = reach_at(n);
     const bool holds = held(pair.first, of_node) && held(pair.second, of_node);
     if (!holds && by_regression(components[static_cast<std::size_t>(pair.first)],
                                 components[static_cast<std::size_t>(pair.second)]))

@@ -135,11 +135,10 @@ std::vector<core::FrictionPair> build_frictions(const Node& root,
     if (std::ranges::any_of(
             pairs, [&](const auto& p) { return p.first_material == low && p.second_material == high; }))
       node.report(context.diagnostics, "the friction of this pair of materials is given twice");
-    const std::optional<double> value = node.given_real("value");
-    const bool rough = node.boolean("rough");
-    if (value && rough)
+    const bool rough = node.boolean("rough"), slides = node.find("value") != nullptr;
+    if (rough && slides)
       node.report(context.diagnostics, "value", "rough surfaces do not slide: remove value or rough");
-    if (!value && !rough && node.find("value") == nullptr)
+    if (!rough && !slides)
       node.report(context.diagnostics, "expected value, the coefficient of friction, or rough=\"1\"");
     pairs.push_back({low, high, {rough ? core::Friction::of_rough : node.real("value"), rough}});
   }

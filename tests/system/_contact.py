@@ -20,7 +20,7 @@ def component(name, bodies, weight=0.0):
 def scene(components, grid, solution, output, shape="linear", kind=1, distance=SURFACES, friction=0.0, young=YOUNG,
           normal="mass_gradient", transfer=""):
     material = _mpm.material(strength=f'type="IsoElastic" Young="{young}" Poisson="0.3" bq1="0" bq2="0"')
-    rubs = f'<Friction><Coefficient value="{friction}" mat1="soft" mat2="soft"/></Friction>'
+    rubs = _mpm.friction("soft", "soft", friction)
     return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">', material, rubs, *components,
                       grid.replace("<Grid>", f'<Grid shape="{shape}">'),
                       f'<Contact enable="1" contact_type="{kind}" {distance} record_contact_force="1" '

@@ -47,6 +47,12 @@ def material(name="soft", density=1.0, strength='type="IsoElastic" Young="1000" 
             f"<StrengthModel {strength}/>{more}</Material>")
 
 
+def friction(first, second, value):
+    """Of two materials: a coefficient, or "rough"."""
+    surface = 'rough="1"' if value == "rough" else f'value="{value}"'
+    return f'<Friction><Coefficient {surface} mat1="{first}" mat2="{second}"/></Friction>'
+
+
 def block(name, lower, size, velocity=(0, 0, 0), dp=0.5, of="soft", more="", attributes=""):
     geometry = 'x0="{}" y0="{}" z0="{}" lx="{}" ly="{}" lz="{}"'.format(*lower, *size)
     speed = 'vx="{}" vy="{}" vz="{}"'.format(*velocity)

@@ -20,8 +20,7 @@ def scene(block, plate, velocity, shape="linear", friction=0.0, steps=5, faces="
     moved = 'vx="{}" vy="{}" vz="{}"'.format(*velocity)
     other = _mpm.block("plate", *plate, of="ram", more=f"<PrescribedVelocity {moved}/>")
     solution = _mpm.solution(end, attributes='Integration="impl"', more=f'<Implicit type="{kind}" time_step="{end / steps}" {more}/>')
-    surface = 'rough="1"' if friction == "rough" else f'value="{friction}"'
-    rub = f'<Friction><Coefficient mat1="soft" mat2="ram" {surface}/></Friction>' if friction else ""
+    rub = _mpm.friction("soft", "ram", friction) if friction else ""
     text = _mpm.scene([solid], _mpm.grid(*grid, faces).replace("<Grid>", f'<Grid shape="{shape}">'),
                       solution.replace('<TimeStep factor="0.5"/>', ""), [SOFT, RAM], output,
                       f'<Contact enable="1" record_contact_force="1" {contact}/>{rub}')

@@ -16,7 +16,7 @@ def scene(components, faces, grid, materials=(law("soft"), law("hard", 4 * YOUNG
           shape="linear", more="", contact='enable="1"', output=""):
     """`components`: the bodies of each. Friction is that of the materials soft and hard."""
     solution = _mpm.solution(end, attributes='Integration="impl"', more=f'<Implicit type="{kind}" time_step="{end / steps}" {more}/>')
-    rub = f'<Friction><Coefficient mat1="soft" mat2="hard" value="{friction}"/></Friction>' if friction else ""
+    rub = _mpm.friction("soft", "hard", friction) if friction else ""
     others = "".join(f'<Component name="c{i}">{bodies}</Component>\n' for i, bodies in enumerate(components[1:]))
     text = _mpm.scene([components[0]], _mpm.grid(*grid, faces).replace("<Grid>", f'<Grid shape="{shape}">'),
                       solution.replace('<TimeStep factor="0.5"/>', ""), list(materials), output,

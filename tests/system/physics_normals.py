@@ -14,7 +14,7 @@ def scene(base, top, grid, solution, distance=SURFACES, friction=0.0, rigid=(), 
     """Two components; bodies named in `rigid` are, the others elastic."""
     materials = "".join(_mpm.material(name, 1000.0, 'type="Rigid"' if name in rigid else 'type="IsoElastic" Young="1e7" Poisson="0.2"')
                         for name in (BASE, TOP))
-    rubs = f'<Friction><Coefficient value="{friction}" mat1="base" mat2="top"/></Friction>'
+    rubs = _mpm.friction("base", "top", friction)
     components = "".join(f'<Component name="{name}" normal_vector_weight="{weight}">{body}</Component>'
                          for name, body, weight in ((BASE, base, weights[0]), (TOP, top, weights[1])))
     return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">', materials, rubs, components,

@@ -19,8 +19,7 @@ def held(vx=0.0, vy=0.0, vz=0.0):
 def scene(bodies, grid, solution, soft, friction=0.0, output="", kind=1, distance=SURFACES):
     components = "".join(f'<Component name="c{i}">{body}</Component>' for i, body in enumerate(bodies))
     return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', '<PeneBlast version="1.0">', soft, RIGID,
-                      '<Friction><Coefficient {} mat1="soft" mat2="iron"/></Friction>'.format(
-                          'rough="1"' if friction == "rough" else f'value="{friction}"'), components, grid,
+                      _mpm.friction("soft", "iron", friction), components, grid,
                       f'<Contact enable="1" contact_type="{kind}" {distance} record_contact_force="1"/>', solution,
                       f"<Output>{output}</Output>", "</PeneBlast>", ""])
 
@@ -352,7 +351,7 @@ class Rigid(_mpm.Case):
             one, summary, _ = self.go(thrown(algorithm=algorithm, friction=friction), "one")
             for ranks, threads, partition in others:
                 with self.subTest(algorithm=algorithm, ranks=ranks):
-                    other, again, _ = self.go(thrown(1.5, "", partition, algorithm=algorithm, friction=friction), f"r{ranks}", ranks=ranks, threads=threads)
+                    other, again, _ = self.go(thrown(partition=partition, algorithm=algorithm, friction=friction), f"r{ranks}", ranks=ranks, threads=threads)
                     self.assertEqual(other, one)
                     self.assertEqual(again["energy"], summary["energy"])
             restart = _mpm.restarts(self.folder / "one")[0]
