@@ -2,8 +2,15 @@
 // of a tile are found in a pass of their own before its particles are. Part of implicit_passes_with.hpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
 #include "core/contact/rigid_state.hpp"
 #include "core/implicit/implicit_passes_with.hpp"
+#include "core/shape/bspline.hpp"
 
 namespace mpm::core {
 
@@ -109,18 +116,40 @@ void ImplicitPassesWith<S>::touch_site_nodes(Scratch& at) const {
     add_to_nodes(at, i, [](SiteDilatation::OfNode&, const Vec3<double>&) {});
 }
 
-/// The couplings of each site, or their structure alone; flush() empties the sum after it.
+/// Where the bulk modulus is 300 times the shear modulus (Poisson's ratio 0.4983) or more: 8 times the shear
+/// modulus, with splines twice, by the iterations that were measured (docs/implicit.md, "Linear solver").
+/// Below, and with averages around nodes of functions with kinks, solvers do as well with the whole sum.
 template <ShapePolicy S>
-template <class F>
-void ImplicitPassesWith<S>::add_site_stiffness(Scratch& at, bool structure_alone, F flush) {
+double ImplicitPassesWith<S>::softness_of(const ConstitutiveModel& material) {
+  constexpr bool spline = std::is_same_v<S, QuadraticBSpline> || std::is_same_v<S, CubicBSpline>;
+  constexpr bool gains = spline || S::site == Site::cell;
+  const double c = material.initial_sound_speed(), shear = material.initial_shear_speed();
+  const bool nearly_incompressible = shear > 0 && c * c - 4.0 / 3 * shear * shear >= 300 * shear * shear;
+  return gains && nearly_incompressible ? (spline ? 2 : 8) * material.reference_density() * shear * shear
+                                        : std::numeric_limits<double>::infinity();
+}
+
+/// The couplings of each site, or their structure alone; with_matrix(f) calls f(matrix), and flush() empties
+/// the sum after it. `softness`: the part of a bulk stiffness, as a modulus, that stays in the sum; what is
+/// above it is passed on as products. Infinite for material that is not nearly incompressible.
+template <ShapePolicy S>
+template <class W, class F>
+void ImplicitPassesWith<S>::add_site_stiffness(Scratch& at, bool structure_alone, double softness,
+                                               W with_matrix, F flush) {
   std::vector<double> e, g, m;
+  bool apart = false;
+  with_matrix([&](BlockMatrix& matrix) { apart = matrix.keeps_products(); });
   for (const SiteDilatation::Site& site : at.dilatation.used()) {
     if (structure_alone) {
       for (const SiteDilatation::OfNode& node : site.nodes) at.stiffness.unknown_of(node.node);
+      if (std::isfinite(softness))
+        with_matrix([&](BlockMatrix& matrix) { at.stiffness.pass_product(matrix, {}, 0); });
       flush();
       continue;
     }
-    const double more = site.second / site.grown - site.mean_stress(), scale = 1 / site.grown;
+    const double scale = 1 / site.grown;
+    const double bulk = site.second / site.grown - site.mean_stress();
+    const double more = apart ? std::min(bulk, softness) : bulk;
     for (std::vector<double>* each : {&e, &g, &m}) each->assign(3 * site.nodes.size(), 0.0);
     for (const SiteDilatation::OfNode& node : site.nodes) {
       const StiffnessBlock::Unknown to = at.stiffness.unknown_of(node.node);
@@ -133,6 +162,8 @@ void ImplicitPassesWith<S>::add_site_stiffness(Scratch& at, bool structure_alone
     }
     at.stiffness.add_product(g, e);
     at.stiffness.add_product(e, m);
+    if (more < bulk)
+      with_matrix([&](BlockMatrix& matrix) { at.stiffness.pass_product(matrix, e, (bulk - more) * scale); });
     flush();
   }
 }

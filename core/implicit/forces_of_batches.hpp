@@ -61,9 +61,12 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
     StiffnessBlock& stiffness = at.stiffness;
     stiffness.begin(unknowns.of(field), unknowns.nodes());
     if (displacements != nullptr) at.displacements.take_strain(frame, records(*displacements, field));
-    const auto flush = [&] {
+    const auto with_matrix = [&](auto f) {
       const std::lock_guard one_at_a_time(matrix_lock);
-      stiffness.flush(matrix, displacements == nullptr);
+      f(matrix);
+    };
+    const auto flush = [&] {
+      with_matrix([&](BlockMatrix& of) { stiffness.flush(of, displacements == nullptr); });
     };
     int site = -1;
     for_each_tile(field, false, [&](const ParticleTile& tile, const Body& body) {
@@ -105,7 +108,7 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
       });
       if (averages_) {
         flush();
-        add_site_stiffness(at, displacements == nullptr, flush);
+        add_site_stiffness(at, displacements == nullptr, softness_of(*body.model), with_matrix, flush);
       }
     });
     flush();

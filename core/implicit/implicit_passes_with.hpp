@@ -136,8 +136,9 @@ class ImplicitPassesWith final : public ImplicitPasses {
   static void add_site_forces(const Scratch& at, double* contributions);
   void average_tangent(Scratch& at) const;
   void touch_site_nodes(Scratch& at) const;
-  template <class F>
-  static void add_site_stiffness(Scratch& at, bool structure_alone, F flush);
+  template <class W, class F>
+  static void add_site_stiffness(Scratch& at, bool structure_alone, double softness, W with_matrix, F flush);
+  static double softness_of(const ConstitutiveModel& material);
   template <class Has, class F>
   void map_vectors(Has has, F vector);
   double* clear_contributions(const BrickField& field) const {

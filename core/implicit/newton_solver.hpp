@@ -16,6 +16,13 @@ class BlockMatrix {
   virtual ~BlockMatrix() = default;
   /// Adds a dense matrix over these nodes, any rank's: rows of 3 nodes.size() values, three rows per node.
   virtual void add(std::span<const std::int64_t> nodes, const double* values) = 0;
+  /// Whether add_product() takes products, as their factors; else they are given to add().
+  virtual bool keeps_products() const { return false; }
+  /// Adds stiffness e e^T over these nodes; e has three components per node. It may be far stiffer than what
+  /// is added otherwise, and solvers may treat it apart. `e` is empty where places alone are asked for.
+  virtual void add_product(std::span<const std::int64_t> nodes, std::span<const double> e, double stiffness) {
+    static_cast<void>(nodes), static_cast<void>(e), static_cast<void>(stiffness);
+  }
 };
 
 /// The equations of a step. All functions are collective; `u` and `r` hold this rank's unknowns.

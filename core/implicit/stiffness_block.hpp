@@ -55,6 +55,13 @@ class StiffnessBlock {
       for (std::size_t c = 0; c < n; ++c) sum_[r * stride_ + c] += left[r] * right[c];
   }
 
+  /// Passes stiffness e e^T over the unknowns so far on, without held components, apart from the sum.
+  void pass_product(BlockMatrix& matrix, std::span<double> e, double stiffness) const {
+    if (!e.empty()) e = e.first(3 * numbers_.size());
+    for (std::size_t k = 0; k < e.size(); ++k)
+      if ((held_[k / 3] >> k % 3 & 1) != 0) e[k] = 0;
+    matrix.add_product(numbers_, e, stiffness);
+  }
   /// Passes the sum on, without the rows and columns of held components, and clears it.
   void flush(BlockMatrix& matrix, bool structure_alone);
   bool empty() const { return numbers_.empty(); }

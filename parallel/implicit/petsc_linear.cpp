@@ -23,6 +23,12 @@ bool takes_multigrid(std::int64_t unknowns, bool springs, bool slender) {
   return !few(unknowns, springs) && !slender && other == PETSC_FALSE;
 }
 
+bool takes_augmented_system() {
+  PetscBool other = PETSC_FALSE;
+  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-ksp_type", &other));
+  return other == PETSC_FALSE;
+}
+
 void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool slender,
                           const GridHierarchy* grids) {
   KSP ksp = nullptr;
@@ -99,9 +105,12 @@ std::string description_of(SNES snes) {
   SNESType method = nullptr;
   check_petsc(SNESGetType(snes, &method));
   const std::string name = method;
+  const char* whole = nullptr;  // a solver within
+  if (std::string(preconditioner) == PCSHELL) check_petsc(PCShellGetName(pc, &whole));
   const bool usual = name == SNESNEWTONLS || name == SNESKSPONLY;
-  return fmt::format("PETSc {}.{}.{}: {}{} with {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
-                     PETSC_VERSION_SUBMINOR, usual ? "" : name + ", ", solver, preconditioner);
+  return fmt::format("PETSc {}.{}.{}: {}{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR,
+                     usual ? "" : name + ", ",
+                     whole != nullptr ? whole : fmt::format("{} with {}", solver, preconditioner));
 }
 
 }  // namespace mpm::parallel

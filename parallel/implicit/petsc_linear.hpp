@@ -25,6 +25,9 @@ inline constexpr std::size_t slender_up_to = 24;
 /// Whether such systems are solved with multigrid on coarser grids, and the user has not chosen otherwise.
 /// `springs`: NonlinearProblem::has_springs().
 bool takes_multigrid(std::int64_t unknowns, bool springs, bool slender);
+/// Whether products that are far stiffer than the rest then become further unknowns (petsc_augmented.hpp):
+/// unless the user has chosen a method.
+bool takes_augmented_system();
 void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool slender,
                           const GridHierarchy* grids);
 /// For the one system of a linearised step.

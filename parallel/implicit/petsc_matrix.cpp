@@ -150,7 +150,21 @@ void MatrixValues::find_parts() {
   }
 }
 
+void MatrixValues::add_product(std::span<const std::int64_t> nodes, std::span<const double> e,
+                               double stiffness) {
+  // A product of none but held components is no equation.
+  if (std::ranges::all_of(e, [](double each) { return each == 0; })) return;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i] < 0) continue;
+    products_.nodes.push_back(nodes[i]);
+    products_.factors.insert(products_.factors.end(), &e[3 * i], &e[3 * i] + 3);
+  }
+  products_.stiffness.push_back(stiffness);
+  products_.first.push_back(products_.nodes.size());
+}
+
 void MatrixValues::begin() {
+  products_ = {};
   // Anew each time: PETSc makes other ones when it copies a matrix of blocks.
   PetscBool alone = PETSC_FALSE;
   check_petsc(

@@ -26,6 +26,11 @@ class MatrixPlaces final : public core::BlockMatrix {
       : first_(first_node), own_(static_cast<std::size_t>(own_nodes)) {}
   /// `values` is null. Negative numbers are no nodes.
   void add(std::span<const std::int64_t> nodes, const double* values) override;
+  void add_product(std::span<const std::int64_t>, std::span<const double>, double) override {
+    has_products_ = true;
+  }
+  /// Whether this rank has any.
+  bool has_products() const { return has_products_; }
   /// Moves the columns of other ranks' rows to their owners. Collective.
   void exchange(MPI_Comm comm);
 
@@ -49,6 +54,7 @@ class MatrixPlaces final : public core::BlockMatrix {
   std::vector<std::vector<std::int64_t>> own_;
   std::map<std::int64_t, std::vector<std::int64_t>> others_;
   std::vector<std::int64_t> sorted_, merged_;
+  bool has_products_ = false;
 };
 
 /// Values of a matrix with these places.
@@ -62,6 +68,17 @@ class MatrixValues final : public core::BlockMatrix {
 
   Mat matrix() const { return matrix_; }
   const MatrixPlaces& places() const { return places_; }
+  /// Products stiffness e e^T that are kept apart: entries of product c from first[c] to first[c + 1].
+  struct Products {
+    std::vector<double> stiffness;
+    std::vector<std::size_t> first{0};
+    std::vector<std::int64_t> nodes;
+    std::vector<double> factors;  ///< e, three per node
+  };
+  const Products& products() const { return products_; }
+  void keep_products(bool keep) { keeps_products_ = keep; }
+  bool keeps_products() const override { return keeps_products_; }
+  void add_product(std::span<const std::int64_t> nodes, std::span<const double> e, double stiffness) override;
   /// Sets all values to zero.
   void begin();
   void add(std::span<const std::int64_t> nodes, const double* values) override;
@@ -87,6 +104,8 @@ class MatrixValues final : public core::BlockMatrix {
     std::size_t at;  ///< in the dense matrix
   };
   std::vector<Column> sorted_;
+  Products products_;
+  bool keeps_products_ = false;
   std::vector<PetscInt> numbers_;
 };
 

@@ -65,7 +65,9 @@ PetscErrorCode set_up_preconditioner(SNES snes, Mat action, Mat matrix, NewtonSo
   PetscErrorCode code = SNESGetKSP(snes, &ksp);
   if (code == 0) code = KSPSetOperators(ksp, action, matrix);
   PC pc = nullptr;
-  if (code == 0 && solve.grids != nullptr && solve.grids->usable()) {
+  if (code == 0 && solve.augmented != nullptr) {
+    code = guarded(solve, [&] { solve.augmented->take(*solve.values, *solve.grids); });
+  } else if (code == 0 && solve.grids != nullptr && solve.grids->usable()) {
     code = KSPGetPC(ksp, &pc);
     if (code == 0) code = guarded(solve, [&] { solve.grids->take(pc, matrix); });
   }

@@ -7,6 +7,7 @@
 #include <petscsnes.h>
 
 #include "core/implicit/newton_solver.hpp"
+#include "parallel/implicit/petsc_augmented.hpp"
 #include "parallel/implicit/petsc_hierarchy.hpp"
 #include "parallel/implicit/petsc_matrix.hpp"
 
@@ -17,7 +18,8 @@ struct NewtonSolve {
   core::NonlinearProblem* problem = nullptr;
   const core::NewtonOptions* options = nullptr;
   MatrixValues* values = nullptr;
-  GridHierarchy* grids = nullptr;  ///< null without
+  GridHierarchy* grids = nullptr;        ///< null without
+  AugmentedSystem* augmented = nullptr;  ///< null without
   core::NewtonReport report;
   std::exception_ptr failure;  ///< of the problem; must not pass through PETSc
   bool usable = true;          ///< the last state could be evaluated

@@ -13,6 +13,7 @@
 #include <petscsnes.h>
 
 #include "core/implicit/newton_solver.hpp"
+#include "parallel/implicit/petsc_augmented.hpp"
 #include "parallel/implicit/petsc_errors.hpp"
 #include "parallel/implicit/petsc_hierarchy.hpp"
 #include "parallel/implicit/petsc_linear.hpp"
@@ -93,7 +94,7 @@ class PetscSolver final : public core::NewtonSolver {
  private:
   NewtonReport solve_with_options(NonlinearProblem& problem, std::span<double> u,
                                   const NewtonOptions& options);
-  void set_up(NonlinearProblem& problem, bool linear);
+  void set_up(NonlinearProblem& problem, const NewtonOptions& options);
   bool try_otherwise(SNES snes, bool linear);
   bool meets_tolerance(SNES snes, SNESConvergedReason reason);
   [[noreturn]] void refuse_options(const std::string& why);
@@ -101,8 +102,9 @@ class PetscSolver final : public core::NewtonSolver {
   /// What solves with the same places of entries share: PETSc keeps the symbolic part of a factorisation.
   struct SetUp {
     std::unique_ptr<MatrixValues> values;
-    bool slender = false;                  ///< as is a bar of few nodes across, on one rank
-    std::unique_ptr<GridHierarchy> grids;  ///< null for systems that are solved without
+    bool slender = false;                        ///< as is a bar of few nodes across, on one rank
+    std::unique_ptr<GridHierarchy> grids;        ///< null for systems that are solved without
+    std::unique_ptr<AugmentedSystem> augmented;  ///< null for systems that are solved as they are
     OwnedVec solution, residual;
     OwnedMat action;
     OwnedSnes snes;
@@ -119,7 +121,8 @@ class PetscSolver final : public core::NewtonSolver {
 };
 
 /// The matrix and the solver, or those of the last solve where the places of the entries are the same.
-void PetscSolver::set_up(NonlinearProblem& problem, bool linear) {
+void PetscSolver::set_up(NonlinearProblem& problem, const NewtonOptions& options) {
+  const bool linear = options.linear;
   MatrixPlaces places(problem.first_node(), problem.own_nodes());
   problem.structure(places);
   for (std::int64_t i = 0; i < problem.own_nodes(); ++i) {
@@ -127,6 +130,8 @@ void PetscSolver::set_up(NonlinearProblem& problem, bool linear) {
     places.add(std::span(&number, 1), nullptr);
   }
   places.exchange(comm_);
+  int has_products = places.has_products() ? 1 : 0;
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, &has_products, 1, MPI_INT, MPI_MAX, comm_));
   int same = of_ && of_->values->places().same_as(places) ? 1 : 0;
   if (same == 1 && of_->grids && !of_->grids->is_of(problem)) same = 0;
   check_mpi(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, comm_));
@@ -141,6 +146,10 @@ void PetscSolver::set_up(NonlinearProblem& problem, bool linear) {
     set_functions(of_->snes, of_->residual, now_);
     if (takes_multigrid(3 * problem.all_nodes(), problem.has_springs(), of_->slender) && !linear)
       of_->grids = std::make_unique<GridHierarchy>(comm_, problem);
+    if (of_->grids && has_products == 1 && takes_augmented_system() && !options.matrix_free) {
+      of_->augmented = std::make_unique<AugmentedSystem>(comm_);
+      of_->values->keep_products(true);
+    }
   }
   give_rigid_motions(problem, of_->values->matrix());
 }
@@ -219,8 +228,8 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
                                              const NewtonOptions& options) {
   const double start = MPI_Wtime();
   if (!looked_) refuse_unsuitable_options(options.linear, options.matrix_free);
-  set_up(problem, options.linear);
-  now_ = {&problem, &options, of_->values.get(), of_->grids.get(), {}, nullptr};
+  set_up(problem, options);
+  now_ = {&problem, &options, of_->values.get(), of_->grids.get(), of_->augmented.get(), {}, nullptr};
   NewtonReport& report = now_.report;
   const Vec solution = of_->solution, r = of_->residual;
   const SNES snes = of_->snes;
@@ -240,6 +249,11 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
   } else {
     choose_linear_solver(snes, 3 * problem.all_nodes(), problem.has_springs(), of_->slender,
                          of_->grids.get());
+    if (of_->augmented) {
+      KSP ksp = nullptr;
+      check_petsc(SNESGetKSP(snes, &ksp));
+      of_->augmented->choose(ksp);
+    }
     choose_full_steps(snes, now_);
   }
   if (SNESSetFromOptions(snes) != 0) refuse_options(take_petsc_error());
@@ -255,7 +269,7 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
     take_petsc_error();
     check_petsc(SNESGetLinearSolveIterations(snes, &linear));
     check_petsc(SNESGetIterationNumber(snes, &iterations));
-    report.linear_iterations = linear;
+    report.linear_iterations = of_->augmented ? of_->augmented->take_iterations() : linear;
     report.iterations = static_cast<int>(iterations);
     report.norms.clear();
     start_from_guess();
@@ -272,7 +286,7 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
   check_petsc(SNESGetLinearSolveIterations(snes, &linear));
   check_petsc(SNESGetIterationNumber(snes, &iterations));
   report.iterations += static_cast<int>(iterations);
-  report.linear_iterations += linear;
+  report.linear_iterations += of_->augmented ? of_->augmented->take_iterations() : linear;
   report.converged = met;
   if (!report.converged) report.reason = why_not_converged(snes, code, reason, options.linear);
   const PetscScalar* from = nullptr;

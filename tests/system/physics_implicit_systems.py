@@ -9,6 +9,7 @@ import _cases
 import _mpm
 
 SOFT = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0.3"')
+NEARLY_INCOMPRESSIBLE = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0.4999"')
 STATE = '<PostProcessing time_interval="1" h5part="1" var="{}"/>'
 
 
@@ -18,13 +19,14 @@ def scene(body, grid, faces, shape="linear", implicit="", load="", materials=(SO
                       solution.replace('<TimeStep factor="0.5"/>', ""), list(materials), STATE.format(var))
 
 
-class Multigrid(_mpm.Case):
-    """A block whose faces cut cells, under a weight that grows in two steps and bends it."""
+class Block(_mpm.Case):
+    """A block whose faces cut cells, under a weight that grows in two steps and bends it, solved directly, and otherwise."""
 
-    def setUp(self):
-        super().setUp()
-        self.text = scene(_mpm.block("block", (0.3, 0.2, 0), (12, 12, 12)), ((-1, -1, 0), (16, 14, 14)), "000010",
-                          implicit='time_step="0.5" rtol="1e-9" gravity_ramp="1"', load='<Gravity ax="0.5" ay="0" az="-1"/>')
+    with_pressures = False
+
+    def solve_directly(self, material=SOFT, shape="linear", more="", size=(12, 12, 12)):
+        self.text = scene(_mpm.block("block", (0.3, 0.2, 0), size), ((-1, -1, 0), (16, 14, 14)), "000010", shape,
+                          'time_step="0.5" rtol="1e-9" gravity_ramp="1"', '<Gravity ax="0.5" ay="0" az="-1"/>' + more, [material])
         self.place, self.pressure = self.solved("direct", "-ksp_type", "preonly", "-pc_type", "lu", "-pc_factor_mat_solver_type",
                                                 "mumps")[1:]
 
@@ -37,11 +39,18 @@ class Multigrid(_mpm.Case):
     def check(self, folder, *options, **more):
         out, place, pressure = self.solved(folder, *options, **more)
         self.assertIn("gmres with mg", out)
+        self.assertEqual("mean pressures" in out, self.with_pressures)
         # Places are in single precision: two units in the last place at 12. Of the pressure 2e-8 was measured.
         self.assertLess(np.abs(place - self.place).max(), 2e-6)
         self.assertLess(np.abs(pressure - self.pressure).max(), 1e-6 * np.abs(self.pressure).max())
         newton, linear = map(int, re.search(r"(\d+) Newton iterations and (\d+) linear", out).groups())
         return linear / newton
+
+
+class Multigrid(Block):
+    def setUp(self):
+        super().setUp()
+        self.solve_directly()
 
     def test_on_any_ranks(self):
         for ranks in (1, 2, 3):
@@ -62,6 +71,31 @@ class Multigrid(_mpm.Case):
         outcome = _mpm.run([self.write(text), "--output-dir", self.folder / "refused", "--", "-mat_type", "baij"])
         self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
         self.assertIn("-mat_type", outcome.err)
+
+
+class MeanPressures(Block):
+    """Averaged volume changes of nearly incompressible material."""
+
+    with_pressures = True
+    averaged = '<Volumetric averaging="cell"/>'
+
+    def test_on_any_ranks_and_formats(self):
+        self.solve_directly(NEARLY_INCOMPRESSIBLE, more=self.averaged)
+        for ranks, options in ((1, ()), (3, ()), (2, ("-mat_type", "baij"))):
+            with self.subTest(ranks=ranks):
+                self.assertLess(self.check(f"on{ranks}", *options, ranks=ranks), 45)  # measured 31
+
+    def test_averages_around_nodes(self):
+        self.solve_directly(NEARLY_INCOMPRESSIBLE, "QuadraticBSpline", self.averaged, size=(10, 10, 11))
+        self.assertLess(self.check("nodes"), 95)  # measured 63
+
+    def test_only_where_they_gain(self):
+        """The others, and methods that the user names, solve the system as it is."""
+        self.with_pressures = False
+        self.solve_directly(more=self.averaged)
+        self.check("compressible")
+        self.solve_directly(NEARLY_INCOMPRESSIBLE, more=self.averaged)
+        self.assertGreater(self.check("named", "-ksp_type", "gmres"), 100)  # measured 266
 
 
 class Stabilisation(_mpm.Case):
