@@ -32,10 +32,18 @@ def slope_path(motion, time):
 
 
 def slope(cell, motion, plane="rigid", shape="linear", normal="mass_gradient", kind=1, end=1.0, shells=False, stiffness=1):
-    """`plane`: rigid, or "elastic", ten times as stiff and dense as the ball and held from below; `shells`: of particles of the ball, in the
-    place of a lattice; `stiffness`: of the ball, over that of the scene."""
+    """`plane`: rigid; "elastic", ten times as stiff and dense as the ball and held from below; or "rubber", 0.8 thick, of the ball's material,
+    while the ball is rigid and moves freely. `shells`: of particles of the ball, in the place of a lattice; `stiffness`: of the rubber, over
+    that of the scene."""
     angle, friction = SLOPES[motion]
     root = _gallery.scene("ball_on_a_slope")
+    if plane == "rubber":
+        root.find(".//Body[@name='ball']").set("material", "rigid")
+        body = root.find(".//Body[@name='plane']")
+        body.set("material", "rubber")
+        body.remove(body.find("PrescribedVelocity"))
+        body.find("Geometry").attrib.update(z0="-0.8", lz="0.8")
+        root.find(".//ZMin").attrib.update(value="-0.8", boundary="1")
     if plane == "elastic":
         material = root.find("Material[@name='rigid']")
         material.find("ReferenceDensity").set("value", "10000")

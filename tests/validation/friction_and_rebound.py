@@ -65,6 +65,20 @@ def rolling(options, verdict):
     return rows
 
 
+def free(options, verdict):
+    """A rigid ball that moves freely, on rubber that is held from below."""
+    rows = []
+    for stiffness, shells, cell in itertools.product((1, 10), (False, True), (0.4, 0.2, *options.finest)):
+        case = {"cell": cell, "motion": "rolling", "plane": "rubber", "normal": "automatic", "shells": shells, "stiffness": stiffness}
+        found = row(options, "ball_on_a_slope", _friction.slope(**case), _friction.measure_slope, "rolling", **case)
+        rows.append(found | {"particles in": "shells" if shells else "a lattice"})
+    for stiffness, shells in itertools.product((1, 10), (False, True)):
+        errors = [abs(r["centre"]) for r in rows if (r["stiffness"], r["shells"]) == (stiffness, shells)]
+        if stiffness == 10:  # the other one rolls farther as the rubber gives way
+            verdict.expect(errors == sorted(errors, reverse=True), f"a rigid ball on rubber: errors of {errors} % do not fall with the cell")
+    return rows
+
+
 def block(options, verdict):
     cases = [*itertools.product((1,), ("linear",), (("regression", 0), ("mass_gradient", 0), ("mass_gradient", 1)), (1,), (1.0, 0.5)),
              *itertools.product((1,), ("uGIMP", "QuadraticBSpline", "SGMP"), (("regression", 0),), (1,), (1.0,)),
@@ -123,7 +137,7 @@ def discs(options, verdict):
 
 def main():
     parser = _common.arguments(__doc__, "friction_and_rebound")
-    parts = {"slope": (slope, SLOPE), "rolling": (rolling, ROLLING), "block": (block, BLOCK), "cube": (cube, CUBE), "discs": (discs, DISCS)}
+    parts = {"slope": (slope, SLOPE), "rolling": (rolling, ROLLING), "free": (free, ROLLING), "block": (block, BLOCK), "cube": (cube, CUBE), "discs": (discs, DISCS)}
     parser.add_argument("--parts", nargs="+", default=list(parts), choices=parts)
     parser.add_argument("--finest", nargs="*", type=float, default=[], help="cells of further balls on the rigid slope, for example 0.1")
     options = parser.parse_args()
