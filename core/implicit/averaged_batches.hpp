@@ -131,14 +131,12 @@ double ImplicitPassesWith<S>::softness_of(const ConstitutiveModel& material) {
 
 /// The couplings of each site, or their structure alone; with_matrix(f) calls f(matrix), and flush() empties
 /// the sum after it. `softness`: the part of a bulk stiffness, as a modulus, that stays in the sum; what is
-/// above it is passed on as products. Infinite for material that is not nearly incompressible.
+/// above it is passed on as products. Infinite where nothing is.
 template <ShapePolicy S>
 template <class W, class F>
 void ImplicitPassesWith<S>::add_site_stiffness(Scratch& at, bool structure_alone, double softness,
                                                W with_matrix, F flush) {
   std::vector<double> e, g, m;
-  bool apart = false;
-  with_matrix([&](BlockMatrix& matrix) { apart = matrix.keeps_products(); });
   for (const SiteDilatation::Site& site : at.dilatation.used()) {
     if (structure_alone) {
       for (const SiteDilatation::OfNode& node : site.nodes) at.stiffness.unknown_of(node.node);
@@ -149,7 +147,7 @@ void ImplicitPassesWith<S>::add_site_stiffness(Scratch& at, bool structure_alone
     }
     const double scale = 1 / site.grown;
     const double bulk = site.second / site.grown - site.mean_stress();
-    const double more = apart ? std::min(bulk, softness) : bulk;
+    const double more = std::min(bulk, softness);
     for (std::vector<double>* each : {&e, &g, &m}) each->assign(3 * site.nodes.size(), 0.0);
     for (const SiteDilatation::OfNode& node : site.nodes) {
       const StiffnessBlock::Unknown to = at.stiffness.unknown_of(node.node);

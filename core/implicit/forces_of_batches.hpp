@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "core/implicit/implicit_passes_with.hpp"
@@ -108,7 +109,9 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
       });
       if (averages_) {
         flush();
-        add_site_stiffness(at, displacements == nullptr, softness_of(*body.model), with_matrix, flush);
+        const double softness =
+            matrix.keeps_products() ? softness_of(*body.model) : std::numeric_limits<double>::infinity();
+        add_site_stiffness(at, displacements == nullptr, softness, with_matrix, flush);
       }
     });
     flush();

@@ -16,7 +16,7 @@ class BlockMatrix {
   virtual ~BlockMatrix() = default;
   /// Adds a dense matrix over these nodes, any rank's: rows of 3 nodes.size() values, three rows per node.
   virtual void add(std::span<const std::int64_t> nodes, const double* values) = 0;
-  /// Whether add_product() takes products, as their factors; else they are given to add().
+  /// Whether add_product() is called; else products are given to add() with all else.
   virtual bool keeps_products() const { return false; }
   /// Adds stiffness e e^T over these nodes; e has three components per node. It may be far stiffer than what
   /// is added otherwise, and solvers may treat it apart. `e` is empty where places alone are asked for.

@@ -11,48 +11,40 @@ namespace mpm::parallel {
 
 namespace {
 
-/// Each rank has its displacements first, then its pressures.
-void split(Vec whole, Vec u, Vec p) {
+/// Each rank has its displacements first, then its pressures. Errors are codes here and in the functions that
+/// PETSc calls, so that its own words reach the log.
+PetscErrorCode split(Vec whole, Vec u, Vec p) {
   const PetscScalar* from = nullptr;
   PetscScalar *to_u = nullptr, *to_p = nullptr;
   PetscInt n = 0, m = 0;
-  check_petsc(VecGetLocalSize(u, &n));
-  check_petsc(VecGetLocalSize(p, &m));
-  check_petsc(VecGetArrayRead(whole, &from));
-  check_petsc(VecGetArrayWrite(u, &to_u));
-  check_petsc(VecGetArrayWrite(p, &to_p));
+  PetscCall(VecGetLocalSize(u, &n));
+  PetscCall(VecGetLocalSize(p, &m));
+  PetscCall(VecGetArrayRead(whole, &from));
+  PetscCall(VecGetArrayWrite(u, &to_u));
+  PetscCall(VecGetArrayWrite(p, &to_p));
   std::copy_n(from, n, to_u);
   std::copy_n(from + n, m, to_p);
-  check_petsc(VecRestoreArrayWrite(p, &to_p));
-  check_petsc(VecRestoreArrayWrite(u, &to_u));
-  check_petsc(VecRestoreArrayRead(whole, &from));
+  PetscCall(VecRestoreArrayWrite(p, &to_p));
+  PetscCall(VecRestoreArrayWrite(u, &to_u));
+  PetscCall(VecRestoreArrayRead(whole, &from));
+  return 0;
 }
 
-void join(Vec u, Vec p, Vec whole) {
+PetscErrorCode join(Vec u, Vec p, Vec whole) {
   const PetscScalar *from_u = nullptr, *from_p = nullptr;
   PetscScalar* to = nullptr;
   PetscInt n = 0, m = 0;
-  check_petsc(VecGetLocalSize(u, &n));
-  check_petsc(VecGetLocalSize(p, &m));
-  check_petsc(VecGetArrayRead(u, &from_u));
-  check_petsc(VecGetArrayRead(p, &from_p));
-  check_petsc(VecGetArrayWrite(whole, &to));
+  PetscCall(VecGetLocalSize(u, &n));
+  PetscCall(VecGetLocalSize(p, &m));
+  PetscCall(VecGetArrayRead(u, &from_u));
+  PetscCall(VecGetArrayRead(p, &from_p));
+  PetscCall(VecGetArrayWrite(whole, &to));
   std::copy_n(from_u, n, to);
   std::copy_n(from_p, m, to + n);
-  check_petsc(VecRestoreArrayWrite(whole, &to));
-  check_petsc(VecRestoreArrayRead(p, &from_p));
-  check_petsc(VecRestoreArrayRead(u, &from_u));
-}
-
-/// f(), for PETSc, through which exceptions must not pass.
-template <class F>
-PetscErrorCode as_code(F f) {
-  try {
-    f();
-    return 0;
-  } catch (const PetscError& error) { return error.code(); } catch (...) {
-    return PETSC_ERR_LIB;
-  }
+  PetscCall(VecRestoreArrayWrite(whole, &to));
+  PetscCall(VecRestoreArrayRead(p, &from_p));
+  PetscCall(VecRestoreArrayRead(u, &from_u));
+  return 0;
 }
 
 }  // namespace
@@ -68,8 +60,10 @@ void AugmentedSystem::clear() {
 
 std::int64_t AugmentedSystem::take_iterations() { return std::exchange(iterations_, 0); }
 
-void AugmentedSystem::choose(KSP ksp) {
+void AugmentedSystem::choose(SNES snes) {
+  KSP ksp = nullptr;
   PC pc = nullptr;
+  check_petsc(SNESGetKSP(snes, &ksp));
   check_petsc(KSPSetOptionsPrefix(ksp, "outer_"));
   check_petsc(KSPSetType(ksp, KSPPREONLY));
   check_petsc(KSPGetPC(ksp, &pc));
@@ -89,14 +83,9 @@ void AugmentedSystem::take(const MatrixValues& values, GridHierarchy& grids) {
   find_diagonals(values.products());
   check_petsc(PCCreate(comm_, &multigrid_));
   check_petsc(PCSetOperators(multigrid_, k_, k_));
-  if (grids.usable()) {
-    grids.choose(multigrid_);
-    check_petsc(PCSetFromOptions(multigrid_));
-    grids.take(multigrid_, k_);
-  } else {
-    check_petsc(PCSetType(multigrid_, PCGAMG));
-    check_petsc(PCSetFromOptions(multigrid_));
-  }
+  grids.choose(multigrid_);
+  check_petsc(PCSetFromOptions(multigrid_));
+  grids.take(multigrid_, k_);
   check_petsc(PCSetUp(multigrid_));
   make_solver();
 }
@@ -170,8 +159,8 @@ void AugmentedSystem::make_solver() {
   check_petsc(KSPCreate(comm_, &ksp_));
   check_petsc(KSPSetOperators(ksp_, action_, action_));
   check_petsc(KSPSetType(ksp_, KSPGMRES));
-  check_petsc(
-      KSPGMRESSetRestart(ksp_, 200));  // a restart costs it half; memory is taken as iterations need it
+  // A restart costs up to half of what has been gained; memory is taken as iterations need it.
+  check_petsc(KSPGMRESSetRestart(ksp_, 200));
   check_petsc(KSPSetPCSide(ksp_, PC_RIGHT));
   check_petsc(KSPSetTolerances(ksp_, 1e-5, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
   PC pc = nullptr;
@@ -183,49 +172,46 @@ void AugmentedSystem::make_solver() {
 }
 
 PetscErrorCode AugmentedSystem::multiply(Mat of, Vec x, Vec y) {
-  return as_code([&] {
-    AugmentedSystem* s = nullptr;
-    check_petsc(MatShellGetContext(of, &s));
-    split(x, s->u_, s->p_);
-    check_petsc(MatMult(s->k_, s->u_, s->forces_));
-    check_petsc(MatMultTransposeAdd(s->e_, s->p_, s->forces_, s->forces_));
-    check_petsc(MatMult(s->e_, s->u_, s->volumes_));
-    check_petsc(VecPointwiseMult(s->p_, s->p_, s->compliance_));
-    check_petsc(VecAXPY(s->volumes_, -1, s->p_));
-    check_petsc(VecPointwiseMult(s->volumes_, s->volumes_, s->weight_));
-    join(s->forces_, s->volumes_, y);
-  });
+  AugmentedSystem* s = nullptr;
+  PetscCall(MatShellGetContext(of, &s));
+  PetscCall(split(x, s->u_, s->p_));
+  PetscCall(MatMult(s->k_, s->u_, s->forces_));
+  PetscCall(MatMultTransposeAdd(s->e_, s->p_, s->forces_, s->forces_));
+  PetscCall(MatMult(s->e_, s->u_, s->volumes_));
+  PetscCall(VecPointwiseMult(s->p_, s->p_, s->compliance_));
+  PetscCall(VecAXPY(s->volumes_, -1, s->p_));
+  PetscCall(VecPointwiseMult(s->volumes_, s->volumes_, s->weight_));
+  PetscCall(join(s->forces_, s->volumes_, y));
+  return 0;
 }
 
 PetscErrorCode AugmentedSystem::precondition(PC of, Vec x, Vec y) {
-  return as_code([&] {
-    AugmentedSystem* s = nullptr;
-    check_petsc(PCShellGetContext(of, &s));
-    split(x, s->forces_, s->p_);
-    check_petsc(VecPointwiseDivide(s->p_, s->p_, s->weight_));
-    check_petsc(VecPointwiseDivide(s->p_, s->p_, s->schur_));
-    check_petsc(MatMultTransposeAdd(s->e_, s->p_, s->forces_, s->forces_));
-    check_petsc(VecScale(s->p_, -1));
-    check_petsc(PCApply(s->multigrid_, s->forces_, s->u_));
-    join(s->u_, s->p_, y);
-  });
+  AugmentedSystem* s = nullptr;
+  PetscCall(PCShellGetContext(of, &s));
+  PetscCall(split(x, s->forces_, s->p_));
+  PetscCall(VecPointwiseDivide(s->p_, s->p_, s->weight_));
+  PetscCall(VecPointwiseDivide(s->p_, s->p_, s->schur_));
+  PetscCall(MatMultTransposeAdd(s->e_, s->p_, s->forces_, s->forces_));
+  PetscCall(VecScale(s->p_, -1));
+  PetscCall(PCApply(s->multigrid_, s->forces_, s->u_));
+  PetscCall(join(s->u_, s->p_, y));
+  return 0;
 }
 
 PetscErrorCode AugmentedSystem::solve(PC of, Vec r, Vec u) {
-  return as_code([&] {
-    AugmentedSystem* s = nullptr;
-    check_petsc(PCShellGetContext(of, &s));
-    check_petsc(VecZeroEntries(s->p_));
-    join(r, s->p_, s->right_);
-    check_petsc(KSPSolve(s->ksp_, s->right_, s->solution_));
-    PetscInt iterations = 0;
-    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-    check_petsc(KSPGetIterationNumber(s->ksp_, &iterations));
-    check_petsc(KSPGetConvergedReason(s->ksp_, &reason));
-    s->iterations_ += iterations;
-    split(s->solution_, u, s->p_);
-    check_petsc(PCSetFailedReason(of, reason < 0 ? PC_SUBPC_ERROR : PC_NOERROR));
-  });
+  AugmentedSystem* s = nullptr;
+  PetscCall(PCShellGetContext(of, &s));
+  PetscCall(VecZeroEntries(s->p_));
+  PetscCall(join(r, s->p_, s->right_));
+  PetscCall(KSPSolve(s->ksp_, s->right_, s->solution_));
+  PetscInt iterations = 0;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscCall(KSPGetIterationNumber(s->ksp_, &iterations));
+  PetscCall(KSPGetConvergedReason(s->ksp_, &reason));
+  s->iterations_ += iterations;
+  PetscCall(split(s->solution_, u, s->p_));
+  PetscCall(PCSetFailedReason(of, reason < 0 ? PC_SUBPC_ERROR : PC_NOERROR));
+  return 0;
 }
 
 }  // namespace mpm::parallel

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <functional>
 
-#include <petscksp.h>
+#include <petscsnes.h>
 
 #include "parallel/implicit/petsc_hierarchy.hpp"
 #include "parallel/implicit/petsc_matrix.hpp"
@@ -27,11 +27,10 @@ class AugmentedSystem {
   AugmentedSystem(const AugmentedSystem&) = delete;
   AugmentedSystem& operator=(const AugmentedSystem&) = delete;
 
-  /// Makes the solver of such systems the preconditioner of `ksp`, which does no more than apply it. PETSc's
-  /// options -ksp_... then belong to the solver within.
-  void choose(KSP ksp);
-  /// K and the products of `values`; `grids` precondition K, or, if not usable, smoothed aggregation.
-  /// Collective.
+  /// Makes the solver of such systems the preconditioner of the linear solver, which does no more than apply
+  /// it. PETSc's options -ksp_... then belong to the solver within.
+  void choose(SNES snes);
+  /// K and the products of `values`; `grids` precondition K. Collective.
   void take(const MatrixValues& values, GridHierarchy& grids);
   /// Of the solutions since the last call.
   std::int64_t take_iterations();

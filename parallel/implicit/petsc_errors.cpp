@@ -25,8 +25,8 @@ void keep_petsc_errors() { check_petsc(PetscPushErrorHandler(keep_error, nullptr
 void check_petsc(PetscErrorCode code) {
   if (code == 0) return;
   const std::string what = take_petsc_error();
-  throw PetscError("PETSc: " + (what.empty() ? fmt::format("PETSc error {}", static_cast<int>(code)) : what),
-                   code);
+  throw PetscFailure(
+      "PETSc: " + (what.empty() ? fmt::format("PETSc error {}", static_cast<int>(code)) : what), code);
 }
 
 std::string take_petsc_error() { return std::exchange(first_error, {}); }

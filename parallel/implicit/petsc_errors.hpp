@@ -9,9 +9,9 @@
 
 namespace mpm::parallel {
 
-class PetscError : public std::runtime_error {
+class PetscFailure : public std::runtime_error {
  public:
-  PetscError(const std::string& what, PetscErrorCode code) : runtime_error(what), code_(code) {}
+  PetscFailure(const std::string& what, PetscErrorCode code) : runtime_error(what), code_(code) {}
   PetscErrorCode code() const { return code_; }
 
  private:
@@ -21,7 +21,7 @@ class PetscError : public std::runtime_error {
 /// From now on PETSc's errors are kept for the functions below; PetscPopErrorHandler ends it.
 void keep_petsc_errors();
 
-/// Throws PetscError with PETSc's description of the first error.
+/// Throws PetscFailure with PETSc's description of the first error.
 void check_petsc(PetscErrorCode code);
 inline void check_mpi(int code) { check_petsc(static_cast<PetscErrorCode>(code)); }
 

@@ -79,6 +79,10 @@ bool GridHierarchy::is_of(const core::NonlinearProblem& problem) const {
 }
 
 void GridHierarchy::choose(PC pc) const {
+  if (!usable_) {
+    check_petsc(PCSetType(pc, PCGAMG));
+    return;
+  }
   PetscBool chosen = PETSC_FALSE;
   check_petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCMG, &chosen));
   if (chosen == PETSC_TRUE) return;

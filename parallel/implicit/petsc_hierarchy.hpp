@@ -24,9 +24,11 @@ class GridHierarchy {
   bool usable() const { return usable_; }
   /// Of the same nodes, on this rank.
   bool is_of(const core::NonlinearProblem& problem) const;
-  /// Makes `pc` multigrid on this hierarchy, unless it is.
+  /// Makes `pc` multigrid on this hierarchy, unless it is; smoothed aggregation (GAMG) where that is not
+  /// usable.
   void choose(PC pc) const;
-  /// Makes the matrices of the coarser grids from that of the finest one, for `pc`. Collective.
+  /// Makes the matrices of the coarser grids from that of the finest one, for `pc`, if that is
+  /// multigrid on this hierarchy. Collective.
   void take(PC pc, Mat finest);
 
  private:

@@ -48,7 +48,7 @@ void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool s
     check_petsc(KSPSetType(ksp, KSPGMRES));
     check_petsc(KSPGMRESSetRestart(ksp, 60));
     check_petsc(KSPSetTolerances(ksp, 1e-5, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
-    if (grids != nullptr && grids->usable())
+    if (grids != nullptr)
       grids->choose(pc);
     else
       check_petsc(PCSetType(pc, PCGAMG));

@@ -26,6 +26,7 @@ class MatrixPlaces final : public core::BlockMatrix {
       : first_(first_node), own_(static_cast<std::size_t>(own_nodes)) {}
   /// `values` is null. Negative numbers are no nodes.
   void add(std::span<const std::int64_t> nodes, const double* values) override;
+  bool keeps_products() const override { return true; }
   void add_product(std::span<const std::int64_t>, std::span<const double>, double) override {
     has_products_ = true;
   }

@@ -67,7 +67,7 @@ PetscErrorCode set_up_preconditioner(SNES snes, Mat action, Mat matrix, NewtonSo
   PC pc = nullptr;
   if (code == 0 && solve.augmented != nullptr) {
     code = guarded(solve, [&] { solve.augmented->take(*solve.values, *solve.grids); });
-  } else if (code == 0 && solve.grids != nullptr && solve.grids->usable()) {
+  } else if (code == 0 && solve.grids != nullptr) {
     code = KSPGetPC(ksp, &pc);
     if (code == 0) code = guarded(solve, [&] { solve.grids->take(pc, matrix); });
   }

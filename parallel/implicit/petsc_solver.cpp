@@ -122,7 +122,6 @@ class PetscSolver final : public core::NewtonSolver {
 
 /// The matrix and the solver, or those of the last solve where the places of the entries are the same.
 void PetscSolver::set_up(NonlinearProblem& problem, const NewtonOptions& options) {
-  const bool linear = options.linear;
   MatrixPlaces places(problem.first_node(), problem.own_nodes());
   problem.structure(places);
   for (std::int64_t i = 0; i < problem.own_nodes(); ++i) {
@@ -144,7 +143,7 @@ void PetscSolver::set_up(NonlinearProblem& problem, const NewtonOptions& options
     check_petsc(MatCreateVecs(of_->values->matrix(), &of_->solution, &of_->residual));
     check_petsc(SNESCreate(comm_, &of_->snes));
     set_functions(of_->snes, of_->residual, now_);
-    if (takes_multigrid(3 * problem.all_nodes(), problem.has_springs(), of_->slender) && !linear)
+    if (takes_multigrid(3 * problem.all_nodes(), problem.has_springs(), of_->slender) && !options.linear)
       of_->grids = std::make_unique<GridHierarchy>(comm_, problem);
     if (of_->grids && has_products == 1 && takes_augmented_system() && !options.matrix_free) {
       of_->augmented = std::make_unique<AugmentedSystem>(comm_);
@@ -218,7 +217,7 @@ NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
   if (!wrong_words_.empty()) throw WrongSolverOptions(wrong_words_);
   try {
     return solve_with_options(problem, u, options);
-  } catch (const PetscError& error) {
+  } catch (const PetscFailure& error) {
     if (!given_ || looked_ || !is_of_options(error.code())) throw;
     refuse_options(error.what());
   }
@@ -247,13 +246,11 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
   if (options.linear) {
     choose_conjugate_gradients(snes, options.relative_tolerance);
   } else {
-    choose_linear_solver(snes, 3 * problem.all_nodes(), problem.has_springs(), of_->slender,
-                         of_->grids.get());
-    if (of_->augmented) {
-      KSP ksp = nullptr;
-      check_petsc(SNESGetKSP(snes, &ksp));
-      of_->augmented->choose(ksp);
-    }
+    if (of_->augmented)
+      of_->augmented->choose(snes);
+    else
+      choose_linear_solver(snes, 3 * problem.all_nodes(), problem.has_springs(), of_->slender,
+                           of_->grids.get());
     choose_full_steps(snes, now_);
   }
   if (SNESSetFromOptions(snes) != 0) refuse_options(take_petsc_error());
@@ -264,13 +261,16 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
   if (given_ && !looked_ && !now_.failure && is_of_options(code)) refuse_options(take_petsc_error());
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   check_petsc(SNESGetConvergedReason(snes, &reason));
-  PetscInt linear = 0, iterations = 0;
-  if (!now_.failure && (code != 0 || reason <= 0) && try_otherwise(snes, options.linear)) {
-    take_petsc_error();
+  const auto count_iterations = [&] {
+    PetscInt linear = 0, iterations = 0;
     check_petsc(SNESGetLinearSolveIterations(snes, &linear));
     check_petsc(SNESGetIterationNumber(snes, &iterations));
-    report.linear_iterations = of_->augmented ? of_->augmented->take_iterations() : linear;
-    report.iterations = static_cast<int>(iterations);
+    report.iterations += static_cast<int>(iterations);
+    report.linear_iterations += of_->augmented ? of_->augmented->take_iterations() : linear;
+  };
+  if (!now_.failure && (code != 0 || reason <= 0) && try_otherwise(snes, options.linear)) {
+    take_petsc_error();
+    count_iterations();
     report.norms.clear();
     start_from_guess();
     code = SNESSolve(snes, nullptr, solution);
@@ -283,10 +283,7 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
     take_petsc_error();
     std::rethrow_exception(now_.failure);
   }
-  check_petsc(SNESGetLinearSolveIterations(snes, &linear));
-  check_petsc(SNESGetIterationNumber(snes, &iterations));
-  report.iterations += static_cast<int>(iterations);
-  report.linear_iterations += of_->augmented ? of_->augmented->take_iterations() : linear;
+  count_iterations();
   report.converged = met;
   if (!report.converged) report.reason = why_not_converged(snes, code, reason, options.linear);
   const PetscScalar* from = nullptr;

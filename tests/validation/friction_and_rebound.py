@@ -53,29 +53,32 @@ def slope(options, verdict):
     return rows
 
 
+def rolled(options, plane, shells, stiffness, cell):
+    case = {"cell": cell, "motion": "rolling", "plane": plane, "normal": "automatic", "shells": shells, "stiffness": stiffness}
+    found = row(options, "ball_on_a_slope", _friction.slope(**case), _friction.measure_slope, "rolling", **case)
+    return found | {"particles in": "shells" if shells else "a lattice"}
+
+
+def expect_falling(verdict, rows, shells, what):
+    """The errors of what is ten times as stiff; the softer ones roll farther as they give way."""
+    errors = [abs(r["centre"]) for r in rows if r["shells"] == shells and r["stiffness"] == 10]
+    verdict.expect(errors == sorted(errors, reverse=True), f"{what}: errors of {errors} % do not fall with the cell")
+
+
 def rolling(options, verdict):
     """What is soft, and what has steps: particles on a lattice or in shells, and stiffer balls."""
-    rows = []
-    for shells, stiffness, cell in (*itertools.product((False,), (0.3, 1, 3, 10), (0.2,)), *itertools.product((True,), (1, 10), (0.4, 0.2, *options.finest))):
-        case = {"cell": cell, "motion": "rolling", "normal": "automatic", "shells": shells, "stiffness": stiffness}
-        found = row(options, "ball_on_a_slope", _friction.slope(**case), _friction.measure_slope, "rolling", **case)
-        rows.append(found | {"particles in": "shells" if shells else "a lattice"})
-    stiff = [abs(r["centre"]) for r in rows if r["shells"] and r["stiffness"] == 10]
-    verdict.expect(stiff == sorted(stiff, reverse=True), f"a stiff ball in shells: errors of {stiff} % do not fall with the cell")
+    cases = (*itertools.product((False,), (0.3, 1, 3, 10), (0.2,)), *itertools.product((True,), (1, 10), (0.4, 0.2, *options.finest)))
+    rows = [rolled(options, "rigid", *case) for case in cases]
+    expect_falling(verdict, rows, True, "a stiff ball in shells")
     return rows
 
 
 def free(options, verdict):
     """A rigid ball that moves freely, on rubber that is held from below."""
-    rows = []
-    for stiffness, shells, cell in itertools.product((1, 10), (False, True), (0.4, 0.2, *options.finest)):
-        case = {"cell": cell, "motion": "rolling", "plane": "rubber", "normal": "automatic", "shells": shells, "stiffness": stiffness}
-        found = row(options, "ball_on_a_slope", _friction.slope(**case), _friction.measure_slope, "rolling", **case)
-        rows.append(found | {"particles in": "shells" if shells else "a lattice"})
-    for stiffness, shells in itertools.product((1, 10), (False, True)):
-        errors = [abs(r["centre"]) for r in rows if (r["stiffness"], r["shells"]) == (stiffness, shells)]
-        if stiffness == 10:  # the other one rolls farther as the rubber gives way
-            verdict.expect(errors == sorted(errors, reverse=True), f"a rigid ball on rubber: errors of {errors} % do not fall with the cell")
+    cases = [(shells, stiffness, cell) for stiffness in (1, 10) for shells in (False, True) for cell in (0.4, 0.2, *options.finest)]
+    rows = [rolled(options, "rubber", *case) for case in cases]
+    expect_falling(verdict, rows, False, "a rigid ball on a lattice, on stiff rubber")
+    expect_falling(verdict, rows, True, "a rigid ball in shells, on stiff rubber")
     return rows
 
 
@@ -137,7 +140,8 @@ def discs(options, verdict):
 
 def main():
     parser = _common.arguments(__doc__, "friction_and_rebound")
-    parts = {"slope": (slope, SLOPE), "rolling": (rolling, ROLLING), "free": (free, ROLLING), "block": (block, BLOCK), "cube": (cube, CUBE), "discs": (discs, DISCS)}
+    parts = {"slope": (slope, SLOPE), "rolling": (rolling, ROLLING), "free": (free, ROLLING), "block": (block, BLOCK), "cube": (cube, CUBE),
+             "discs": (discs, DISCS)}
     parser.add_argument("--parts", nargs="+", default=list(parts), choices=parts)
     parser.add_argument("--finest", nargs="*", type=float, default=[], help="cells of further balls on the rigid slope, for example 0.1")
     options = parser.parse_args()
