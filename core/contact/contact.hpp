@@ -94,7 +94,7 @@ struct RigidNode {
   Vec3<double> place{};
   std::vector<ContactField> fields;
   std::vector<int> rigid;  ///< numbers of the rigid bodies; -1: deformable
-  int moves = -1;  ///< field of the body whose motion at the end counts; -1: several rigid bodies meet
+  int moves = -1;  ///< field of the body whose motion of the stage counts; -1: several rigid bodies meet
   std::vector<ContactPair> pairs;
   std::vector<RigidContact> contacts;  ///< with bodies of prescribed motion
 };
@@ -112,10 +112,10 @@ class Contact {
   Contact(const Model& model, const RigidBodies* rigid);
 
   /// What it has to know of the transfer in a step: the part of the particles' velocities that the nodes'
-  /// velocities are, and whether these are corrected.
+  /// velocities are, whether these are corrected, and whether particles move with the corrected ones.
   struct TransferOfStep {
     double share_of_nodes = 0;
-    bool corrects = false;
+    bool corrects = false, moves_corrected = false;
   };
   void set_transfer(const TransferOfStep& transfer) { transfer_ = transfer; }
 
@@ -165,12 +165,12 @@ class Contact {
 
   /// Free rigid bodies: the nodes at which the fields that a brick sees touch them, no later brick having
   /// these, and the answer of such a node to a trial motion of the bodies. The fields have the motion of the
-  /// end of the step, without contact.
+  /// end of the step, or its corrected velocities, without the contact of this stage.
   bool sees_free_body(Slot s) const;
   bool is_rigid(std::int32_t component) const { return rigid(component) >= 0; }
-  void find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNodes> fields,
+  void find_rigid_nodes(const BrickGrid& grid, Slot s, RigidStage stage, std::span<FieldNodes> fields,
                         std::vector<RigidNode>& to) const;
-  void respond(const RigidNode& node, std::span<RigidResponse> to) const;
+  void respond(const RigidNode& node, RigidStage stage, std::span<RigidResponse> to) const;
 
   /// MUSL's strain velocity comes after that of the end of the step, which the fields' motion still has. So
   /// do the corrected velocities of XPIC and FMPM, which come in its place.
@@ -190,6 +190,7 @@ class Contact {
   Friction friction(std::int32_t a, std::int32_t b) const;
   /// Number of the rigid body that is a component; -1: none.
   int rigid(std::int32_t component) const { return rigid_ == nullptr ? -1 : rigid_->of_component(component); }
+  bool is_slipping(int rigid) const { return rigid >= 0 && rigid_->slips(rigid); }
   void take_surfaces(const BrickGrid& grid, const SharedNodes& shared, Slot s,
                      std::vector<FieldNodes>& fields) const;
   void find_nodes(const BrickGrid& grid, const SharedNodes& shared, Slot s,
@@ -209,6 +210,7 @@ class Contact {
                   Node& at) const;
   void take_rigid_contacts(Node& at) const;
   void hold_pairs(Node& at, Velocity which) const;
+  void prepare_strain(Node& at, Velocity which) const;
   void resolve_strain(Node& at, Velocity which) const;
   static void keep_strain(const Node& at);
   void book_on_rigid(int number, const Vec3<double>& place, const Vec3<double>& impulse,
@@ -221,7 +223,7 @@ class Contact {
   void resolve_end(Node& at, ContactSums& sums, bool counts) const;
   void find_blows(const Node& at, std::span<Vec3<double>> by_field) const;
   void book(const Node& at, ContactSums& sums) const;
-  void book_rigid(const Node& at, ContactSums& sums) const;
+  void book_rigid(const Node& at, RigidStage stage, ContactSums& sums) const;
 
   const Model& model_;
   const RigidBodies* rigid_;

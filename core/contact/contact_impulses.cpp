@@ -14,8 +14,8 @@ struct Contact::Node {
   std::vector<ContactField> fields;
   std::vector<int> rigid;    ///< numbers of the rigid bodies; -1: deformable
   std::vector<double> wave;  ///< speeds; 0: rigid
-  int moves = -1;            ///< field of the one rigid body here, a free one with its motion at the end
-  Vec3<double> change{};     ///< of its velocity by contact
+  int moves = -1;            ///< field of the one rigid body here, a free one with its motion of the stage
+  Vec3<double> change{};     ///< of its velocity by the contact of the stage
   bool free_body = false;    ///< whether there is any
   std::vector<Motion> records;
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
@@ -70,7 +70,8 @@ bool Contact::find_pairs(std::span<const FieldNodes> fields, std::span<const Mee
     if (at.rigid[a] >= 0 && at.rigid[b] >= 0 && rigid_->is_free(at.rigid[a]) == rigid_->is_free(at.rigid[b]))
       continue;
     const std::int32_t first = fields[at.number[a]].component, second = fields[at.number[b]].component;
-    const double coefficient = pair.shears ? 0.0 : friction(first, second).coefficient;
+    const bool slips = pair.shears || is_slipping(at.rigid[a]) || is_slipping(at.rigid[b]);
+    const double coefficient = slips ? 0.0 : friction(first, second).coefficient;
     at.pairs.push_back({static_cast<int>(a), static_cast<int>(b), pair.normal, coefficient});
     at.recorded.push_back(pairs_.number(first, second));
   }
@@ -113,7 +114,9 @@ void Contact::hold_pairs(Node& at, Velocity which) const {
   constexpr double round_off = 1e-10;
   const auto of_end = [&](std::size_t f) {
     const double* v = at.records[f].velocity();
-    return at.rigid[f] < 0 ? Vec3<double>{v[0], v[1], v[2]} : at.fields[f].velocity;
+    if (at.rigid[f] < 0) return Vec3<double>{v[0], v[1], v[2]};
+    const bool moved = which == Velocity::of_correction && static_cast<int>(f) == at.moves;
+    return moved ? at.fields[f].velocity - at.change : at.fields[f].velocity;
   };
   for (ContactPair& pair : at.pairs) {
     const Vec3<double> a = of_end(static_cast<std::size_t>(pair.first)),
@@ -127,7 +130,7 @@ void Contact::hold_pairs(Node& at, Velocity which) const {
   }
 }
 
-void Contact::resolve_strain(Node& at, Velocity which) const {
+void Contact::prepare_strain(Node& at, Velocity which) const {
   if (which != Velocity::of_strain) hold_pairs(at, which);
   // With Pan's method the particles still approach. Friction in proportion to that would shear the bodies,
   // and the particles would not get its impulse: energy without a source. What slides strains as it slides.
@@ -135,6 +138,10 @@ void Contact::resolve_strain(Node& at, Velocity which) const {
   // pull.
   if ((method_ == ContactInput::Method::pan && !at.free_body) || which == Velocity::of_correction)
     for (ContactPair& pair : at.pairs) pair.friction = 0;
+}
+
+void Contact::resolve_strain(Node& at, Velocity which) const {
+  prepare_strain(at, which);
   resolve_contacts(at.fields, at.pairs);
 }
 
@@ -159,8 +166,12 @@ void Contact::book_correction(const Node& at, ContactSums& sums) const {
     const ContactPair& pair = at.pairs[p];
     sums.record.add(at.recorded[p], pair.impulse, 0);
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    book_on_rigid(at.rigid[a], at.place, -1.0 * pair.impulse, at.fields[a].velocity, sums);
-    book_on_rigid(at.rigid[b], at.place, pair.impulse, at.fields[b].velocity, sums);
+    const auto mean_of = [&](std::size_t f) {
+      const bool moved = static_cast<int>(f) == at.moves;
+      return moved ? at.fields[f].velocity - 0.5 * at.change : at.fields[f].velocity;
+    };
+    book_on_rigid(at.rigid[a], at.place, -1.0 * pair.impulse, mean_of(a), sums);
+    book_on_rigid(at.rigid[b], at.place, pair.impulse, mean_of(b), sums);
   }
 }
 
@@ -279,7 +290,7 @@ void Contact::resolve_end(Node& at, ContactSums& sums, bool counts) const {
   }
   if (counts) {
     book(at, sums);
-    book_rigid(at, sums);
+    book_rigid(at, RigidStage::end, sums);
   }
 }
 
@@ -315,13 +326,14 @@ void Contact::book(const Node& at, ContactSums& sums) const {
 }
 
 /// Energy and impulses of a free rigid body with those of prescribed motion.
-void Contact::book_rigid(const Node& at, ContactSums& sums) const {
+void Contact::book_rigid(const Node& at, RigidStage stage, ContactSums& sums) const {
   for (const Node::Rigid& r : at.rigid_contacts) {
     const RigidContact& c = r.contact;
-    const Vec3<double> impulse = rigid_->impulse_of(c);
+    const Vec3<double> impulse = rigid_->impulse_of(stage, c);
     if (impulse == Vec3<double>{}) continue;
-    const Vec3<double> mean =
-        0.5 * (velocity_at(rigid_->state(c.free), c.place) + rigid_->velocity_at_end(c.free, c.place));
+    const Vec3<double> before = stage == RigidStage::end ? velocity_at(rigid_->state(c.free), c.place)
+                                                         : rigid_->velocity(RigidStage::end, c.free, c.place);
+    const Vec3<double> mean = 0.5 * (before + rigid_->velocity(stage, c.free, c.place));
     const Vec3<double> relative = mean - c.velocity;
     const double pressing = dot(impulse, c.normal) * dot(relative, c.normal), all = dot(impulse, relative);
     sums.record.dissipated.add(-all);
@@ -360,8 +372,14 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
     at.moves = -1;
   } else {
     ContactField& moves = at.fields[static_cast<std::size_t>(at.moves)];
-    const Vec3<double> end = rigid_->velocity_at_end(at.rigid[static_cast<std::size_t>(at.moves)], at.place);
-    at.change = end - moves.velocity;
+    const auto motion = [&](RigidStage stage) {
+      return rigid_->velocity(stage, at.rigid[static_cast<std::size_t>(at.moves)], at.place);
+    };
+    // The strain meets the motion with which the bodies move.
+    const bool corrects = which == Velocity::of_correction,
+               corrected = corrects || (which == Velocity::of_strain_after_end && transfer_.moves_corrected);
+    const Vec3<double> end = motion(corrected ? RigidStage::corrected : RigidStage::end);
+    at.change = end - (corrects ? motion(RigidStage::end) : moves.velocity);
     moves = {std::numeric_limits<double>::infinity(), end};
   }
   if (!find_pairs(fields, meetings(s).pairs_of(node), at)) return false;
@@ -387,7 +405,10 @@ void Contact::resolve(const BrickGrid& grid, Slot s, Velocity which, std::span<F
     if (!of_end) {
       resolve_strain(at, which);
       keep_strain(at);
-      if (which == Velocity::of_correction && node.counts) book_correction(at, sums);
+      if (which == Velocity::of_correction && node.counts) {
+        book_correction(at, sums);
+        book_rigid(at, RigidStage::corrected, sums);
+      }
       continue;
     }
     resolve_end(at, sums, node.counts);
@@ -414,40 +435,43 @@ bool Contact::sees_free_body(Slot s) const {
   });
 }
 
-void Contact::find_rigid_nodes(const BrickGrid& grid, Slot s, std::span<FieldNodes> fields,
+void Contact::find_rigid_nodes(const BrickGrid& grid, Slot s, RigidStage stage, std::span<FieldNodes> fields,
                                std::vector<RigidNode>& to) const {
+  const Velocity which = stage == RigidStage::end ? Velocity::of_end : Velocity::of_correction;
   Node at;
   for (const MeetingNodes::Node& node : meetings(s).nodes) {
-    if (!node.counts || !take_node(grid, s, Velocity::of_end, fields, node, at) || !at.free_body) continue;
+    if (!node.counts || !take_node(grid, s, which, fields, node, at) || !at.free_body) continue;
+    if (stage == RigidStage::corrected) prepare_strain(at, which);
     to.push_back({at.place, at.fields, at.rigid, at.moves, at.pairs, {}});
     for (const Node::Rigid& r : at.rigid_contacts) to.back().contacts.push_back(r.contact);
   }
 }
 
-void Contact::respond(const RigidNode& node, std::span<RigidResponse> to) const {
+void Contact::respond(const RigidNode& node, RigidStage stage, std::span<RigidResponse> to) const {
   if (node.pairs.empty()) return;
   std::vector<ContactField> fields = node.fields;
   std::vector<ContactPair> pairs = node.pairs;
   const auto at = [&](int f) { return static_cast<std::size_t>(f); };
   if (node.moves >= 0)
-    fields[at(node.moves)].velocity = rigid_->velocity_at_end(node.rigid[at(node.moves)], node.place);
+    fields[at(node.moves)].velocity = rigid_->velocity(stage, node.rigid[at(node.moves)], node.place);
+  for (const int number : node.rigid)
+    if (number >= 0 && rigid_->slips(number))
+      for (ContactPair& pair : pairs) pair.friction = 0;
   const std::vector<ContactField> before = fields;
   resolve_contacts(fields, pairs);
   for (const ContactPair& pair : pairs) {
     for (const int f : {pair.first, pair.second}) {
       const int number = node.rigid[at(f)], other = f == pair.first ? pair.second : pair.first;
       if (number < 0 || !rigid_->is_free(number) || pair.impulse == Vec3<double>{}) continue;
-      double along = 0, across = 0;
+      Mat3<double> change{};
       if (f == node.moves) {
-        const Vec3<double> u = before[at(pair.first)].velocity - before[at(pair.second)].velocity;
-        const double u_n = dot(u, pair.normal), p_n = dot(pair.impulse, pair.normal);
-        const Vec3<double> u_t = u - u_n * pair.normal, p_t = pair.impulse - p_n * pair.normal;
-        const double slides = std::sqrt(dot(u_t, u_t)), mass = before[at(other)].mass;
-        along = mass;
-        across = slides > 0 ? std::min(mass, std::sqrt(dot(p_t, p_t)) / slides) : 0;
+        const Vec3<double> approach = before[at(pair.first)].velocity - before[at(pair.second)].velocity;
+        const double mass = before[at(other)].mass;
+        change = rigid_->meets_rigid(stage, number) ? impulse_secant(pair, approach, mass)
+                                                    : impulse_derivative(pair, approach, mass);
       }
       to[at(number)].add(f == pair.first ? -1.0 * pair.impulse : pair.impulse,
-                         node.place - rigid_->state(number).centre, pair.normal, along, across);
+                         node.place - rigid_->state(number).centre, change);
     }
   }
 }

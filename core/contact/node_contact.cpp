@@ -76,6 +76,48 @@ void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pai
   }
 }
 
+namespace {
+
+/// A vector's part along a normal, and that across it.
+struct Parts {
+  double along = 0;
+  Vec3<double> across{};
+  double length_across = 0;
+};
+Parts parts_of(const Vec3<double>& v, const Vec3<double>& normal) {
+  const double along = dot(v, normal);
+  const Vec3<double> across = v - along * normal;
+  return {along, across, std::sqrt(dot(across, across))};
+}
+
+Mat3<double> product(const Vec3<double>& a, const Vec3<double>& b) {
+  return {a.x * b.x, a.x * b.y, a.x * b.z, a.y * b.x, a.y * b.y, a.y * b.z, a.z * b.x, a.z * b.y, a.z * b.z};
+}
+/// along n n^T + across (1 - n n^T)
+Mat3<double> about(const Vec3<double>& n, double along, double across) {
+  return (along - across) * product(n, n) + Mat3<double>{across, 0, 0, 0, across, 0, 0, 0, across};
+}
+
+}  // namespace
+
+Mat3<double> impulse_derivative(const ContactPair& pair, const Vec3<double>& approach, double mass) {
+  const Parts u = parts_of(approach, pair.normal);
+  const double most = pair.friction * mass * std::max(u.along, 0.0);
+  const bool sticks = pair.friction > 0 && mass * u.length_across <= most;
+  if (pair.holds == ContactPair::Holds::all || sticks) return about(pair.normal, mass, mass);
+  if (!(most > 0)) return about(pair.normal, mass, 0);
+  const Vec3<double> t = (1 / u.length_across) * u.across;
+  const double turns = most / u.length_across;
+  return about(pair.normal, mass, turns) - turns * product(t, t) +
+         (pair.friction * mass) * product(t, pair.normal);
+}
+
+Mat3<double> impulse_secant(const ContactPair& pair, const Vec3<double>& approach, double mass) {
+  const Parts u = parts_of(approach, pair.normal), p = parts_of(pair.impulse, pair.normal);
+  const double across = u.length_across > 0 ? std::min(mass, p.length_across / u.length_across) : 0;
+  return about(pair.normal, mass, across);
+}
+
 std::optional<Vec3<double>> contact_normal(const ContactSurface& first, const ContactSurface& second) {
   const auto direction = [](double sign, const ContactSurface& s) -> std::optional<Vec3<double>> {
     const double length = std::sqrt(dot(s.mass_gradient, s.mass_gradient));

@@ -19,7 +19,7 @@
 #include <optional>
 #include <span>
 
-#include "core/tensor/vec3.hpp"
+#include "core/tensor/tensor.hpp"
 
 namespace mpm::core {
 
@@ -45,6 +45,14 @@ inline constexpr double contact_mass_ratio = 1e5;
 
 /// Sets the impulses of the pairs and the velocities of the fields.
 void resolve_contacts(std::span<ContactField> fields, std::span<ContactPair> pairs);
+
+/// Of a pair that is alone at a node, one of its fields of infinite mass, the other one of this `mass`:
+/// d(impulse)/du, u the velocity of the first field relative to the second one. Where the fields slide, the
+/// impulse across the normal n is mu m u.n along their motion t, and the derivative is not symmetric:
+/// m n n^T + mu m t n^T + mu m (u.n)/|u_t| (1 - n n^T - t t^T).
+Mat3<double> impulse_derivative(const ContactPair& pair, const Vec3<double>& approach, double mass);
+/// The symmetric matrix K with impulse = K u along the normal and across it, for the impulse of the pair.
+Mat3<double> impulse_secant(const ContactPair& pair, const Vec3<double>& approach, double mass);
 
 /// A surface has a direction where its gradient over a cell is at least this share of the mass at the node.
 /// At the surface of a filled half-space it is 2, deeper inside it falls to zero as the distance leaves the

@@ -208,54 +208,63 @@ void RigidBodies::move_without_contact(const Loads& loads, const Vec3<double>& g
     state.spin =
         (rigid.driven ? 1.0 : kept) * rigid.spin_before + dt * loads.angular_acceleration(rigid.body);
     if (!rigid.driven) keep_symmetry(state);
-    rigid.end = {state.velocity, state.spin};
-    find_rotation(rigid);
+    rigid.end = rigid.corrected = {state.velocity, state.spin};
+    rigid.slips = false;
+    move_with(rigid, rigid.end);
     node_mass_[r] =
         rigid.driven ? std::numeric_limits<double>::infinity() : state.mass / std::max(state.contacts, 1.0);
   }
 }
 
-void RigidBodies::find_rotation(Rigid& rigid) {
+void RigidBodies::move_with(Rigid& rigid, const RigidVelocity& motion) {
   const RigidState& s = *model_.bodies[static_cast<std::size_t>(rigid.body)].rigid_state;
-  rigid.turn =
-      rigid.driven ? rotation(length_.dt * rigid.end.spin) : turn_in_step(s, rigid.end.spin, length_.dt);
+  rigid.moves = motion;
+  rigid.turn = rigid.driven ? rotation(length_.dt * motion.spin) : turn_in_step(s, motion.spin, length_.dt);
 }
 
-void RigidBodies::gather(std::span<const RigidContact> mine) {
+void RigidBodies::move_corrected() {
+  for (Rigid& rigid : bodies_)
+    if (!rigid.driven) move_with(rigid, rigid.corrected);
+}
+
+void RigidBodies::gather(RigidStage stage, std::span<const RigidContact> mine) {
   if (std::ranges::none_of(bodies_, &Rigid::driven)) return;  // on all ranks
   static_assert(std::is_trivially_copyable_v<RigidContact>);
   constexpr std::size_t size = sizeof(RigidContact);
   std::string bytes(size * mine.size(), 0);
   if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
-  contacts_.clear();
+  std::vector<RigidContact>& all = contacts(stage);
+  all.clear();
   for (const std::string& of_rank : ranks_.gather(bytes)) {
-    const std::size_t first = contacts_.size();
-    contacts_.resize(first + of_rank.size() / size);
-    if (!of_rank.empty()) std::memcpy(contacts_.data() + first, of_rank.data(), of_rank.size());
+    const std::size_t first = all.size();
+    all.resize(first + of_rank.size() / size);
+    if (!of_rank.empty()) std::memcpy(all.data() + first, of_rank.data(), of_rank.size());
   }
-  std::ranges::sort(contacts_, [](const RigidContact& a, const RigidContact& b) { return a < b; });
+  std::ranges::sort(all, [](const RigidContact& a, const RigidContact& b) { return a < b; });
 }
 
-std::span<RigidContact> RigidBodies::contacts_of(std::size_t number) {
+std::span<RigidContact> RigidBodies::contacts_of(RigidStage stage, std::size_t number) {
   const auto body = static_cast<std::int32_t>(number);
-  const auto first = std::ranges::lower_bound(contacts_, body, {}, &RigidContact::free),
-             last = std::ranges::upper_bound(contacts_, body, {}, &RigidContact::free);
+  std::vector<RigidContact>& all = contacts(stage);
+  const auto first = std::ranges::lower_bound(all, body, {}, &RigidContact::free),
+             last = std::ranges::upper_bound(all, body, {}, &RigidContact::free);
   return {first, last};
 }
 
-Vec3<double> RigidBodies::impulse_of(const RigidContact& contact) const {
-  const auto at = std::lower_bound(contacts_.begin(), contacts_.end(), contact);
-  if (at == contacts_.end() || contact < *at)
+Vec3<double> RigidBodies::impulse_of(RigidStage stage, const RigidContact& contact) const {
+  const std::vector<RigidContact>& all = contacts_[static_cast<std::size_t>(stage)];
+  const auto at = std::lower_bound(all.begin(), all.end(), contact);
+  if (at == all.end() || contact < *at)
     throw std::logic_error("a node of two rigid bodies was not among those that found their motion");
   return at->impulse;
 }
 
-void RigidBodies::fail_pressed(std::size_t number) {
+void RigidBodies::fail_pressed(RigidStage stage, std::size_t number) {
   const auto name = [&](std::size_t r) {
     return model_.bodies[static_cast<std::size_t>(bodies_[r].body)].name;
   };
   std::vector<std::string> others;
-  for (const RigidContact& contact : contacts_of(number)) {
+  for (const RigidContact& contact : contacts_of(stage, number)) {
     std::string other = name(static_cast<std::size_t>(contact.driven));
     if (contact.impulse != Vec3<double>{} && std::ranges::find(others, other) == others.end())
       others.push_back(std::move(other));
@@ -269,39 +278,70 @@ void RigidBodies::fail_pressed(std::size_t number) {
       model_.clock.step + 1, model_.clock.time, name(number), list));
 }
 
-void RigidBodies::find_motion(std::span<const RigidContact> contacts,
+bool RigidBodies::meets_rigid(RigidStage stage, int number) const {
+  return std::ranges::any_of(contacts_[static_cast<std::size_t>(stage)],
+                             [&](const RigidContact& c) { return c.free == number; });
+}
+
+void RigidBodies::find_motion(RigidStage stage, std::span<const RigidContact> contacts,
                               const std::function<void(std::span<RigidResponse>)>& respond) {
-  constexpr int most_trials = 20;
+  constexpr int most_trials = 60;
+  gather(stage, contacts);
+  if (!try_motion(stage, most_trials, respond)) {
+    for (Rigid& rigid : bodies_) rigid.slips = rigid.slips || !rigid.found;
+    try_motion(stage, most_trials, respond);
+  }
+  if (stage == RigidStage::corrected) return;
+  for (Rigid& rigid : bodies_) {
+    if (rigid.driven) continue;
+    rigid.corrected = rigid.end;
+    move_with(rigid, rigid.end);
+  }
+}
+
+bool RigidBodies::try_motion(RigidStage stage, int most_trials,
+                             const std::function<void(std::span<RigidResponse>)>& respond) {
   constexpr auto size = static_cast<std::size_t>(RigidResponse::size);
-  gather(contacts);
-  bool rest = false;
-  for (int trial = 0; trial < most_trials && !rest; ++trial) {
+  std::vector<RigidSearch> searches;
+  for (std::size_t r = 0; r < bodies_.size(); ++r) {
+    const RigidState& s = state(static_cast<int>(r));
+    Rigid& rigid = bodies_[r];
+    searches.emplace_back(stage == RigidStage::end ? RigidVelocity{s.velocity, s.spin} : rigid.end);
+    rigid.motion(stage) = searches.back().trial();
+    rigid.found = rigid.driven;
+  }
+  const auto found = [&] { return std::ranges::all_of(bodies_, &Rigid::found); };
+  for (int trial = 0; trial < most_trials && !found(); ++trial) {
     std::vector<RigidResponse> responses(bodies_.size());
     respond(responses);
     std::vector<ExactSum> sums;
     for (const RigidResponse& response : responses)
       sums.insert(sums.end(), std::begin(response.sums), std::end(response.sums));
     ranks_.sum(std::span<ExactSum>(sums));
-    rest = true;
     for (std::size_t r = 0; r < bodies_.size(); ++r) {
       Rigid& rigid = bodies_[r];
-      if (rigid.driven) continue;
+      if (rigid.found) continue;
       double values[size];
       for (std::size_t i = 0; i < size; ++i) values[i] = sums[size * r + i].value();
-      const bool alone = std::ranges::all_of(values, [](double v) { return v == 0; });
-      const RigidState& without = state(static_cast<int>(r));
-      const RigidVelocity free{without.velocity, without.spin}, before = rigid.end;
-      rigid.end = alone ? free : next_trial(without, free, before, values);
-      if (const std::span<RigidContact> own = contacts_of(r); !own.empty()) {
-        for (RigidContact& contact : own) contact.impulse = {};
-        if (!resolve_rigid_contacts(without, RigidResistance(without, values), rigid.end, own))
-          fail_pressed(r);
+      const RigidState& s = state(static_cast<int>(r));
+      RigidVelocity& motion = rigid.motion(stage);
+      if (const std::span<RigidContact> own = contacts_of(stage, r); own.empty()) {
+        searches[r].next(s, values);
+        motion = searches[r].trial();
+        rigid.found = searches[r].found();
+      } else {
+        const RigidVelocity before = motion;
+        motion = next_trial(s, searches[r].free(), before, values);
+        for (RigidContact& contact : own) {
+          contact.impulse = {};
+          if (rigid.slips) contact.friction = 0;
+        }
+        if (!resolve_rigid_contacts(s, RigidResistance(s, values), motion, own)) fail_pressed(stage, r);
+        rigid.found = same_motion(s, before, motion);
       }
-      rest = rest && same_motion(without, before, rigid.end);
     }
   }
-  for (Rigid& rigid : bodies_)
-    if (!rigid.driven) find_rotation(rigid);
+  return found();
 }
 
 double RigidBodies::longest_step(const Loads& loads) const {
@@ -334,7 +374,7 @@ double RigidBodies::longest_step(const Loads& loads) const {
 void RigidBodies::move(int number, const ColumnLayout& layout, double* block) const {
   const RigidState& s = state(number);
   const Rigid& rigid = bodies_[static_cast<std::size_t>(number)];
-  const Vec3<double> centre = s.centre + length_.dt * rigid.end.velocity;
+  const Vec3<double> centre = s.centre + length_.dt * rigid.moves.velocity;
   double* x = block + layout.offset(Column::position_x);
   for (int i = 0; i < block_lanes; ++i) {
     const Vec3<double> at =
@@ -439,7 +479,7 @@ void RigidBodies::end_step(std::vector<RigidImpulse>& impulses, ExactSum& work, 
     const Vec3<double> impulse{s[0].value(), s[1].value(), s[2].value()},
         moment{s[3].value(), s[4].value(), s[5].value()};
     const double without_contact = kinetic_energy(state), given = s[6].value();
-    core::end_step(state, length_, rigid.end.velocity, rigid.turn, impulse, moment, rigid.driven);
+    core::end_step(state, length_, rigid.moves.velocity, rigid.turn, impulse, moment, rigid.driven);
     state.contacts = static_cast<double>(contacts[r]);
     if (ranks_.rank() != 0) continue;
     if (rigid.reaction != nullptr) {

@@ -36,6 +36,11 @@ struct RigidImpulse {
   RigidImpulse& operator+=(const RigidImpulse& other);
 };
 
+/// The motions that a free rigid body has in a step: that of the end of the step, and that with XPIC's and
+/// FMPM's corrections of the nodes' velocities, which press on it, too. The second begins with the first and
+/// is the same without such corrections.
+enum class RigidStage { end, corrected };
+
 class RigidBodies {
  public:
   /// States that the model does not have yet follow from the particles. Collective.
@@ -55,11 +60,15 @@ class RigidBodies {
   bool any_free() const {
     return std::ranges::any_of(bodies_, [](const Rigid& r) { return !r.driven; });
   }
+  /// Whether a free body touches bodies of prescribed motion in this step.
+  bool meets_rigid(RigidStage stage, int number) const;
+  /// Whether a free body slips in this step on all that it touches, as no motion with friction was found.
+  bool slips(int number) const { return bodies_[static_cast<std::size_t>(number)].slips; }
   /// Mass of a rigid body at a node where its motion at the end of the step is not known.
   double mass_at_node(int number) const { return node_mass_[static_cast<std::size_t>(number)]; }
-  /// Velocity at a place at the end of the step: without contact until find_motion(), which tries several.
-  Vec3<double> velocity_at_end(int number, const Vec3<double>& place) const {
-    return bodies_[static_cast<std::size_t>(number)].end.at(place - state(number).centre);
+  /// Velocity at a place: without contact until find_motion(), which tries several.
+  Vec3<double> velocity(RigidStage stage, int number, const Vec3<double>& place) const {
+    return bodies_[static_cast<std::size_t>(number)].motion(stage).at(place - state(number).centre);
   }
 
   /// The motion that the bodies would have without contact.
@@ -68,13 +77,15 @@ class RigidBodies {
   void shorten_step(const Loads& loads, const Vec3<double>& gravity, const StepLength& length) {
     move_without_contact(loads, gravity, length);
   }
-  /// The motion of the free bodies at the end of the step. `contacts`: where bodies of prescribed motion meet
-  /// them, of this rank; respond(responses) adds what its nodes with deformable bodies answer to
-  /// velocity_at_end(), per body. Throws NumericalFailure where others close on a body. Collective.
-  void find_motion(std::span<const RigidContact> contacts,
+  /// The motion of the free bodies, the stages in their order. `contacts`: where bodies of prescribed motion
+  /// meet them, of this rank; respond(responses) adds what its nodes with deformable bodies answer to
+  /// velocity(), per body. Throws NumericalFailure where others close on a body. Collective.
+  void find_motion(RigidStage stage, std::span<const RigidContact> contacts,
                    const std::function<void(std::span<RigidResponse>)>& respond);
+  /// The bodies move with their corrected motion in this step, after find_motion().
+  void move_corrected();
   /// On the free body, after find_motion().
-  Vec3<double> impulse_of(const RigidContact& contact) const;
+  Vec3<double> impulse_of(RigidStage stage, const RigidContact& contact) const;
   /// The longest step in which no body moves by more than a part of a cell; infinite where a scene has
   /// deformable bodies, whose waves limit it.
   double longest_step(const Loads& loads) const;
@@ -93,23 +104,33 @@ class RigidBodies {
     ReactionSums* reaction = nullptr;  ///< of the model, which keeps their number; null: not recorded
     double energy_before = 0;          ///< kinetic, at the start of the step
     Vec3<double> velocity_before{}, spin_before{};
-    RigidVelocity end{};  ///< with which it moves in this step
-    Mat3<double> turn{};  ///< its rotation in this step
+    RigidVelocity end{}, corrected{};  ///< motions of the step
+    RigidVelocity moves{};             ///< that with which it moves
+    Mat3<double> turn{};               ///< its rotation by it
+    bool found = false;                ///< its motion of the stage
+    bool slips = false;                ///< slips()
+
     /// Faces of the grid that hold others and that a free one had reached at the end of the last step, by the
     /// particles of this rank, as bits.
     std::uint32_t reached = 0;
+
+    RigidVelocity& motion(RigidStage stage) { return stage == RigidStage::end ? end : corrected; }
+    const RigidVelocity& motion(RigidStage stage) const { return stage == RigidStage::end ? end : corrected; }
   };
   void find_states(Reductions& ranks);
   void find_densities(Reductions& ranks);
   void move_without_contact(const Loads& loads, const Vec3<double>& gravity, const StepLength& length);
   /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
   Vec3<double> symmetry_planes_at(int number);
-  void find_rotation(Rigid& rigid);
+  bool try_motion(RigidStage stage, int most_trials,
+                  const std::function<void(std::span<RigidResponse>)>& respond);
+  void move_with(Rigid& rigid, const RigidVelocity& motion);
+  std::vector<RigidContact>& contacts(RigidStage stage) { return contacts_[static_cast<std::size_t>(stage)]; }
   /// Those of all ranks. Collective.
-  void gather(std::span<const RigidContact> mine);
-  /// Of a body, in contacts_.
-  std::span<RigidContact> contacts_of(std::size_t number);
-  [[noreturn]] void fail_pressed(std::size_t number);
+  void gather(RigidStage stage, std::span<const RigidContact> mine);
+  /// Of a body.
+  std::span<RigidContact> contacts_of(RigidStage stage, std::size_t number);
+  [[noreturn]] void fail_pressed(RigidStage stage, std::size_t number);
   std::uint32_t faces_reached(const RigidState& s, const Vec3<double>& x, double edge) const;
   /// Throws NumericalFailure where a free body has reached a face that holds others. Collective.
   void require_inside();
@@ -121,7 +142,7 @@ class RigidBodies {
   std::vector<double> density_;  ///< density()
   std::vector<double> node_mass_;
   std::vector<int> by_component_, by_body_;
-  std::vector<RigidContact> contacts_;  ///< of all ranks in this step, in their order
+  std::vector<RigidContact> contacts_[2];  ///< by stage, of all ranks in this step, in their order
 };
 
 /// A sentence for each free rigid body that symmetry planes cut.

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+
+#include <Eigen/LU>
 
 namespace mpm::core {
 
 namespace {
-
-/// Number of the entry in row i and column j <= i of a lower triangle.
-constexpr int triangle(int i, int j) { return i * (i + 1) / 2 + j; }
 
 Six both(const Vec3<double>& a, const Vec3<double>& b) { return {a.x, a.y, a.z, b.x, b.y, b.z}; }
 
@@ -26,67 +26,71 @@ std::array<bool, 6> held(const RigidState& s) {
   return is;
 }
 
+RigidVelocity motion(const Six& x) { return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}}; }
+
+/// M (q0 - q) + sum B^T P(q), of what can change.
+Six residual(const RigidState& s, const RigidVelocity& free, const RigidVelocity& q,
+             std::span<const double> response) {
+  Six r = both(s.mass * (free.velocity - q.velocity), s.inertia * (free.spin - q.spin));
+  const std::array<bool, 6> fixed = held(s);
+  for (std::size_t i = 0; i < 6; ++i) r[i] = fixed[i] ? 0 : r[i] + response[i];
+  return r;
+}
+
 }  // namespace
 
-void RigidResponse::add(const Vec3<double>& p, const Vec3<double>& arm, const Vec3<double>& normal,
-                        double along, double across) {
-  const Six g = both(p, cross(arm, p));
-  for (std::size_t i = 0; i < 6; ++i) sums[i].add(g[i]);
-  // k = across 1 + (along - across) n n^T, and B^T e = (e, arm x e).
-  const Six n = both(normal, cross(arm, normal));
-  Six axes[3];
-  for (int a = 0; a < 3; ++a) {
+void RigidResponse::add(const Vec3<double>& p, const Vec3<double>& arm, const Mat3<double>& change) {
+  const Six of_p = both(p, cross(arm, p));
+  for (std::size_t i = 0; i < 6; ++i) sums[i].add(of_p[i]);
+  // Column by column: B of a unit motion is e, or e x arm.
+  for (std::size_t j = 0; j < 6; ++j) {
     Vec3<double> e{};
-    e[a] = 1;
-    axes[a] = both(e, cross(arm, e));
-  }
-  for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double value = (along - across) * n[i] * n[j];
-      for (const Six& e : axes) value += across * e[i] * e[j];
-      sums[6 + triangle(static_cast<int>(i), static_cast<int>(j))].add(value);
-    }
+    e[static_cast<int>(j % 3)] = 1;
+    const Vec3<double> falls = change * (j < 3 ? e : cross(e, arm));
+    const Six column = both(falls, cross(arm, falls));
+    for (std::size_t i = 0; i < 6; ++i) sums[6 + 6 * i + j].add(column[i]);
   }
 }
 
 RigidResistance::RigidResistance(const RigidState& s, std::span<const double> response) : fixed_(held(s)) {
-  std::ranges::copy(response.subspan(6), factor_.begin());
-  const auto at = [&](int i, int j) -> double& { return factor_[static_cast<std::size_t>(triangle(i, j))]; };
-  for (int i = 0; i < 3; ++i) at(i, i) += s.mass;
+  using Matrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  Matrix a = Eigen::Map<const Matrix>(response.subspan(6).data());
   const Sym3<double>& j = s.inertia;
-  at(3, 3) += j.xx, at(4, 4) += j.yy, at(5, 5) += j.zz;
-  at(4, 3) += j.xy, at(5, 4) += j.yz, at(5, 3) += j.xz;
+  a.topLeftCorner<3, 3>().diagonal().array() += s.mass;
+  a.bottomRightCorner<3, 3>() += Eigen::Matrix3d{{j.xx, j.xy, j.xz}, {j.xy, j.yy, j.yz}, {j.xz, j.yz, j.zz}};
   for (int i = 0; i < 6; ++i)
-    for (int k = 0; k <= i; ++k)
-      if (fixed_[static_cast<std::size_t>(i)] || fixed_[static_cast<std::size_t>(k)]) at(i, k) = i == k;
-  for (int c = 0; c < 6; ++c) {
-    for (int k = 0; k < c; ++k) at(c, c) -= at(c, k) * at(c, k) * at(k, k);
-    for (int i = c + 1; i < 6; ++i) {
-      for (int k = 0; k < c; ++k) at(i, c) -= at(i, k) * at(c, k) * at(k, k);
-      at(i, c) /= at(c, c);
-    }
-  }
+    for (int k = 0; k < 6; ++k)
+      if (fixed_[static_cast<std::size_t>(i)] || fixed_[static_cast<std::size_t>(k)]) a(i, k) = i == k;
+  Eigen::Map<Matrix>(inverse_.data()) = a.inverse();
 }
 
-Six RigidResistance::answer(Six b) const {
-  const auto at = [&](int i, int j) { return factor_[static_cast<std::size_t>(triangle(i, j))]; };
-  const auto x = [&](int i) -> double& { return b[static_cast<std::size_t>(i)]; };
+Six RigidResistance::answer(const Six& b) const {
+  Six x{};
   for (std::size_t i = 0; i < 6; ++i)
-    if (fixed_[i]) b[i] = 0;
-  for (int i = 0; i < 6; ++i)
-    for (int k = 0; k < i; ++k) x(i) -= at(i, k) * x(k);
-  for (int i = 0; i < 6; ++i) x(i) /= at(i, i);
-  for (int i = 5; i >= 0; --i)
-    for (int k = i + 1; k < 6; ++k) x(i) -= at(k, i) * x(k);
-  return b;
+    for (std::size_t k = 0; k < 6; ++k)
+      if (!fixed_[i] && !fixed_[k]) x[i] += inverse_[6 * i + k] * b[k];
+  return x;
 }
 
 RigidVelocity next_trial(const RigidState& s, const RigidVelocity& free, const RigidVelocity& trial,
                          std::span<const double> response) {
-  Six b = both(s.mass * (free.velocity - trial.velocity), s.inertia * (free.spin - trial.spin));
-  for (std::size_t i = 0; i < 6; ++i) b[i] += response[i];
-  const Six d = RigidResistance(s, response).answer(b);
-  return {trial.velocity + Vec3<double>{d[0], d[1], d[2]}, trial.spin + Vec3<double>{d[3], d[4], d[5]}};
+  return trial + motion(RigidResistance(s, response).answer(residual(s, free, trial, response)));
+}
+
+void RigidSearch::next(const RigidState& s, std::span<const double> response) {
+  constexpr double least_part = 0.1, least_fall = 1e-4;
+  const Six rest = residual(s, free_, trial_, response);
+  static constexpr std::array<double, RigidResponse::size> none{};
+  const Six by_mass = RigidResistance(s, none).answer(rest);
+  const double squared = std::inner_product(rest.begin(), rest.end(), by_mass.begin(), 0.0);
+  if (part_ > least_part && !(squared < residual_ * (1 - least_fall * part_))) {
+    part_ *= 0.5;
+  } else {
+    from_ = trial_, residual_ = squared, part_ = 1;
+    step_ = motion(RigidResistance(s, response).answer(rest));
+  }
+  trial_ = from_ + part_ * step_;
+  found_ = part_ == 1 && same_motion(s, from_, trial_);
 }
 
 bool same_motion(const RigidState& s, const RigidVelocity& a, const RigidVelocity& b) {

@@ -5,15 +5,21 @@
 //
 //   M q = M q0 + sum over nodes of B^T P(q)          M: mass and inertia, q0: without contact
 //
-// Newton's method with secants, k_n and k_t the impulse over the approach along and across the normal:
+// Newton's method, D = -dP/du for the velocity u of the body at a node:
 //
-//   (M + sum B^T k B) (q' - q) = M (q0 - q) + sum B^T P(q)
+//   (M + sum B^T D B) (q' - q) = M (q0 - q) + sum B^T P(q)
 //
 // Without friction P is the gradient of a convex function, piecewise linear: a few trials find the nodes that
-// press, and q with them. Sums over nodes are exact, so that q has the same bits on any ranks and threads.
+// press, and q with them. Friction, mu times what presses, makes D unsymmetric. The lighter the body is
+// beside the nodes' masses, the more often a whole step passes from nodes that stick to nodes that slide and
+// back: it is halved until the residual falls, in the norm of M^-1. Of 2,000 random plane and round patches
+// of 25 nodes, mu to 1, all are found where these have up to 40 times the body's mass, in 4 to 7 trials on
+// average, and more than 9 in 10 at 400 times. Sums over nodes are exact, so that q has the same bits on any
+// ranks and threads.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 
 #include "core/contact/rigid_state.hpp"
@@ -26,37 +32,61 @@ struct RigidVelocity {
 
   Vec3<double> at(const Vec3<double>& arm) const { return velocity + cross(spin, arm); }
 };
+inline RigidVelocity operator+(const RigidVelocity& a, const RigidVelocity& b) {
+  return {a.velocity + b.velocity, a.spin + b.spin};
+}
+inline RigidVelocity operator*(double factor, const RigidVelocity& q) {
+  return {factor * q.velocity, factor * q.spin};
+}
 
 /// The nodes' answer to a trial motion of a body, by thread.
 struct RigidResponse {
-  static constexpr int size = 6 + 21;
-  ExactSum sums[size];  ///< B^T P, then the lower triangle of B^T k B, row by row
+  static constexpr int size = 6 + 36;
+  ExactSum sums[size];  ///< B^T P, then B^T D B, row by row
 
-  /// The impulse `p` on the body at the end of `arm`, which follows its approach by `along` the normal and
-  /// `across` it.
-  void add(const Vec3<double>& p, const Vec3<double>& arm, const Vec3<double>& normal, double along,
-           double across);
+  /// The impulse `p` on the body at the end of `arm`, which falls by `change` times what the velocity there
+  /// grows by: D, or another matrix in its place.
+  void add(const Vec3<double>& p, const Vec3<double>& arm, const Mat3<double>& change);
 };
 
 /// A motion of a body, velocity and then spin, or an impulse and its moment.
 using Six = std::array<double, 6>;
 
-/// M + sum B^T k B of a body, where symmetry planes let it move: an impulse's answer is the change of motion.
+/// M + sum B^T D B of a body, where symmetry planes let it move: an impulse's answer is the change of motion.
 class RigidResistance {
  public:
   /// `response`: the values of the sums.
   RigidResistance(const RigidState& s, std::span<const double> response);
   /// x with A x = b.
-  Six answer(Six b) const;
+  Six answer(const Six& b) const;
 
  private:
-  std::array<double, 21> factor_;  ///< L D L^T in place of the lower triangle
+  std::array<double, 36> inverse_;  ///< row by row
   std::array<bool, 6> fixed_;
 };
 
 /// The next trial, q'. `free`: q0; `response`: the values of the sums.
 RigidVelocity next_trial(const RigidState& s, const RigidVelocity& free, const RigidVelocity& trial,
                          std::span<const double> response);
+
+/// Newton's method for a body, with steps that are halved where they do not help.
+class RigidSearch {
+ public:
+  /// `free`: q0.
+  explicit RigidSearch(const RigidVelocity& free) : free_(free), from_(free), trial_(free) {}
+  const RigidVelocity& free() const { return free_; }
+  const RigidVelocity& trial() const { return trial_; }
+  /// Whether trial() is the motion.
+  bool found() const { return found_; }
+  /// The next trial. `response`: the values of the sums at trial().
+  void next(const RigidState& s, std::span<const double> response);
+
+ private:
+  RigidVelocity free_, from_, step_, trial_;
+  double part_ = 1;                                            ///< of the step
+  double residual_ = std::numeric_limits<double>::infinity();  ///< at `from_`: squared norm
+  bool found_ = false;
+};
 
 /// Whether two motions of a body are the same but for a small part of its speed.
 bool same_motion(const RigidState& s, const RigidVelocity& a, const RigidVelocity& b);

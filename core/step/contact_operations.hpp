@@ -266,21 +266,30 @@ void PassesWith<S, T>::drop_distant_pairs() {
   });
 }
 
+/// take_fields(s, at): the fields of a brick, without the contact of this stage.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::find_rigid_motion() {
+template <class F>
+void PassesWith<S, T>::find_rigid_motion(RigidStage stage, F take_fields) {
   for (Scratch& w : scratch_) w.rigid_nodes.clear();
-  for_bricks(0, model_.grid->owned(), [this](Slot s, Scratch& at) {
-    if (!contact_->meets(s) || contact_->meetings(s).nodes.empty() || !contact_->sees_free_body(s)) return;
-    take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
-    contact_->find_rigid_nodes(*model_.grid, s, at.fields, at.rigid_nodes);
+  for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch& at) {
+    if (!has_meetings(s) || !contact_->sees_free_body(s)) return;
+    contact_->find_rigid_nodes(*model_.grid, s, stage, take_fields(s, at), at.rigid_nodes);
   });
   std::vector<RigidContact> contacts;
   for (const Scratch& w : scratch_)
     for (const RigidNode& node : w.rigid_nodes)
       contacts.insert(contacts.end(), node.contacts.begin(), node.contacts.end());
-  rigid_->find_motion(contacts, [this](std::span<RigidResponse> responses) {
+  rigid_->find_motion(stage, contacts, [&](std::span<RigidResponse> responses) {
     for (const Scratch& w : scratch_)
-      for (const RigidNode& node : w.rigid_nodes) contact_->respond(node, responses);
+      for (const RigidNode& node : w.rigid_nodes) contact_->respond(node, stage, responses);
+  });
+}
+
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::find_rigid_motion() {
+  find_rigid_motion(RigidStage::end, [this](Slot s, Scratch& at) {
+    take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
+    return std::span(at.fields);
   });
 }
 

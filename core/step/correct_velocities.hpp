@@ -16,13 +16,18 @@ void PassesWith<S, T>::begin_corrections() {
   }
 }
 
-/// Order 1 from the updated nodes in at.nodes, the others from the increments that the particles have mapped.
+/// Order 1 from the updated nodes in at.nodes, the others from the increments that the particles have mapped;
+/// to the nodes' sums, or a copy of them.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::add_order(Slot s, int order, std::int32_t component, std::size_t k, Scratch& at) {
+  add_order(s, order, component, at, corrected_nodes(s, k));
+}
+
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int order,
-                                 [[maybe_unused]] std::int32_t component, [[maybe_unused]] std::size_t k,
-                                 [[maybe_unused]] Scratch& at) {
+                                 [[maybe_unused]] std::int32_t component, [[maybe_unused]] Scratch& at,
+                                 [[maybe_unused]] double* to) {
   if constexpr (Traits::corrects) {
-    double* const to = corrected_nodes(s, k);
     if (order == 1)
       return begin_correction(!transfer_.of_end, faces(s), shared_.nodes(), at.nodes.data(), to);
     sum<NodeArray::third>(momentum_shared_, s, component, at, at.sums.data());
@@ -30,22 +35,25 @@ void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int o
   }
 }
 
-/// Order 1 of the fields that a brick sees, from the velocities that contact leaves. What contact does there
-/// is booked when the particles take it.
+/// The fields that a brick sees at the end of the step, with contact. What contact does there is booked when
+/// the particles take it.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::take_fields_of_end(Slot s, Scratch& at) {
+  ContactSums unbooked;
+  take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
+  contact_->resolve(*model_.grid, s, Contact::Velocity::of_end, at.fields, unbooked);
+}
+
+/// Order 1 of the fields that a brick sees, from the velocities that contact leaves.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::begin_orders(Slot s, Scratch& at) {
-  const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
   const bool meets = has_meetings(s);
-  if (meets) {
-    ContactSums unbooked;
-    take_fields(s, at, update);
-    contact_->resolve(*model_.grid, s, Contact::Velocity::of_end, at.fields, unbooked);
-  }
+  if (meets) take_fields_of_end(s, at);
   for_each_seen_field(s, [&](std::int32_t component, std::size_t k) {
     if (meets)
       std::ranges::copy(at.fields[k].motion, at.nodes.data());
     else
-      update(component, k);
+      sum_and_update_nodes(s, component, at);
     add_order(s, 1, component, k, at);
   });
 }
@@ -69,30 +77,47 @@ void PassesWith<S, T>::correct_velocities([[maybe_unused]] int order) {
   }
 }
 
-/// The sums v(m) of the fields in at.fields, whose motion is that of the end of the step; where the fields
-/// touch, contact acts on these sums too.
+/// The sums v(m) of the fields in at.fields, whose motion is that of the end of the step, into
+/// at.corrected_fields.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::meet_corrected([[maybe_unused]] Slot s, [[maybe_unused]] Scratch& at) {
-  if constexpr (Traits::corrects) {
-    constexpr int velocity = Motion::velocity_at, strain_velocity = Motion::strain_velocity_at;
-    at.corrected_fields.resize(at.fields.size());
-    for (std::size_t k = 0; k < at.fields.size(); ++k) {
-      FieldNodes& field = at.corrected_fields[k];
-      field.component = at.fields[k].component;
-      field.motion = at.fields[k].motion;
-      if (orders_ == 1) std::ranges::copy(field.motion, at.nodes.data());
-      add_order(s, orders_, field.component, k, at);
-      const double* corrected = corrected_nodes(s, k);
-      for (int n = 0; n < record_count(); n += node_doubles)
-        std::copy_n(corrected + n + velocity, 3, field.motion.data() + n + strain_velocity);
-    }
-    contact_->resolve(*model_.grid, s, Contact::Velocity::of_correction, at.corrected_fields, at.contact);
-    for (std::size_t k = 0; k < at.fields.size(); ++k) {
-      const double* resolved = at.corrected_fields[k].motion.data();
-      for (int n = 0; n < record_count(); n += node_doubles)
-        std::copy_n(resolved + n + strain_velocity, 3, corrected_nodes(s, k) + n + velocity);
-    }
+void PassesWith<S, T>::take_corrected_fields(Slot s, Scratch& at) {
+  at.corrected_fields.resize(at.fields.size());
+  for (std::size_t k = 0; k < at.fields.size(); ++k) {
+    FieldNodes& field = at.corrected_fields[k];
+    field.component = at.fields[k].component;
+    field.motion = at.fields[k].motion;
+    if (orders_ == 1) std::ranges::copy(field.motion, at.nodes.data());
+    at.orders.assign(corrected_nodes(s, k), corrected_nodes(s, k) + record_count());
+    add_order(s, orders_, field.component, at, at.orders.data());
+    for (int n = 0; n < record_count(); n += node_doubles)
+      std::copy_n(at.orders.data() + n + Motion::velocity_at, 3,
+                  field.motion.data() + n + Motion::strain_velocity_at);
   }
+}
+
+/// Where the fields in at.fields touch, contact acts on their sums v(m) too.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::meet_corrected(Slot s, Scratch& at) {
+  take_corrected_fields(s, at);
+  contact_->resolve(*model_.grid, s, Contact::Velocity::of_correction, at.corrected_fields, at.contact);
+  for (std::size_t k = 0; k < at.fields.size(); ++k) {
+    const double* resolved = at.corrected_fields[k].motion.data();
+    for (int n = 0; n < record_count(); n += node_doubles)
+      std::copy_n(resolved + n + Motion::strain_velocity_at, 3,
+                  corrected_nodes(s, k) + n + Motion::velocity_at);
+  }
+}
+
+/// The motion of free rigid bodies on which the sums v(m) press.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::correct_rigid_motion() {
+  if (!correcting_) return;
+  find_rigid_motion(RigidStage::corrected, [this](Slot s, Scratch& at) {
+    take_fields_of_end(s, at);
+    take_corrected_fields(s, at);
+    return std::span(at.corrected_fields);
+  });
+  if (moves_corrected()) rigid_->move_corrected();
 }
 
 }  // namespace mpm::core

@@ -21,6 +21,10 @@ std::vector<Phase> ExplicitIntegrator::phases() {
   const auto then = [&](std::string name, std::function<void()> run) {
     step.push_back({std::move(name), std::move(run)});
   };
+  const bool moves_bodies = rigid_ && rigid_->any_free();
+  const auto find_rigid_motion = [&] {
+    if (moves_bodies) then("motion of rigid bodies", [&] { pass.find_rigid_motion(); });
+  };
   // XPIC and FMPM, before the particles take velocities.
   const int orders = orders_of(model_.scene->solution);
   const auto correct_velocities = [&] {
@@ -29,6 +33,8 @@ std::vector<Phase> ExplicitIntegrator::phases() {
            [&, order] { pass.correct_velocities(order); });
       then(fmt::format("exchange, order {}", order), [&] { pass.finish_correction(); });
     }
+    if (moves_bodies && orders > 1)
+      then("motion of rigid bodies, corrected", [&] { pass.correct_rigid_motion(); });
   };
 
   const bool solves = model_.scene->solution.mass == MassMatrix::consistent;
@@ -67,19 +73,15 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     }
   }
 
-  const auto move_free_bodies = [&] {
-    if (rigid_ && rigid_->any_free()) then("motion of rigid bodies", [&] { pass.find_rigid_motion(); });
-  };
-
   switch (model_.scene->solution.scheme) {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
       limit();
+      find_rigid_motion();
       correct_velocities();
       if (pass.loads().any()) solve("velocities", Passes::MassSystem::velocity_at_end);
       solve("increments", Passes::MassSystem::increment);
-      move_free_bodies();
       then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
       then("exchange again", [&] { pass.finish_exchange(); });
       solve("new velocities", Passes::MassSystem::new_velocity);
@@ -92,9 +94,9 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       solve("velocities", Passes::MassSystem::velocity_at_start);
       then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
       then("exchange again", [&] { pass.finish_exchange(); });
+      find_rigid_motion();
       correct_velocities();
       solve("increments", Passes::MassSystem::increment);
-      move_free_bodies();
       then("velocities and motion", [&] { pass.update_velocities_and_move(); });
       break;
     case Scheme::usl:
@@ -102,8 +104,8 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
       limit();
+      find_rigid_motion();
       correct_velocities();
-      move_free_bodies();
       then("stress, velocities and motion", [&] { pass.update_all(); });
       break;
   }

@@ -36,9 +36,11 @@ class Passes {
   virtual void find_meetings() = 0;
   virtual void map_reach() = 0;
   virtual void drop_distant_pairs() = 0;
-  /// The motion of free rigid bodies at the end of the step, once the nodes have what they need for theirs.
-  /// Only where there are any. Collective.
+  /// The motion of free rigid bodies at the end of the step, once the nodes have what they need for theirs;
+  /// and with the corrected velocities of the nodes, once these have all orders. Only where there are any.
+  /// Collective.
   virtual void find_rigid_motion() = 0;
+  virtual void correct_rigid_motion() = 0;
   /// Rigid bodies at the end of the step, with the impulses of contact on them. Only where there are any.
   virtual void move_rigid_bodies() = 0;
 

@@ -70,6 +70,7 @@ class PassesWith final : public Passes {
   void map_reach() override;
   void drop_distant_pairs() override;
   void find_rigid_motion() override;
+  void correct_rigid_motion() override;
   void move_rigid_bodies() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
@@ -98,6 +99,7 @@ class PassesWith final : public Passes {
     CellsOfParticles cells;                    ///< of the current brick
     std::vector<FieldNodes> fields;            ///< where components meet
     std::vector<FieldNodes> corrected_fields;  ///< the same with v(m) as strain velocities
+    std::vector<double> orders;                ///< of one of them, with the last order
     RegressionScratch regression;
     ContactSums contact;
     std::vector<RigidNode> rigid_nodes;
@@ -124,7 +126,7 @@ class PassesWith final : public Passes {
   void tell_contact_of_transfer() {
     const double share = Traits::corrects && !correcting_ ? Flip::share_of_nodes(transfer_step_)
                                                           : transfer_.share_of_nodes(transfer_step_);
-    contact_->set_transfer({share, correcting_});
+    contact_->set_transfer({share, correcting_, moves_corrected()});
   }
 
   // Order of bricks and blocks.
@@ -180,6 +182,9 @@ class PassesWith final : public Passes {
   }
   template <NodeFields what, class F>
   void map_bricks(F work);
+
+  template <class F>
+  void find_rigid_motion(RigidStage stage, F take_nodes);
 
   // Operations on a brick.
   template <NodeFields what>
@@ -237,7 +242,10 @@ class PassesWith final : public Passes {
   // Corrections of the velocities (correct_velocities.hpp).
   void begin_corrections();
   void add_order(Slot s, int order, std::int32_t component, std::size_t k, Scratch& at);
+  void add_order(Slot s, int order, std::int32_t component, Scratch& at, double* to);
+  void take_fields_of_end(Slot s, Scratch& at);
   void begin_orders(Slot s, Scratch& at);
+  void take_corrected_fields(Slot s, Scratch& at);
   void meet_corrected(Slot s, Scratch& at);
   /// The nodes' sums of velocities v(l) of the field number `k` of those that the brick sees, in
   /// MotionRecords.

@@ -70,24 +70,6 @@ void check_rigid(const Node& node, const Bodies& bodies, const core::Scene& scen
                 "bodies components of their own");
 }
 
-/// The corrected velocities of XPIC and FMPM meet the velocity that a free rigid body has at the end of the
-/// step, and that is found before.
-void check_corrections(const Node& solution, const std::vector<Bodies>& bodies, const core::Scene& scene,
-                       const BuildContext& context) {
-  for (const Bodies& of_component : bodies) {
-    for (const core::BodyInput* body : of_component) {
-      if (body->material >= scene.materials.size() || !core::is_rigid(scene.materials[body->material]))
-        continue;
-      if (core::is_driven(*body)) continue;
-      return solution.report(
-          context.diagnostics, "transfer",
-          fmt::format("is not available in contact with rigid bodies that move freely, as '{}' does: their "
-                      "motion is found before the higher orders. Use FLIP, PIC or an affine transfer",
-                      body->name));
-    }
-  }
-}
-
 }  // namespace
 
 void check_contact(const Node& root, const core::Scene& scene, const BuildContext& context) {
@@ -100,9 +82,6 @@ void check_contact(const Node& root, const core::Scene& scene, const BuildContex
         context.diagnostics, "enable",
         "contact acts between components, and there is only one with bodies: give bodies that are "
         "to meet components of their own, or set enable to 0");
-  const std::optional<Node> solution = root.child("Solution");
-  if (solution && core::is_corrected(scene.solution.transfer))
-    check_corrections(*solution, bodies, scene, context);
   const std::vector<Node> components = root.children("Component");
   for (std::size_t c = 0; c < std::min(components.size(), scene.components.size()); ++c) {
     check_friction(components[c], c, bodies, scene, context);

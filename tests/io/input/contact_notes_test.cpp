@@ -284,32 +284,4 @@ TEST_CASE("rigid bodies beside others are refused") {
       "case.xmp:14: <Traction>: has no effect on a rigid body; use PrescribedAcceleration");
 }
 
-TEST_CASE("XPIC and FMPM meet rigid bodies that are held or driven, not those that move freely") {
-  const auto faults = [](const std::string& transfer, const std::string& motion) {
-    const std::string ball =
-        "<Material name='stone'><ReferenceDensity value='1'/><StrengthModel type='Rigid'/></Material>"
-        "<Component name='other'><Body name='ball' material='stone' type='Block'>"
-        "<Geometry dp='0.38' x0='4' y0='0' z0='0' lx='3.8' ly='3.8' lz='3.8'/>" +
-        motion + "</Body></Component>";
-    const std::string text = replaced(replaced(bar, "<Grid shape", ball + "<Grid shape"), "<Solution>",
-                                      "<Contact enable='1'/><Solution transfer='" + transfer + "'>");
-    std::vector<core::Diagnostic> notes;
-    std::vector<std::string> found;
-    try {
-      parse(text, notes);
-    } catch (const core::InputErrors& errors) {
-      for (const core::Diagnostic& d : errors.diagnostics()) found.push_back(d.message);
-    }
-    return found;
-  };
-  for (const std::string transfer : {"XPIC", "FMPM"}) {
-    const std::vector<std::string> found = faults(transfer, "");
-    REQUIRE(found.size() == 1);
-    CHECK(found[0] ==
-          "is not available in contact with rigid bodies that move freely, as 'ball' does: their motion is "
-          "found before the higher orders. Use FLIP, PIC or an affine transfer");
-    CHECK(faults(transfer, "<PrescribedVelocity vx='1' vy='0' vz='0'/>").empty());
-  }
-}
-
 }  // namespace
