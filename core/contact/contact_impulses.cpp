@@ -467,8 +467,8 @@ void Contact::respond(const RigidNode& node, RigidStage stage, std::span<RigidRe
       if (f == node.moves) {
         const Vec3<double> approach = before[at(pair.first)].velocity - before[at(pair.second)].velocity;
         const double mass = before[at(other)].mass;
-        change = rigid_->meets_rigid(stage, number) ? impulse_secant(pair, approach, mass)
-                                                    : impulse_derivative(pair, approach, mass);
+        change = rigid_->meets_rigid(number) ? impulse_secant(pair, approach, mass)
+                                             : impulse_derivative(pair, approach, mass);
       }
       to[at(number)].add(f == pair.first ? -1.0 * pair.impulse : pair.impulse,
                          node.place - rigid_->state(number).centre, change);

@@ -278,15 +278,11 @@ void RigidBodies::fail_pressed(RigidStage stage, std::size_t number) {
       model_.clock.step + 1, model_.clock.time, name(number), list));
 }
 
-bool RigidBodies::meets_rigid(RigidStage stage, int number) const {
-  return std::ranges::any_of(contacts_[static_cast<std::size_t>(stage)],
-                             [&](const RigidContact& c) { return c.free == number; });
-}
-
 void RigidBodies::find_motion(RigidStage stage, std::span<const RigidContact> contacts,
                               const std::function<void(std::span<RigidResponse>)>& respond) {
   constexpr int most_trials = 60;
   gather(stage, contacts);
+  for (std::size_t r = 0; r < bodies_.size(); ++r) bodies_[r].meets_rigid = !contacts_of(stage, r).empty();
   if (!try_motion(stage, most_trials, respond)) {
     for (Rigid& rigid : bodies_) rigid.slips = rigid.slips || !rigid.found;
     try_motion(stage, most_trials, respond);
@@ -299,6 +295,7 @@ void RigidBodies::find_motion(RigidStage stage, std::span<const RigidContact> co
   }
 }
 
+/// Trials from the free motion on; false where they do not find the motion of every body.
 bool RigidBodies::try_motion(RigidStage stage, int most_trials,
                              const std::function<void(std::span<RigidResponse>)>& respond) {
   constexpr auto size = static_cast<std::size_t>(RigidResponse::size);
@@ -325,20 +322,21 @@ bool RigidBodies::try_motion(RigidStage stage, int most_trials,
       for (std::size_t i = 0; i < size; ++i) values[i] = sums[size * r + i].value();
       const RigidState& s = state(static_cast<int>(r));
       RigidVelocity& motion = rigid.motion(stage);
-      if (const std::span<RigidContact> own = contacts_of(stage, r); own.empty()) {
+      if (!rigid.meets_rigid) {
         searches[r].next(s, values);
         motion = searches[r].trial();
         rigid.found = searches[r].found();
-      } else {
-        const RigidVelocity before = motion;
-        motion = next_trial(s, searches[r].free(), before, values);
-        for (RigidContact& contact : own) {
-          contact.impulse = {};
-          if (rigid.slips) contact.friction = 0;
-        }
-        if (!resolve_rigid_contacts(s, RigidResistance(s, values), motion, own)) fail_pressed(stage, r);
-        rigid.found = same_motion(s, before, motion);
+        continue;
       }
+      const RigidVelocity before = motion;
+      motion = next_trial(s, searches[r].free(), before, values);
+      const std::span<RigidContact> own = contacts_of(stage, r);
+      for (RigidContact& contact : own) {
+        contact.impulse = {};
+        if (rigid.slips) contact.friction = 0;
+      }
+      if (!resolve_rigid_contacts(s, RigidResistance(s, values), motion, own)) fail_pressed(stage, r);
+      rigid.found = same_motion(s, before, motion);
     }
   }
   return found();

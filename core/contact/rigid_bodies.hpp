@@ -60,8 +60,8 @@ class RigidBodies {
   bool any_free() const {
     return std::ranges::any_of(bodies_, [](const Rigid& r) { return !r.driven; });
   }
-  /// Whether a free body touches bodies of prescribed motion in this step.
-  bool meets_rigid(RigidStage stage, int number) const;
+  /// Whether a free body touches bodies of prescribed motion in this stage.
+  bool meets_rigid(int number) const { return bodies_[static_cast<std::size_t>(number)].meets_rigid; }
   /// Whether a free body slips in this step on all that it touches, as no motion with friction was found.
   bool slips(int number) const { return bodies_[static_cast<std::size_t>(number)].slips; }
   /// Mass of a rigid body at a node where its motion at the end of the step is not known.
@@ -107,6 +107,7 @@ class RigidBodies {
     RigidVelocity end{}, corrected{};  ///< motions of the step
     RigidVelocity moves{};             ///< that with which it moves
     Mat3<double> turn{};               ///< its rotation by it
+    bool meets_rigid = false;          ///< meets_rigid()
     bool found = false;                ///< its motion of the stage
     bool slips = false;                ///< slips()
 
