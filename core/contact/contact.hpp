@@ -213,7 +213,7 @@ class Contact {
   void prepare_strain(Node& at, Velocity which) const;
   void resolve_strain(Node& at, Velocity which) const;
   static void keep_strain(const Node& at);
-  void book_on_rigid(int number, const Vec3<double>& place, const Vec3<double>& impulse,
+  void book_on_rigid(int number, RigidStage stage, const Vec3<double>& place, const Vec3<double>& impulse,
                      const Vec3<double>& velocity, ContactSums& sums) const;
   void book_correction(const Node& at, ContactSums& sums) const;
   static Vec3<double> increment(const Node& at, std::size_t field);

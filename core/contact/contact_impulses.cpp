@@ -15,7 +15,8 @@ struct Contact::Node {
   std::vector<int> rigid;    ///< numbers of the rigid bodies; -1: deformable
   std::vector<double> wave;  ///< speeds; 0: rigid
   int moves = -1;            ///< field of the one rigid body here, a free one with its motion of the stage
-  Vec3<double> change{};     ///< of its velocity by the contact of the stage
+  Vec3<double> end{};        ///< its velocity at the end of the step, before corrections
+  Vec3<double> change{};     ///< of its velocity by contact
   bool free_body = false;    ///< whether there is any
   std::vector<Motion> records;
   std::vector<std::size_t> number;  ///< of the fields, among those that the brick sees
@@ -115,8 +116,8 @@ void Contact::hold_pairs(Node& at, Velocity which) const {
   const auto of_end = [&](std::size_t f) {
     const double* v = at.records[f].velocity();
     if (at.rigid[f] < 0) return Vec3<double>{v[0], v[1], v[2]};
-    const bool moved = which == Velocity::of_correction && static_cast<int>(f) == at.moves;
-    return moved ? at.fields[f].velocity - at.change : at.fields[f].velocity;
+    const bool moves = which == Velocity::of_correction && static_cast<int>(f) == at.moves;
+    return moves ? at.end : at.fields[f].velocity;
   };
   for (ContactPair& pair : at.pairs) {
     const Vec3<double> a = of_end(static_cast<std::size_t>(pair.first)),
@@ -136,12 +137,18 @@ void Contact::prepare_strain(Node& at, Velocity which) const {
   // and the particles would not get its impulse: energy without a source. What slides strains as it slides.
   // What slides with corrected velocities has had its friction: what holds it along the normal is as often a
   // pull.
-  if ((method_ == ContactInput::Method::pan && !at.free_body) || which == Velocity::of_correction)
+  const bool corrects = which == Velocity::of_correction;
+  if ((method_ == ContactInput::Method::pan && !at.free_body) || corrects)
     for (ContactPair& pair : at.pairs) pair.friction = 0;
+  if (corrects)
+    for (Node::Rigid& r : at.rigid_contacts) r.contact.friction = 0;
 }
 
 void Contact::resolve_strain(Node& at, Velocity which) const {
   prepare_strain(at, which);
+  at.start.resize(at.fields.size());
+  for (std::size_t f = 0; f < at.fields.size(); ++f)
+    at.start[f] = static_cast<int>(f) == at.moves ? at.end : at.fields[f].velocity;
   resolve_contacts(at.fields, at.pairs);
 }
 
@@ -153,11 +160,13 @@ void Contact::keep_strain(const Node& at) {
 }
 
 /// An impulse on the rigid body with this number, if it is one, that moves with `velocity` there.
-void Contact::book_on_rigid(int number, const Vec3<double>& place, const Vec3<double>& impulse,
-                            const Vec3<double>& velocity, ContactSums& sums) const {
+void Contact::book_on_rigid(int number, RigidStage stage, const Vec3<double>& place,
+                            const Vec3<double>& impulse, const Vec3<double>& velocity,
+                            ContactSums& sums) const {
   if (number < 0 || impulse == Vec3<double>{}) return;
-  sums.rigid[static_cast<std::size_t>(number)].add(impulse, place - rigid_->state(number).centre,
-                                                   dot(impulse, velocity));
+  RigidImpulse& of_body = sums.rigid[static_cast<std::size_t>(number)];
+  of_body.add(impulse, place - rigid_->state(number).centre, dot(impulse, velocity));
+  of_body.contacts += stage == RigidStage::end;
 }
 
 /// Impulses of resolve_strain() with corrected velocities. They slide without friction, and so take no heat.
@@ -166,12 +175,9 @@ void Contact::book_correction(const Node& at, ContactSums& sums) const {
     const ContactPair& pair = at.pairs[p];
     sums.record.add(at.recorded[p], pair.impulse, 0);
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const auto mean_of = [&](std::size_t f) {
-      const bool moved = static_cast<int>(f) == at.moves;
-      return moved ? at.fields[f].velocity - 0.5 * at.change : at.fields[f].velocity;
-    };
-    book_on_rigid(at.rigid[a], at.place, -1.0 * pair.impulse, mean_of(a), sums);
-    book_on_rigid(at.rigid[b], at.place, pair.impulse, mean_of(b), sums);
+    const auto mean_of = [&](std::size_t f) { return 0.5 * (at.start[f] + at.fields[f].velocity); };
+    book_on_rigid(at.rigid[a], RigidStage::corrected, at.place, -1.0 * pair.impulse, mean_of(a), sums);
+    book_on_rigid(at.rigid[b], RigidStage::corrected, at.place, pair.impulse, mean_of(b), sums);
   }
 }
 
@@ -320,8 +326,8 @@ void Contact::book(const Node& at, ContactSums& sums) const {
     sums.record.dissipated.add(transfer_.corrects ? heat : pressing + heat);
     sums.record.add(at.recorded[p], impulse, heat);
     const auto mean_of = [&](std::size_t f) { return 0.5 * (at.start[f] + at.fields[f].velocity); };
-    book_on_rigid(at.rigid[a], at.place, -1.0 * impulse, mean_of(a), sums);
-    book_on_rigid(at.rigid[b], at.place, impulse, mean_of(b), sums);
+    book_on_rigid(at.rigid[a], RigidStage::end, at.place, -1.0 * impulse, mean_of(a), sums);
+    book_on_rigid(at.rigid[b], RigidStage::end, at.place, impulse, mean_of(b), sums);
   }
 }
 
@@ -338,8 +344,8 @@ void Contact::book_rigid(const Node& at, RigidStage stage, ContactSums& sums) co
     const double pressing = dot(impulse, c.normal) * dot(relative, c.normal), all = dot(impulse, relative);
     sums.record.dissipated.add(-all);
     sums.record.add(r.recorded, r.is_first ? -1.0 * impulse : impulse, pressing - all);
-    book_on_rigid(c.free, c.place, impulse, mean, sums);
-    book_on_rigid(c.driven, c.place, -1.0 * impulse, c.velocity, sums);
+    book_on_rigid(c.free, stage, c.place, impulse, mean, sums);
+    book_on_rigid(c.driven, stage, c.place, -1.0 * impulse, c.velocity, sums);
   }
 }
 
@@ -358,7 +364,10 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
     if (number >= 0) {
       if (at.moves < 0 || rigid_->is_free(number)) at.moves = static_cast<int>(at.fields.size());
       free_bodies += rigid_->is_free(number);
-      at.fields.push_back({rigid_->mass_at_node(number), velocity_at(rigid_->state(number), at.place)});
+      const bool has_met = which == Velocity::of_correction && rigid_->is_free(number);
+      at.fields.push_back(
+          {rigid_->mass_at_node(number), has_met ? rigid_->velocity(RigidStage::end, number, at.place)
+                                                 : velocity_at(rigid_->state(number), at.place)});
     } else {
       at.fields.push_back({record.mass(), {v[0], v[1], v[2]}});
     }
@@ -376,11 +385,11 @@ bool Contact::take_node(const BrickGrid& grid, Slot s, Velocity which, std::span
       return rigid_->velocity(stage, at.rigid[static_cast<std::size_t>(at.moves)], at.place);
     };
     // The strain meets the motion with which the bodies move.
-    const bool corrects = which == Velocity::of_correction,
-               corrected = corrects || (which == Velocity::of_strain_after_end && transfer_.moves_corrected);
-    const Vec3<double> end = motion(corrected ? RigidStage::corrected : RigidStage::end);
-    at.change = end - (corrects ? motion(RigidStage::end) : moves.velocity);
-    moves = {std::numeric_limits<double>::infinity(), end};
+    const bool corrected = which == Velocity::of_correction ||
+                           (which == Velocity::of_strain_after_end && transfer_.moves_corrected);
+    at.end = motion(RigidStage::end);
+    at.change = at.end - moves.velocity;
+    moves = {std::numeric_limits<double>::infinity(), corrected ? motion(RigidStage::corrected) : at.end};
   }
   if (!find_pairs(fields, meetings(s).pairs_of(node), at)) return false;
   if (at.free_body && which != Velocity::of_strain) {
@@ -454,9 +463,9 @@ void Contact::respond(const RigidNode& node, RigidStage stage, std::span<RigidRe
   const auto at = [&](int f) { return static_cast<std::size_t>(f); };
   if (node.moves >= 0)
     fields[at(node.moves)].velocity = rigid_->velocity(stage, node.rigid[at(node.moves)], node.place);
-  for (const int number : node.rigid)
-    if (number >= 0 && rigid_->slips(number))
-      for (ContactPair& pair : pairs) pair.friction = 0;
+  for (ContactPair& pair : pairs)
+    if (is_slipping(node.rigid[at(pair.first)]) || is_slipping(node.rigid[at(pair.second)]))
+      pair.friction = 0;
   const std::vector<ContactField> before = fields;
   resolve_contacts(fields, pairs);
   for (const ContactPair& pair : pairs) {
@@ -467,8 +476,8 @@ void Contact::respond(const RigidNode& node, RigidStage stage, std::span<RigidRe
       if (f == node.moves) {
         const Vec3<double> approach = before[at(pair.first)].velocity - before[at(pair.second)].velocity;
         const double mass = before[at(other)].mass;
-        change = rigid_->meets_rigid(number) ? impulse_secant(pair, approach, mass)
-                                             : impulse_derivative(pair, approach, mass);
+        const bool alone = pairs.size() == 1 && !rigid_->meets_rigid(number);
+        change = alone ? impulse_derivative(pair, approach, mass) : impulse_secant(pair, approach, mass);
       }
       to[at(number)].add(f == pair.first ? -1.0 * pair.impulse : pair.impulse,
                          node.place - rigid_->state(number).centre, change);

@@ -35,7 +35,6 @@ void RigidImpulse::add(const Vec3<double>& p, const Vec3<double>& arm, double gi
     moment[a].add(h[a]);
   }
   energy.add(given);
-  ++contacts;
 }
 
 RigidImpulse& RigidImpulse::operator+=(const RigidImpulse& other) {
@@ -283,8 +282,8 @@ void RigidBodies::find_motion(RigidStage stage, std::span<const RigidContact> co
   constexpr int most_trials = 60;
   gather(stage, contacts);
   for (std::size_t r = 0; r < bodies_.size(); ++r) bodies_[r].meets_rigid = !contacts_of(stage, r).empty();
-  if (!try_motion(stage, most_trials, respond)) {
-    for (Rigid& rigid : bodies_) rigid.slips = rigid.slips || !rigid.found;
+  if (!try_motion(stage, most_trials, respond) && stage == RigidStage::end) {
+    for (Rigid& rigid : bodies_) rigid.slips = !rigid.found;
     try_motion(stage, most_trials, respond);
   }
   if (stage == RigidStage::corrected) return;
@@ -336,7 +335,7 @@ bool RigidBodies::try_motion(RigidStage stage, int most_trials,
         if (rigid.slips) contact.friction = 0;
       }
       if (!resolve_rigid_contacts(s, RigidResistance(s, values), motion, own)) fail_pressed(stage, r);
-      rigid.found = same_motion(s, before, motion);
+      rigid.found = same_motion(s, searches[r].free(), values, before, motion);
     }
   }
   return found();

@@ -14,6 +14,7 @@ constexpr std::size_t most_work = 2000000;  // sweeps times contacts, where ther
 constexpr double rest = 1e-14;              // of the largest relative velocity, in a sweep
 constexpr double most_left = 1e-5;  // of that velocity, with which a body may still approach at the end
 constexpr double most_gain = 1e-7;  // of the impulses times that velocity
+constexpr double round_off = 1e-9;  // least relative velocity that counts, of that of the driven body
 
 /// A contact with what the body answers to unit impulses along its three axes, the first of them the normal.
 struct Touch {
@@ -111,7 +112,8 @@ bool resolve_rigid_contacts(const RigidState& s, const RigidResistance& resistan
     touches.push_back(touch_of(s, resistance, contact));
     const Touch& t = touches.back();
     const Vec3<double> u = q.at(t.arm) - t.velocity;
-    fastest = std::max(fastest, std::sqrt(dot(u, u)));
+    const auto speed = [](const Vec3<double>& v) { return std::sqrt(dot(v, v)); };
+    fastest = std::max({fastest, speed(u), round_off * speed(t.velocity)});
     // Symmetry planes hold what the body cannot do.
     if (!(t.along > 1e-9 / s.mass)) touches.back().along = 0;
     approach = std::max(approach, -t.speed(q, 0));

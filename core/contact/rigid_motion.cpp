@@ -26,6 +26,8 @@ std::array<bool, 6> held(const RigidState& s) {
   return is;
 }
 
+constexpr std::array<double, RigidResponse::size> no_response{};
+
 RigidVelocity motion(const Six& x) { return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}}; }
 
 /// M (q0 - q) + sum B^T P(q), of what can change.
@@ -80,8 +82,7 @@ RigidVelocity next_trial(const RigidState& s, const RigidVelocity& free, const R
 void RigidSearch::next(const RigidState& s, std::span<const double> response) {
   constexpr double least_part = 0.1, least_fall = 1e-4;
   const Six rest = residual(s, free_, trial_, response);
-  static constexpr std::array<double, RigidResponse::size> none{};
-  const Six by_mass = RigidResistance(s, none).answer(rest);
+  const Six by_mass = RigidResistance(s, no_response).answer(rest);
   const double squared = std::inner_product(rest.begin(), rest.end(), by_mass.begin(), 0.0);
   if (part_ > least_part && !(squared < residual_ * (1 - least_fall * part_))) {
     part_ *= 0.5;
@@ -90,15 +91,20 @@ void RigidSearch::next(const RigidState& s, std::span<const double> response) {
     step_ = motion(RigidResistance(s, response).answer(rest));
   }
   trial_ = from_ + part_ * step_;
-  found_ = part_ == 1 && same_motion(s, from_, trial_);
+  found_ = part_ == 1 && same_motion(s, free_, response, from_, trial_);
 }
 
-bool same_motion(const RigidState& s, const RigidVelocity& a, const RigidVelocity& b) {
+bool same_motion(const RigidState& s, const RigidVelocity& free, std::span<const double> response,
+                 const RigidVelocity& a, const RigidVelocity& b) {
   constexpr double small = 1e-9;
-  const auto squared = [&](const Vec3<double>& v, const Vec3<double>& w) {
-    return s.mass * dot(v, v) + trace(s.inertia) * dot(w, w);
+  const auto squared = [&](const RigidVelocity& q) {
+    return s.mass * dot(q.velocity, q.velocity) + trace(s.inertia) * dot(q.spin, q.spin);
   };
-  return squared(b.velocity - a.velocity, b.spin - a.spin) <= small * small * squared(b.velocity, b.spin);
+  Six impulses;
+  std::ranges::copy(response.first(6), impulses.begin());
+  const double scale = std::max(
+      {squared(b), squared(free), squared(motion(RigidResistance(s, no_response).answer(impulses)))});
+  return squared(b + -1.0 * a) <= small * small * scale;
 }
 
 }  // namespace mpm::core

@@ -1,7 +1,8 @@
 // The motion of a rigid body: Newton's and Euler's equations with a step's impulses, and rotations without
 // drift.
 //
-// Within a step the body moves with the velocity V and spin w of its end (rigid_motion.hpp): every point x
+// Within a step the body moves with the velocity V and spin w of its end (rigid_motion.hpp; with XPIC of that
+// before the corrections, as particles do): every point x
 // has the velocity V + w x (x - c), and ends at c + dt V + R (x - c), R the rotation by dt w, or of a free
 // body by dt times the spin that the same angular momentum has halfway. Impulses J and their moment H about c
 // at the start change momentum and angular momentum, which is then kept to round-off: c moves along the

@@ -266,14 +266,14 @@ void PassesWith<S, T>::drop_distant_pairs() {
   });
 }
 
-/// take_fields(s, at): the fields of a brick, without the contact of this stage.
+/// take_nodes(s, at): the fields of a brick, without the contact of this stage.
 template <ShapePolicy S, TransferPolicy T>
 template <class F>
-void PassesWith<S, T>::find_rigid_motion(RigidStage stage, F take_fields) {
+void PassesWith<S, T>::find_rigid_motion(RigidStage stage, F take_nodes) {
   for (Scratch& w : scratch_) w.rigid_nodes.clear();
   for_bricks(0, model_.grid->owned(), [&](Slot s, Scratch& at) {
     if (!has_meetings(s) || !contact_->sees_free_body(s)) return;
-    contact_->find_rigid_nodes(*model_.grid, s, stage, take_fields(s, at), at.rigid_nodes);
+    contact_->find_rigid_nodes(*model_.grid, s, stage, take_nodes(s, at), at.rigid_nodes);
   });
   std::vector<RigidContact> contacts;
   for (const Scratch& w : scratch_)

@@ -78,19 +78,20 @@ void PassesWith<S, T>::correct_velocities([[maybe_unused]] int order) {
 }
 
 /// The sums v(m) of the fields in at.fields, whose motion is that of the end of the step, into
-/// at.corrected_fields.
+/// at.corrected_fields. sums(k): the nodes' sums without the last order, which is added to them.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::take_corrected_fields(Slot s, Scratch& at) {
+template <class F>
+void PassesWith<S, T>::take_corrected_fields(Slot s, Scratch& at, F sums) {
   at.corrected_fields.resize(at.fields.size());
   for (std::size_t k = 0; k < at.fields.size(); ++k) {
     FieldNodes& field = at.corrected_fields[k];
     field.component = at.fields[k].component;
     field.motion = at.fields[k].motion;
     if (orders_ == 1) std::ranges::copy(field.motion, at.nodes.data());
-    at.orders.assign(corrected_nodes(s, k), corrected_nodes(s, k) + record_count());
-    add_order(s, orders_, field.component, at, at.orders.data());
+    double* const corrected = sums(k);
+    add_order(s, orders_, field.component, at, corrected);
     for (int n = 0; n < record_count(); n += node_doubles)
-      std::copy_n(at.orders.data() + n + Motion::velocity_at, 3,
+      std::copy_n(corrected + n + Motion::velocity_at, 3,
                   field.motion.data() + n + Motion::strain_velocity_at);
   }
 }
@@ -98,7 +99,7 @@ void PassesWith<S, T>::take_corrected_fields(Slot s, Scratch& at) {
 /// Where the fields in at.fields touch, contact acts on their sums v(m) too.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::meet_corrected(Slot s, Scratch& at) {
-  take_corrected_fields(s, at);
+  take_corrected_fields(s, at, [&](std::size_t k) { return corrected_nodes(s, k); });
   contact_->resolve(*model_.grid, s, Contact::Velocity::of_correction, at.corrected_fields, at.contact);
   for (std::size_t k = 0; k < at.fields.size(); ++k) {
     const double* resolved = at.corrected_fields[k].motion.data();
@@ -114,7 +115,10 @@ void PassesWith<S, T>::correct_rigid_motion() {
   if (!correcting_) return;
   find_rigid_motion(RigidStage::corrected, [this](Slot s, Scratch& at) {
     take_fields_of_end(s, at);
-    take_corrected_fields(s, at);
+    take_corrected_fields(s, at, [&](std::size_t k) {
+      at.orders.assign(corrected_nodes(s, k), corrected_nodes(s, k) + record_count());
+      return at.orders.data();
+    });
     return std::span(at.corrected_fields);
   });
   if (moves_corrected()) rigid_->move_corrected();

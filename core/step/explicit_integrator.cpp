@@ -33,7 +33,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
            [&, order] { pass.correct_velocities(order); });
       then(fmt::format("exchange, order {}", order), [&] { pass.finish_correction(); });
     }
-    if (moves_bodies && orders > 1)
+    if (moves_bodies && is_corrected(model_.scene->solution.transfer))
       then("motion of rigid bodies, corrected", [&] { pass.correct_rigid_motion(); });
   };
 

@@ -99,7 +99,7 @@ class PassesWith final : public Passes {
     CellsOfParticles cells;                    ///< of the current brick
     std::vector<FieldNodes> fields;            ///< where components meet
     std::vector<FieldNodes> corrected_fields;  ///< the same with v(m) as strain velocities
-    std::vector<double> orders;                ///< of one of them, with the last order
+    std::vector<double> orders;                ///< a copy of the sums of one of them
     RegressionScratch regression;
     ContactSums contact;
     std::vector<RigidNode> rigid_nodes;
@@ -245,7 +245,8 @@ class PassesWith final : public Passes {
   void add_order(Slot s, int order, std::int32_t component, Scratch& at, double* to);
   void take_fields_of_end(Slot s, Scratch& at);
   void begin_orders(Slot s, Scratch& at);
-  void take_corrected_fields(Slot s, Scratch& at);
+  template <class F>
+  void take_corrected_fields(Slot s, Scratch& at, F sums);
   void meet_corrected(Slot s, Scratch& at);
   /// The nodes' sums of velocities v(l) of the field number `k` of those that the brick sees, in
   /// MotionRecords.

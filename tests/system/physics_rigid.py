@@ -375,6 +375,22 @@ class Rigid(_mpm.Case):
                 self.assertGreater(heat, 0.8 * rubbed)
                 self.assertLess(heat, 1.2 * rubbed + 0.15 * mass)
 
+    def test_stack_on_a_driven_body(self):
+        """A soft block on a free rigid one, on a base that moves: all move with the base, with all transfers, and friction holds them."""
+        for transfer in ("", 'transfer="XPIC" xpic_order="1"', 'transfer="XPIC" xpic_order="3"', 'transfer="FMPM" xpic_order="4"'):
+            with self.subTest(transfer=transfer):
+                soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
+                bodies = [_mpm.block("base", (0, 0, 0), (6, 4, 1), (1, 0, 0), of="iron", more=held(1)),
+                          _mpm.block("block", (1, 1, 1), (2, 2, 1), (1, 0, 0), of="iron"), _mpm.block("soft", (1, 1, 2), (2, 2, 2), (1, 0, 0))]
+                solution = _mpm.solution(0.5, factor=0.5, more='<Gravity ax="0" ay="0" az="-1"/>').replace("<Solution", f"<Solution {transfer}")
+                text = scene(bodies, _mpm.grid((0, 0, 0), (8, 4, 6)), solution, soft, 0.5, '<Console print_time="0.1"/>')
+                text = text.replace("</Friction>", '<Coefficient value="0.5" mat1="iron" mat2="iron"/></Friction>')
+                _, summary, _ = self.go(text)
+                block, top = summary["bodies"][1:]
+                print(f"stack {transfer:30}: block at {np.round(block['centre'], 6)}, velocities {np.round(block['velocity'], 5)} {np.round(top['velocity'], 4)}")
+                self.assertLess(np.abs(np.subtract(block["centre"], (2.5, 2, 1.5))).max(), 2e-3)
+                self.assertLess(np.abs(np.subtract(block["velocity"], (1, 0, 0))).max(), 1e-2)
+
     def test_free_body_with_corrected_velocities(self):
         """XPIC and FMPM: the corrections of the nodes press on the body, too. Momentum is exact."""
         for algorithm in ("MUSL", "USF", "USL"):
