@@ -215,6 +215,8 @@ class Contact {
   static void keep_strain(const Node& at);
   void book_on_rigid(int number, RigidStage stage, const Vec3<double>& place, const Vec3<double>& impulse,
                      const Vec3<double>& velocity, ContactSums& sums) const;
+  void book_pair_on_rigid(const Node& at, const ContactPair& pair, RigidStage stage,
+                          const Vec3<double>& impulse, ContactSums& sums) const;
   void book_correction(const Node& at, ContactSums& sums) const;
   static Vec3<double> increment(const Node& at, std::size_t field);
   double share_of_particles(const Node& at, const ContactPair& pair) const;

@@ -146,9 +146,11 @@ void Contact::prepare_strain(Node& at, Velocity which) const {
 
 void Contact::resolve_strain(Node& at, Velocity which) const {
   prepare_strain(at, which);
-  at.start.resize(at.fields.size());
-  for (std::size_t f = 0; f < at.fields.size(); ++f)
-    at.start[f] = static_cast<int>(f) == at.moves ? at.end : at.fields[f].velocity;
+  if (which == Velocity::of_correction) {
+    at.start.resize(at.fields.size());
+    for (std::size_t f = 0; f < at.fields.size(); ++f)
+      at.start[f] = static_cast<int>(f) == at.moves ? at.end : at.fields[f].velocity;
+  }
   resolve_contacts(at.fields, at.pairs);
 }
 
@@ -169,15 +171,24 @@ void Contact::book_on_rigid(int number, RigidStage stage, const Vec3<double>& pl
   of_body.contacts += stage == RigidStage::end;
 }
 
+/// An impulse on the second field of a pair, and its opposite on the first, where these are rigid bodies;
+/// from the velocities at.start to those of the fields.
+void Contact::book_pair_on_rigid(const Node& at, const ContactPair& pair, RigidStage stage,
+                                 const Vec3<double>& impulse, ContactSums& sums) const {
+  const auto book = [&](int field, const Vec3<double>& p) {
+    const auto f = static_cast<std::size_t>(field);
+    book_on_rigid(at.rigid[f], stage, at.place, p, 0.5 * (at.start[f] + at.fields[f].velocity), sums);
+  };
+  book(pair.first, -1.0 * impulse);
+  book(pair.second, impulse);
+}
+
 /// Impulses of resolve_strain() with corrected velocities. They slide without friction, and so take no heat.
 void Contact::book_correction(const Node& at, ContactSums& sums) const {
   for (std::size_t p = 0; p < at.pairs.size(); ++p) {
     const ContactPair& pair = at.pairs[p];
     sums.record.add(at.recorded[p], pair.impulse, 0);
-    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const auto mean_of = [&](std::size_t f) { return 0.5 * (at.start[f] + at.fields[f].velocity); };
-    book_on_rigid(at.rigid[a], RigidStage::corrected, at.place, -1.0 * pair.impulse, mean_of(a), sums);
-    book_on_rigid(at.rigid[b], RigidStage::corrected, at.place, pair.impulse, mean_of(b), sums);
+    book_pair_on_rigid(at, pair, RigidStage::corrected, pair.impulse, sums);
   }
 }
 
@@ -325,9 +336,7 @@ void Contact::book(const Node& at, ContactSums& sums) const {
     // The velocities of order 1 approach in every step, smooth as they are; those of the particles do not.
     sums.record.dissipated.add(transfer_.corrects ? heat : pressing + heat);
     sums.record.add(at.recorded[p], impulse, heat);
-    const auto mean_of = [&](std::size_t f) { return 0.5 * (at.start[f] + at.fields[f].velocity); };
-    book_on_rigid(at.rigid[a], RigidStage::end, at.place, -1.0 * impulse, mean_of(a), sums);
-    book_on_rigid(at.rigid[b], RigidStage::end, at.place, impulse, mean_of(b), sums);
+    book_pair_on_rigid(at, pair, RigidStage::end, impulse, sums);
   }
 }
 

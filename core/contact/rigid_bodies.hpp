@@ -123,10 +123,12 @@ class RigidBodies {
   void move_without_contact(const Loads& loads, const Vec3<double>& gravity, const StepLength& length);
   /// 1 for each axis along which particles of the rigid body lie at a symmetry plane. Collective.
   Vec3<double> symmetry_planes_at(int number);
-  bool try_motion(RigidStage stage, int most_trials,
-                  const std::function<void(std::span<RigidResponse>)>& respond);
+  bool try_motion(RigidStage stage, const std::function<void(std::span<RigidResponse>)>& respond);
   void move_with(Rigid& rigid, const RigidVelocity& motion);
   std::vector<RigidContact>& contacts(RigidStage stage) { return contacts_[static_cast<std::size_t>(stage)]; }
+  const std::vector<RigidContact>& contacts(RigidStage stage) const {
+    return contacts_[static_cast<std::size_t>(stage)];
+  }
   /// Those of all ranks. Collective.
   void gather(RigidStage stage, std::span<const RigidContact> mine);
   /// Of a body.

@@ -91,19 +91,15 @@ void RigidSearch::next(const RigidState& s, std::span<const double> response) {
     step_ = motion(RigidResistance(s, response).answer(rest));
   }
   trial_ = from_ + part_ * step_;
-  found_ = part_ == 1 && same_motion(s, free_, response, from_, trial_);
+  found_ = part_ == 1 && same_motion(s, from_, trial_);
 }
 
-bool same_motion(const RigidState& s, const RigidVelocity& free, std::span<const double> response,
-                 const RigidVelocity& a, const RigidVelocity& b) {
+bool same_motion(const RigidState& s, const RigidVelocity& a, const RigidVelocity& b) {
   constexpr double small = 1e-9;
   const auto squared = [&](const RigidVelocity& q) {
     return s.mass * dot(q.velocity, q.velocity) + trace(s.inertia) * dot(q.spin, q.spin);
   };
-  Six impulses;
-  std::ranges::copy(response.first(6), impulses.begin());
-  const double scale = std::max(
-      {squared(b), squared(free), squared(motion(RigidResistance(s, no_response).answer(impulses)))});
+  const double scale = std::max(squared(b), squared({s.velocity, s.spin}));
   return squared(b + -1.0 * a) <= small * small * scale;
 }
 

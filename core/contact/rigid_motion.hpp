@@ -14,9 +14,9 @@
 // beside the nodes' masses, the more often a whole step passes from nodes that stick to nodes that slide and
 // back: it is halved while the residual does not fall, in the norm of M^-1, down to a sixteenth. A body that
 // meets bodies of prescribed motion, too, takes the symmetric secants P/u in the place of D, which their
-// impulses need (rigid_contact.hpp), and whole steps. A heavy body needs 4 trials, one of a
-// hundredth of the nodes' mass 10 on average (tests/core/contact/rigid_motion_test.cpp). Sums over nodes are
-// exact, so that q has the same bits on any ranks and threads.
+// impulses need (rigid_contact.hpp), and whole steps. A heavy body needs 4 trials, one of a hundredth of the
+// nodes' mass 10 on average (tests/core/contact/rigid_motion_test.cpp). Sums over nodes are exact, so that q
+// has the same bits on any ranks and threads.
 #pragma once
 
 #include <array>
@@ -70,10 +70,8 @@ class RigidResistance {
 RigidVelocity next_trial(const RigidState& s, const RigidVelocity& free, const RigidVelocity& trial,
                          std::span<const double> response);
 
-/// Whether two trials are the same but for a small part of the body's speed, with and without contact, and of
-/// what the impulses change.
-bool same_motion(const RigidState& s, const RigidVelocity& free, std::span<const double> response,
-                 const RigidVelocity& a, const RigidVelocity& b);
+/// Whether two motions of a body are the same but for a small part of its speed, with contact or without.
+bool same_motion(const RigidState& s, const RigidVelocity& a, const RigidVelocity& b);
 
 /// Newton's method for a body, with steps that are halved where they do not help.
 class RigidSearch {

@@ -92,6 +92,12 @@ void PassesWith<S, T>::take_fields(Slot s, Scratch& at, Update update) {
   }
 }
 
+/// The same at the end of the step, without contact.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::take_free_fields(Slot s, Scratch& at) {
+  take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
+}
+
 /// Resolves the velocities of the fields that a brick sees, in at.fields.
 template <ShapePolicy S, TransferPolicy T>
 template <class Update>
@@ -288,7 +294,7 @@ void PassesWith<S, T>::find_rigid_motion(RigidStage stage, F take_nodes) {
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::find_rigid_motion() {
   find_rigid_motion(RigidStage::end, [this](Slot s, Scratch& at) {
-    take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
+    take_free_fields(s, at);
     return std::span(at.fields);
   });
 }

@@ -40,7 +40,7 @@ void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int o
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::take_fields_of_end(Slot s, Scratch& at) {
   ContactSums unbooked;
-  take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
+  take_free_fields(s, at);
   contact_->resolve(*model_.grid, s, Contact::Velocity::of_end, at.fields, unbooked);
 }
 

@@ -165,6 +165,7 @@ class PassesWith final : public Passes {
   void for_each_field(Slot s, Scratch& at, Contact::Velocity which, Update update, F f);
   template <class Update>
   void take_fields(Slot s, Scratch& at, Update update);
+  void take_free_fields(Slot s, Scratch& at);
   template <class Update>
   void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
   void book_blows(Slot s, const FieldNodes& field, Scratch& at);

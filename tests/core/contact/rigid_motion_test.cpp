@@ -68,8 +68,8 @@ int require_balance(const RigidState& s, const RigidVelocity& q, const std::vect
     angular = angular - cross(node.place - s.centre, p);
   }
   for (int a = 0; a < 3; ++a) {
-    REQUIRE(s.mass * q.velocity[a] == Approx(momentum[a]).margin(1e-10));
-    REQUIRE((s.inertia * q.spin)[a] == Approx(angular[a]).margin(1e-10));
+    REQUIRE(s.mass * q.velocity[a] == Approx(momentum[a]).margin(1e-12));
+    REQUIRE((s.inertia * q.spin)[a] == Approx(angular[a]).margin(1e-12));
   }
   return pressing;
 }
