@@ -27,8 +27,8 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
 /// corrected velocities into at.corrected.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::take_updated_nodes(Slot s, [[maybe_unused]] std::int32_t component,
-                                          [[maybe_unused]] std::size_t k, Scratch& at) {
-  take_solved_motion(s, at);
+                                          std::size_t k, Scratch& at) {
+  if (!has_meetings(s)) take_solved_motion(s, k, at);
   at.field.take_motion(at.nodes.data(), reached(s));
   if constexpr (Traits::corrects) {
     if (!correcting_) return;

@@ -106,6 +106,7 @@ template <class Update>
   contact_->resolve(*model_.grid, s, which, at.fields, at.contact);
   if (which != Contact::Velocity::of_end) return;
   if (correcting_) return meet_corrected(s, at);
+  if constexpr (Traits::solves) meet_solved(s, at);
   for (const FieldNodes& field : at.fields)
     if (model_.grid->field_of(s, field.component) >= 0 && !contact_->is_rigid(field.component))
       book_blows(s, field, at);

@@ -91,9 +91,16 @@ void end_mass_solution(const BoundaryFaces& faces, double* solution) {
   faces.fill(solution);
 }
 
-void take_solution(int nodes, const double* solution, MotionVector from, MotionVector to, double* motion) {
+void copy_vector(int nodes, const double* source, MotionVector from, MotionVector to, double* motion) {
   for (int n = 0; n < nodes; ++n)
-    std::copy_n(solution + node_doubles * n + from, 3, motion + node_doubles * n + to);
+    std::copy_n(source + node_doubles * n + from, 3, motion + node_doubles * n + to);
+}
+
+void add_vector(int nodes, const double* source, MotionVector from, double multiple, MotionVector to,
+                double* motion) {
+  for (int n = 0; n < nodes; ++n)
+    for (int a = 0; a < 3; ++a)
+      motion[node_doubles * n + to + a] += multiple * source[node_doubles * n + from + a];
 }
 
 }  // namespace mpm::core

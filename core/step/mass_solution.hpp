@@ -2,9 +2,10 @@
 // from the lumped u_0 of a brick's MotionRecords. Products with M are sums over the particles, mapped between
 // these operations (core/step/solve_mass.hpp).
 //
-// Every brick keeps two records per node. Solution: a Motion, of which u is the velocity or the increment.
-// Direction: a Motion too, since its increment, the step of the iteration, is what particles interpolate; its
-// velocity is the residual D^-1 r, its omitted share the components that walls hold (bits 0..2).
+// Every brick keeps two records per node and velocity field. Solution: a Motion, of which u is the velocity
+// or the increment. Direction: a Motion too, since its increment, the step of the iteration, is what
+// particles interpolate; its velocity is the residual D^-1 r, its omitted share the components that walls
+// hold (bits 0..2).
 #pragma once
 
 #include "core/step/node_update.hpp"
@@ -31,7 +32,10 @@ void add_increment(const BoundaryFaces& faces, int nodes, const double* motion, 
 /// Stops what a rigid wall does not let through, and sets the outer nodes.
 void end_mass_solution(const BoundaryFaces& faces, double* solution);
 
-/// Copies the vector `from` of the solution to the vector `to` of the motion.
-void take_solution(int nodes, const double* solution, MotionVector from, MotionVector to, double* motion);
+/// Copies the vector `from` of Motions to the vector `to` of others, or of the same ones.
+void copy_vector(int nodes, const double* source, MotionVector from, MotionVector to, double* motion);
+/// Adds a multiple of it.
+void add_vector(int nodes, const double* source, MotionVector from, double multiple, MotionVector to,
+                double* motion);
 
 }  // namespace mpm::core

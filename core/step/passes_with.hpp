@@ -50,8 +50,7 @@ class PassesWith final : public Passes {
     if (rigid_ != nullptr) rigid_->begin_step(loads_, forces_.gravity, length);
     if (selects_) sparse_.begin_step(*model_.grid);
     follows_grid_ = follow_grid();
-    begin_mass();
-    if (!contact_) begin_corrections();
+    if (!contact_) begin_fields();
   }
   double largest_strain_rate(double above) override;
   void shorten_step(const StepLength& length) override {
@@ -62,7 +61,7 @@ class PassesWith final : public Passes {
 
   void find_fields(Reductions& ranks) override {
     contact_->find_fields(*model_.grid, halo_, ranks);
-    begin_corrections();
+    begin_fields();
     tell_contact_of_transfer();
   }
   void map_surfaces() override;
@@ -98,7 +97,7 @@ class PassesWith final : public Passes {
     typename S::Field field;
     CellsOfParticles cells;                    ///< of the current brick
     std::vector<FieldNodes> fields;            ///< where components meet
-    std::vector<FieldNodes> corrected_fields;  ///< the same with v(m) as strain velocities
+    std::vector<FieldNodes> corrected_fields;  ///< the same with v(m), or solved ones, as strain velocities
     std::vector<double> orders;                ///< a copy of the sums of one of them
     RegressionScratch regression;
     ContactSums contact;
@@ -111,6 +110,11 @@ class PassesWith final : public Passes {
         corrected;
   };
 
+  /// Once the velocity fields of the step are known.
+  void begin_fields() {
+    begin_mass();
+    begin_corrections();
+  }
   void set_step(const StepLength& length) {
     dt = length.dt;
     velocity_dt = length.velocity_dt;
@@ -259,16 +263,22 @@ class PassesWith final : public Passes {
 
   // Solutions with the consistent mass matrix (solve_mass.hpp).
   void begin_mass();
-  void begin_solution(Slot s, MassSystem system, Scratch& at);
-  void end_solution(Slot s, MassSystem system, Scratch& at);
-  void take_solved_motion(Slot s, Scratch& at);
-  void take_solved_strain(Slot s, Scratch& at);
-  /// Their records (mass_solution.hpp).
-  double* solution(Slot s) {
-    return solution_.data() + static_cast<std::size_t>(record_count()) * static_cast<std::size_t>(s);
+  void take_lumped_motion(Slot s, std::int32_t component, std::size_t k, Scratch& at);
+  void begin_solution(Slot s, MassSystem system, std::int32_t component, std::size_t k, Scratch& at);
+  void end_solution(Slot s, MassSystem system, std::int32_t component, std::size_t k, Scratch& at);
+  void take_solved_motion(Slot s, std::size_t k, Scratch& at);
+  void take_solved_strain(Slot s, std::size_t k, Scratch& at);
+  void move_with_strain(Scratch& at);
+  void meet_solved(Slot s, Scratch& at);
+  /// Whether the velocities at the end of the step are solved for, too: USF moves particles with them, and
+  /// loads do their work on them.
+  bool solves_velocities() const { return scheme_ == Scheme::usf || loads_.any(); }
+  /// The records (mass_solution.hpp) of the field number `k` of those that the brick sees.
+  double* solution(Slot s, std::size_t k) {
+    return solution_.data() + static_cast<std::size_t>(record_count()) * seen_index(s, k);
   }
-  double* direction(Slot s) {
-    return direction_.data() + static_cast<std::size_t>(record_count()) * static_cast<std::size_t>(s);
+  double* direction(Slot s, std::size_t k) {
+    return direction_.data() + static_cast<std::size_t>(record_count()) * seen_index(s, k);
   }
 
   // Products with the mass matrix, for both (mass_products.hpp).
@@ -391,11 +401,11 @@ class PassesWith final : public Passes {
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
   AlignedDoubles corrected_;    ///< XPIC, FMPM: corrected_nodes()
-  AlignedDoubles solution_;     ///< by slot; consistent mass: solution()
+  AlignedDoubles solution_;     ///< consistent mass: solution()
   const bool by_cells_;         ///< multiplies_by_cells()
   AlignedDoubles cell_masses_;  ///< where by_cells_: cell_masses()
   bool masses_known_ = false;   ///< in this step
-  AlignedDoubles direction_;    ///< by slot; consistent mass: direction()
+  AlignedDoubles direction_;    ///< consistent mass: direction()
   /// Whether the velocities' ranges tell in which bricks the strain may jump: with affine transfers nodes
   /// have velocities beyond those of the particles.
   const bool finds_ranges_;

@@ -81,7 +81,7 @@ void PassesWith<S, T>::update_stress_and_move() {
     const auto update = [&](std::int32_t component, std::size_t k) {
       const NodeMask* some = reached(s);
       if (!keeps_field_) recall_motion(moving_shared_.summed(some), motion(s, k), at.nodes.data());
-      if constexpr (Traits::solves) return take_solved_strain(s, at);
+      if constexpr (Traits::solves) return take_solved_strain(s, k, at);
       double *const sums = at.sums.data(), *const nodes = at.nodes.data();
       sum<NodeArray::second>(momentum_shared_, s, component, at, sums, some);
       if (takes_momenta(s)) return;
@@ -92,6 +92,7 @@ void PassesWith<S, T>::update_stress_and_move() {
     for_each_field(s, at, Contact::Velocity::of_strain_after_end, update,
                    [&](std::int32_t component, std::size_t k) {
                      const NodeMask* some = reached(s);
+                     if constexpr (Traits::solves) move_with_strain(at);
                      if constexpr (Traits::can_keep_field) {
                        if (keeps_field_) at.field.recall_velocity(some, motion(s, k));
                      }
@@ -113,13 +114,13 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
   const BrickGrid& grid = *model_.grid;
   critical_.assign(static_cast<std::size_t>(grid.owned()), 0.0);
   map_bricks<mapped::force>([&](Slot s, Scratch& at) {
-    const auto update = [&](std::int32_t component, std::size_t) {
+    const auto update = [&](std::int32_t component, [[maybe_unused]] std::size_t k) {
       const NodeMask* some = reached(s);
       double* const nodes = at.nodes.data();
       sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
       if (takes_momenta(s)) return;
       second_velocities(grid.geometry().mass_cutoff, nodes, nodes, faces(s), shared_.summed(some), nodes);
-      take_solved_strain(s, at);
+      if constexpr (Traits::solves) take_solved_strain(s, k, at);
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
       take_strain(s, component, at.nodes.data(), at);

@@ -166,10 +166,6 @@ void check_mass(const Node& node, const core::Scene& scene, const BuildContext& 
         "lumped, or algorithm MUSL or USF");
   if (solution.integration == core::Integration::implicit)
     refuse("is not available with implicit steps, which have lumped masses: expected lumped");
-  if (scene.contact.enable)
-    refuse(
-        "is not available with Contact, whose impulses act between lumped masses: expected lumped, or "
-        "Contact enable 0");
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ def scene(number, seed):
     if number % 4 == 1:
         materials = [text.replace("<StrengthModel ", '<StrengthModel limiter="shock" ') for text in materials]
     contact = ""
-    if len(bodies) == 2 and rng.random() < 0.5 and "consistent" not in transfer:
+    if len(bodies) == 2 and rng.random() < 0.5:
         bodies.insert(1, '</Component><Component name="other">')
         contact = CONTACT.format(rng.randrange(3), rng.choice(("", 'distance_type="1" min_distance="1"', 'distance_type="2" min_distance="0.1"')),
                                  rng.choice(("automatic", "mass_gradient", "regression")))

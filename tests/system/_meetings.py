@@ -79,11 +79,14 @@ def scene(number, seed):
     more = "".join(text for text in ('<Gravity ax="1e6" ay="0" az="-1e7"/>', '<DynamicRelax damping="1e5"/>',
                                      '<Volumetric averaging="cell" relaxation="0.5"/>') if rng.random() < 0.3)
     lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-3e-7"/></Detonation>' if "TNT" in names else ""
-    grid = _mpm.grid((0, 0, 0), [18 * CELL, 7 * CELL, 6 * CELL], faces, CELL).replace("<Grid>", f'<Grid shape="{rng.choice(SHAPES)}">')
-    solution = _mpm.solution(end, rng.choice(("MUSL", "MUSL", "USF", "USL")), rng.choice((0.5, 0.9)), more=more)
+    shape = rng.choice(SHAPES)
+    grid = _mpm.grid((0, 0, 0), [18 * CELL, 7 * CELL, 6 * CELL], faces, CELL).replace("<Grid>", f'<Grid shape="{shape}">')
+    algorithm, factor = rng.choice(("MUSL", "MUSL", "USF", "USL")), rng.choice((0.5, 0.9))
     bodies = components[0] + "".join(f'</Component><Component name="{i + 2}">{of}' for i, of in enumerate(components[1:]))
-    return _mpm.scene([bodies], grid, solution, materials,
-                      OUTPUT.format(end / 7, 0.43 * end), contact(rng, names) + lit)
+    meets = contact(rng, names)
+    consistent = rng.random() < 0.2 and algorithm != "USL" and "CPDI" not in shape
+    solution = _mpm.solution(end, algorithm, factor, 'mass="consistent"' if consistent else "", more)
+    return _mpm.scene([bodies], grid, solution, materials, OUTPUT.format(end / 7, 0.43 * end), meets + lit)
 
 
 def judge(number, seed, folder):

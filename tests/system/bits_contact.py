@@ -14,6 +14,7 @@ FRICTION = ('<Friction><Coefficient value="0.3" mat1="soft" mat2="firm"/><Coeffi
 BODIES = {"left": _mpm.block("left", (2.1, 2.2, 4.1), (5.7, 6, 4), (6, 1, -2)),
           "right": _mpm.block("right", (8.2, 2.6, 4.3), (5, 5, 4), (-5, 0, -3)),
           "base": _mpm.block("base", (1, 1, 1), (14, 9, 3), (0, 0, 1), of="firm")}
+CONSISTENT = 'mass="consistent"'
 END = 0.4
 DIMENSIONS = {2: (2, 1, 1), 4: (2, 1, 2)}
 
@@ -83,6 +84,8 @@ class Contact(Case):
                 ("uGIMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
                 ("DDMP", "MUSL", 0, 'distance_type="2" min_distance="0.1"', 'contact_normal="regression"'),
                 ("DDMP", "MUSL", 1, 'distance_type="2" min_distance="0.1"', "", corrected.format("FMPM")),
+                ("linear", "MUSL", 0, 'distance_type="2" min_distance="0.1"', "", CONSISTENT),
+                ("QuadraticBSpline", "USF", 1, "", 'contact_normal="regression"', CONSISTENT),
                 ("QuadraticBSpline", "USF", 1, "", 'contact_normal="regression"'))):
             with self.subTest(shape=shape, algorithm=algorithm, kind=kind, transfer=transfer):
                 text = scene(shape, algorithm, kind, distance, more=more).replace("<Solution ", f"<Solution {' '.join(transfer)} ")

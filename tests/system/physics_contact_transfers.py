@@ -1,5 +1,5 @@
-"""Contact where particles take velocities from the nodes, wholly (PIC, APIC, TPIC, XPIC, FMPM) or in part: what slides, and the
-impulses and the energy that contact records.
+"""Contact where particles take velocities from the nodes, wholly (PIC, APIC, TPIC, XPIC, FMPM) or in part, and with the consistent mass
+matrix: what slides, and the impulses and the energy that contact records.
 
 Prints what it measures."""
 
@@ -9,7 +9,8 @@ import numpy as np
 
 PIC, APIC, TPIC, AFLIP = (f'transfer="{name}"' for name in ("PIC", "APIC", "TPIC", "AFLIP"))
 XPIC, FMPM = 'transfer="XPIC" xpic_order="3"', 'transfer="FMPM" xpic_order="4"'
-PLAIN = ('transfer="FLIP"', 'transfer="FLIP" flip_fraction="0.95"', PIC, XPIC, FMPM)
+LUMPED, CONSISTENT = 'transfer="FLIP"', 'transfer="FLIP" mass="consistent"'
+PLAIN = (LUMPED, 'transfer="FLIP" flip_fraction="0.95"', PIC, XPIC, FMPM, CONSISTENT)
 
 
 class ContactOfTransfers(_contact.Case):
@@ -23,6 +24,38 @@ class ContactOfTransfers(_contact.Case):
                     self.assertAlmostEqual(acceleration, 1, delta=most)
                     self.assertAlmostEqual(heat, 1, delta=most)
                     self.assertLess(abs(across), 1e-3)
+
+    def test_sliding_with_consistent_mass(self):
+        """Forces and the impulses of contact, which balance, are solved for together. (Impulses by lumped mass beside solved forces drove the
+        block 28 % too fast, with type 0.)"""
+        for kind in (0, 1):
+            for shape in ("linear", "QuadraticBSpline"):
+                for friction in (0, 0.3):
+                    with self.subTest(kind=kind, shape=shape, friction=friction):
+                        acceleration, slid, heat, across, drift = self.slide(friction, kind, _contact.SURFACES, shape, transfer=CONSISTENT)
+                        self.assertGreater(slid, 1.2)
+                        self.assertAlmostEqual(acceleration, 1, delta=1e-3)
+                        if friction > 0:
+                            self.assertAlmostEqual(heat, 1, delta=2e-3)
+                        self.assertLess(abs(across), 1e-3)
+                        self.assertLess(abs(drift), 1e-3)
+
+    def test_rebound_with_consistent_mass(self):
+        """Of discs, as with lumped mass: nothing is gained, and the books know what is lost. (Blows of contact that were solved for, too,
+        gained 6.5 % in the blow of a rigid brick.)"""
+        for shape in ("linear", "uGIMP", "QuadraticBSpline", "DDMP"):
+            for kind in (0, 1):
+                with self.subTest(shape=shape, kind=kind):
+                    restitution = {}
+                    for transfer in (LUMPED, CONSISTENT):
+                        _, summary, status = self.go(_contact.discs(kind, _contact.SURFACES, shape, transfer=transfer))
+                        restitution[transfer] = status["vx[body:right]"][-1] / 0.5
+                        lost, drift = 1 - status["total"][-1] / status["total"][0], summary["energy"]["relative_drift"]
+                        print(f"rebound {shape:16} type {kind} {transfer:33} lost {lost:+.4f} restitution {restitution[transfer]:.4f} drift {drift:+.1e}")
+                        self.assertLess(abs(drift), 0.04)
+                        self.assertLess(lost, 0.08)
+                        self.assertGreater(lost, -0.001, "nothing is gained")
+                    self.assertAlmostEqual(restitution[CONSISTENT], restitution[LUMPED], delta=0.03)
 
     def test_recorded_impulses(self):
         """They are those that the bodies get. With type 0, where particles take velocities from the nodes, these had 2 to 6 % more."""

@@ -470,11 +470,6 @@ TEST_CASE("what the consistent mass matrix does not go with elsewhere") {
               "line 25: <Solution mass=\"consistent\">: is not available with CPDI and CPDI2, whose domains "
               "tangle at the surface of a fluid: expected lumped, or another shape function"});
   }
-  const std::vector<std::string> contact = faults("</PeneBlast>", "<Contact enable=\"1\"/></PeneBlast>");
-  REQUIRE(contact.size() == 2);
-  CHECK(contact[0] ==
-        "line 25: <Solution mass=\"consistent\">: is not available with Contact, whose impulses act between "
-        "lumped masses: expected lumped, or Contact enable 0");
 }
 
 }  // namespace
