@@ -26,8 +26,8 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
 /// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the
 /// corrected velocities into at.corrected.
 template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::take_updated_nodes(Slot s, [[maybe_unused]] std::int32_t component,
-                                          std::size_t k, Scratch& at) {
+void PassesWith<S, T>::take_updated_nodes(Slot s, [[maybe_unused]] std::int32_t component, std::size_t k,
+                                          Scratch& at) {
   if (!has_meetings(s)) take_solved_motion(s, k, at);
   at.field.take_motion(at.nodes.data(), reached(s));
   if constexpr (Traits::corrects) {

@@ -98,6 +98,15 @@ void PassesWith<S, T>::take_free_fields(Slot s, Scratch& at) {
   take_fields(s, at, [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); });
 }
 
+/// The fields that a brick sees at the end of the step, with contact. What contact does there is booked when
+/// the particles take it.
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::take_fields_of_end(Slot s, Scratch& at) {
+  ContactSums unbooked;
+  take_free_fields(s, at);
+  contact_->resolve(*model_.grid, s, Contact::Velocity::of_end, at.fields, unbooked);
+}
+
 /// Resolves the velocities of the fields that a brick sees, in at.fields.
 template <ShapePolicy S, TransferPolicy T>
 template <class Update>

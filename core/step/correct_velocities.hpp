@@ -35,15 +35,6 @@ void PassesWith<S, T>::add_order([[maybe_unused]] Slot s, [[maybe_unused]] int o
   }
 }
 
-/// The fields that a brick sees at the end of the step, with contact. What contact does there is booked when
-/// the particles take it.
-template <ShapePolicy S, TransferPolicy T>
-void PassesWith<S, T>::take_fields_of_end(Slot s, Scratch& at) {
-  ContactSums unbooked;
-  take_free_fields(s, at);
-  contact_->resolve(*model_.grid, s, Contact::Velocity::of_end, at.fields, unbooked);
-}
-
 /// Order 1 of the fields that a brick sees, from the velocities that contact leaves.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::begin_orders(Slot s, Scratch& at) {

@@ -170,6 +170,7 @@ class PassesWith final : public Passes {
   template <class Update>
   void take_fields(Slot s, Scratch& at, Update update);
   void take_free_fields(Slot s, Scratch& at);
+  void take_fields_of_end(Slot s, Scratch& at);
   template <class Update>
   void meet(Slot s, Scratch& at, Contact::Velocity which, Update update);
   void book_blows(Slot s, const FieldNodes& field, Scratch& at);
@@ -248,7 +249,6 @@ class PassesWith final : public Passes {
   void begin_corrections();
   void add_order(Slot s, int order, std::int32_t component, std::size_t k, Scratch& at);
   void add_order(Slot s, int order, std::int32_t component, Scratch& at, double* to);
-  void take_fields_of_end(Slot s, Scratch& at);
   void begin_orders(Slot s, Scratch& at);
   template <class F>
   void take_corrected_fields(Slot s, Scratch& at, F sums);
