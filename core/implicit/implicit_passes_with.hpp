@@ -208,8 +208,9 @@ void ImplicitPassesWith<S>::for_each_batch(const ParticleTile& tile, const Brick
     batch.particles =
         static_cast<int>(std::min<std::size_t>(batch_particles, tile.count - block_lanes * first));
     for (int b = 0; b < batch.blocks; ++b) {
-      double* const block = pool.block(tile.blocks[first + static_cast<std::size_t>(b)]);
-      at.places[b].find(frame, pool.layout(), block);
+      const std::size_t number = first + static_cast<std::size_t>(b);
+      double* const block = pool.block(tile.blocks[number]);
+      at.places[b].find(frame, pool.layout(), block, tile.used_lanes(number));
       batch.block[b] = block;
       batch.background[b] = {};
       if (which == Blocks::own) continue;

@@ -19,7 +19,7 @@ void ImplicitPassesWith<S>::map_start() {
     double* const contributions = clear_contributions(field);
     for_each_block(
         field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
-          const Place place(frame, layout, block);
+          const Place place(frame, layout, block, used);
           const Vec3<double> weight = gravity_ + loads_.acceleration(tile.body);  // per mass
           for (int l = 0; l < used; ++l) {
             const double m = block[layout.offset(Column::mass) + l];
@@ -47,7 +47,7 @@ void ImplicitPassesWith<S>::map_motion() {
     double* const contributions = clear_contributions(field);
     for_each_block(
         field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
-          const Place place(frame, layout, block);
+          const Place place(frame, layout, block, used);
           const bool moved = prescribed(tile.body);
           const ConstitutiveModel& material = *model_.bodies[static_cast<std::size_t>(tile.body)].model;
           const double c = material.initial_sound_speed(), shear = material.initial_shear_speed();
@@ -79,7 +79,7 @@ void ImplicitPassesWith<S>::map_surface() {
     const BrickFrame frame(*model_.grid, field.slot, field.number);
     double* const contributions = clear_contributions(field);
     const auto map = [&](const ParticleTile&, const ColumnLayout& layout, const double* block, int used) {
-      const Place place(frame, layout, block);
+      const Place place(frame, layout, block, used);
       for (int l = 0; l < used; ++l) {
         const double volume = block[layout.offset(Column::volume) + l];
         S::for_each_node(place, l, inverse_cell, [&](int node, double shape, const Vec3<double>& slope) {
@@ -106,7 +106,7 @@ void ImplicitPassesWith<S>::map_vectors(Has has, F vector) {
     for_each_block(field, false,
                    [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
                      if (!has(tile, layout)) return;
-                     const Place place(frame, layout, block);
+                     const Place place(frame, layout, block, used);
                      for (int l = 0; l < used; ++l) {
                        const Vec3<double> mine = vector(tile, layout, block + l);
                        for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
@@ -153,7 +153,7 @@ void ImplicitPassesWith<S>::add_reactions(const AlignedDoubles& impulses) {
     for_each_block(
         field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
           if (!prescribed(tile.body)) return;
-          const Place place(frame, layout, block);
+          const Place place(frame, layout, block, used);
           double mass = 0;
           Vec3<double> impulse{}, moment{}, mass_place{};
           for (int l = 0; l < used; ++l) {

@@ -58,8 +58,8 @@ void sort_by_site(const BrickGrid& grid, BrickCoord brick, BlockPool& pool, Part
   cell.resize(block_lanes * tile.blocks.size());
   std::array<std::uint32_t, lattice_points.nodes() + 1> start{};  // lowest points are in the order of sites
   for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-    const LinearPlace place(frame, pool.layout(), pool.block(tile.blocks[b]));
     const int used = tile.used_lanes(b);
+    const LinearPlace place(frame, pool.layout(), pool.block(tile.blocks[b]), used);
     for (int l = 0; l < block_lanes; ++l) {
       cell[block_lanes * b + static_cast<std::size_t>(l)] = static_cast<std::uint8_t>(place.node[l]);
       if (l < used) ++start[static_cast<std::size_t>(place.node[l]) + 1];

@@ -60,12 +60,15 @@ struct CornerPlace {
   alignas(64) double first[3][block_lanes];  ///< of three nodes that the corners reach, from there: -1 or 0
   unsigned far;                              ///< lanes in which they reach a fourth
   int lowest[block_lanes];                   ///< of the 4 x 4 x 4 nodes around the particle's cell
+  int used;                                  ///< lanes; the others may hold anything
 
   CornerPlace() = default;
-  CornerPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
-    find(frame, layout, block);
+  CornerPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used_lanes) {
+    find(frame, layout, block, used_lanes);
   }
-  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used_lanes) {
+    used = used_lanes;
+    const unsigned counts = (1u << used) - 1;
     const double* x = block + layout.offset(Column::position_x);
     const auto p = locate_in_sites<R, side>(frame, x, x + block_lanes, x + 2 * block_lanes);
     const R within[3] = {p.fx, p.fy, p.fz};
@@ -82,9 +85,11 @@ struct CornerPlace {
       const R from = select(below, R(-2.0), R(0.0)), to = select(beyond, R(3.0), R(below_one));
 #pragma GCC unroll 8
       for (int c = 0; c < corners; ++c) store(corner[a][c], max(min(at[a][c], to), from));
-      // As far as a particle has the choice, a block's have the same nodes.
-      store(first[a], select(beyond, R(0.0), R(any(below) ? -1.0 : 0.0)));
-      far |= bits(below & beyond);
+      // As far as a particle has the choice, a block's have the same nodes. What unused lanes hold from
+      // earlier steps must not choose: which nodes are shared decides how sums are rounded.
+      const bool any_below = (bits(below) & counts) != 0;
+      store(first[a], select(beyond, R(0.0), R(any_below ? -1.0 : 0.0)));
+      far |= bits(below & beyond) & counts;
       for (int s = 0; s < Domain::sums - Domain::first_slope; ++s)
         store(slope[s][a], weights.slope[s][a] * R(frame.inverse_cell[a]));
     }
@@ -128,7 +133,7 @@ struct CornerHats : CornerNodes {
     for (int a = 0; a < 3; ++a) first[a] = along == most_along ? R(-1.0) : load<R>(place.first[a]);
     const auto nodes = place.nodes(first[0] + R(1.0), first[1] + R(1.0), first[2] + R(1.0));
     std::memcpy(lowest, &nodes, sizeof lowest);
-    shared = std::equal(lowest + 1, lowest + block_lanes, lowest);
+    shared = std::equal(lowest + 1, lowest + place.used, lowest);
     with_along([&](auto n) {
       for (int a = 0; a < 3; ++a)
         for (int c = 0; c < corners; ++c) evaluate<n>(load<R>(place.corner[a][c]), first[a], c, hat[a]);

@@ -56,11 +56,11 @@ struct DdmpPlace : LinearPlace {
   const CellsAround* cells = nullptr;
 
   DdmpPlace() = default;
-  DdmpPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
-    find(frame, layout, block);
+  DdmpPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {
+    find(frame, layout, block, used);
   }
-  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
-    LinearPlace::find(frame, layout, block);
+  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {
+    LinearPlace::find(frame, layout, block, used);
     cells = frame.cells;
   }
   Lanes<8> alpha() const {

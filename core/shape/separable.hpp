@@ -31,10 +31,10 @@ struct SeparablePlace {
   int node[block_lanes];                        ///< the lowest one's number
 
   SeparablePlace() = default;
-  SeparablePlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
-    find(frame, layout, block);
+  SeparablePlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {
+    find(frame, layout, block, used);
   }
-  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block) {
+  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int) {
     const double* x = block + layout.offset(Column::position_x);
     for (int l = 0; l < block_lanes; l += real_width) {
       const auto p = locate_in_sites<Real, side>(frame, x + l, x + block_lanes + l, x + 2 * block_lanes + l);

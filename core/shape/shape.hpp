@@ -2,7 +2,7 @@
 // run chooses one (core/step/make_passes.cpp), so families that are not chosen cost nothing.
 //
 //   site, node_block    how bricks take particles, and the nodes that a brick keeps for them
-//   Place               location of a block of eight particles: found once per pass
+//   Place               location of the used lanes of a block of eight particles: found once per pass
 //   Scatter<fields>     adds m S, m v S and V sigma grad S of particles to a brick's Sums<fields>, one by one
 //                       or a block at once
 //   Sums<fields>        sums over a brick's particles; finish() adds them to its nodes' contributions;
@@ -48,7 +48,8 @@ concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layo
   typename S::template Sums<mapped::momentum_mass_force>;
   typename S::Field;
   typename S::Place;
-  requires std::constructible_from<typename S::Place, const BrickFrame&, const ColumnLayout&, const double*>;
+  requires std::constructible_from<typename S::Place, const BrickFrame&, const ColumnLayout&, const double*,
+                                   int>;
   typename S::Interpolation;
   requires std::constructible_from<typename S::Interpolation, const typename S::Place&, const double*>;
 };

@@ -154,7 +154,7 @@ template <ShapePolicy S, TransferPolicy T>
   for_each_block(
       s, component, columns_to_mass,
       [&](std::size_t, std::size_t, int body, const ColumnLayout& layout, double* block, int used) {
-        update_velocities(s, frame, body, Place(frame, layout, block), block, used, at);
+        update_velocities(s, frame, body, Place(frame, layout, block, used), block, used, at);
       });
   at.add_work_of_brick();
 }
@@ -185,7 +185,7 @@ template <ShapePolicy S, TransferPolicy T>
       [&](std::size_t c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
         first.next();
         second.next();
-        const Place place(frame, layout, block);
+        const Place place(frame, layout, block, used);
         update_velocities(s, frame, body, place, block, used, at);
         const MotionOfBlock<S> motion{place, *moving};
         move(body, motion, block, used, at);
@@ -265,7 +265,7 @@ template <bool moves>
   at.averages.clear();
   for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
     const double* block = pool.block(tile.blocks[b]);
-    const Place place(frame, pool.layout(), block);
+    const Place place(frame, pool.layout(), block, tile.used_lanes(b));
     S::gradient(frame, place, at.field, at.batch.gradient, 0);
     if constexpr (!moves) refer_gradient_to_old_positions(at.batch, 0, dt, false);
     at.averages.add_volume_changes(sites_of(place), block + pool.layout().offset(Column::volume),

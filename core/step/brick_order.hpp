@@ -76,8 +76,9 @@ template <class E, class F, class G>
       // All places first: locating a block is a long chain of operations, and the chains of several blocks
       // overlap.
       for (int b = 0; b < batch.blocks; ++b) {
-        batch.block[b] = pool.block(tile.blocks[first + static_cast<std::size_t>(b)]);
-        at.places[b].find(frame, pool.layout(), batch.block[b]);
+        const std::size_t number = first + static_cast<std::size_t>(b);
+        batch.block[b] = pool.block(tile.blocks[number]);
+        at.places[b].find(frame, pool.layout(), batch.block[b], tile.used_lanes(number));
       }
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);

@@ -78,7 +78,8 @@ void ConductionWith<S>::for_each_block(Slot s, F f) const {
   for (const ParticleBlock& block : blocks_of(model_, brick)) {
     const Body& body = model_.bodies[static_cast<std::size_t>(block.body)];
     if (conducts(body))
-      f(*block.layout, body, block.data, typename S::Place(frame, *block.layout, block.data), block.used);
+      f(*block.layout, body, block.data, typename S::Place(frame, *block.layout, block.data, block.used),
+        block.used);
   }
 }
 

@@ -138,7 +138,7 @@ void PassesWith<S, T>::book_blows(Slot s, const FieldNodes& field, Scratch& at) 
                  [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
                    const unsigned wanted = near.lanes(layout, block, used);
                    if (wanted == 0) return;
-                   const Place place(frame, layout, block);
+                   const Place place(frame, layout, block, used);
                    const double* mass = block + layout.offset(Column::mass);
                    for (int l = 0; l < used; ++l) {
                      if ((wanted >> l & 1u) == 0) continue;
@@ -180,7 +180,7 @@ void PassesWith<S, T>::map_surface(Slot s, std::int32_t component) {
       [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
         const unsigned wanted = near.lanes(layout, block, used);
         if (wanted == 0) return;
-        const Place place(frame, layout, block);
+        const Place place(frame, layout, block, used);
         const double* mass = block + layout.offset(Column::mass);
         for (int l = 0; l < used; ++l) {
           if ((wanted >> l & 1u) == 0) continue;
@@ -227,7 +227,7 @@ void PassesWith<S, T>::map_reach(Slot s, std::int32_t component) {
                    const unsigned wanted = near.lanes(layout, block, used);
                    if (wanted == 0) return;
                    const double* x = block + layout.offset(Column::position_x);
-                   const Place place(frame, layout, block);
+                   const Place place(frame, layout, block, used);
                    const double* volume = block + layout.offset(Column::volume);
                    for (int l = 0; l < used; ++l) {
                      if ((wanted >> l & 1u) == 0) continue;

@@ -28,15 +28,17 @@ template <NodeFields what, class Scatter, class F>
   Scatter cell = running;
   // Locates the next block before this one is processed, so that its stores complete before they are read.
   Place places[2];
-  if (!tile.blocks.empty()) places[0].find(frame, layout, body.pool->block(tile.blocks[0]));
+  const auto find = [&](std::size_t b) {
+    places[b % 2].find(frame, layout, body.pool->block(tile.blocks[b]), tile.used_lanes(b));
+  };
+  if (!tile.blocks.empty()) find(0);
   for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
     if constexpr (maps_momentum(what))
       prefetch.template request<S>(b, layout, maps_force(what) ? columns_to_stress : columns_to_mass);
     room.next();
     double* block = body.pool->block(tile.blocks[b]);
     const int used = tile.used_lanes(b);
-    if (b + 1 < tile.blocks.size())
-      places[(b + 1) % 2].find(frame, layout, body.pool->block(tile.blocks[b + 1]));
+    if (b + 1 < tile.blocks.size()) find(b + 1);
     const Place& place = places[b % 2];
     before(tile.body, place, block, used);
     add_block<S, T, what>(frame, place, layout, block, used, cell, records, pressures);
@@ -120,7 +122,7 @@ template <ShapePolicy S, TransferPolicy T>
   to.clear();
   for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
     const double* block = pool.block(tile.blocks[b]);
-    const Place place(frame, pool.layout(), block);
+    const Place place(frame, pool.layout(), block, tile.used_lanes(b));
     to.add_pressures(sites_of(place), pool.layout(), block, tile.used_lanes(b));
   }
 }
@@ -156,9 +158,9 @@ void PassesWith<S, T>::find_reached(Slot s) {
     for (const ParticleTile& tile : brick.tiles) {
       BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
       for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-        const Place place(frame, pool.layout(), pool.block(tile.blocks[b]));
-        for (int l = 0; l < tile.used_lanes(b); ++l)
-          nodes.add(grid.shape(), S::lowest_of(place, l), S::nodes_per_axis);
+        const int used = tile.used_lanes(b);
+        const Place place(frame, pool.layout(), pool.block(tile.blocks[b]), used);
+        for (int l = 0; l < used; ++l) nodes.add(grid.shape(), S::lowest_of(place, l), S::nodes_per_axis);
       }
     }
     sparse_.set_some(s, nodes);

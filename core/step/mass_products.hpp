@@ -24,7 +24,7 @@ void PassesWith<S, T>::sum_cell_masses(Slot s, std::int32_t component, double* m
     cell_mass::Sums sums;
     for_each_block(s, component, columns_to_mass,
                    [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
-                     const Place place(frame, layout, block);
+                     const Place place(frame, layout, block, used);
                      const double* m = block + layout.offset(Column::mass);
                      for (int i = 0; i < used; ++i) sums.add(place, i, m[i], moments);
                    });
@@ -60,7 +60,7 @@ void PassesWith<S, T>::add_product_by_particles(Slot s, std::int32_t component, 
   cell.clear();
   for_each_block(s, component, columns_to_mass,
                  [&](std::size_t, std::size_t, int, const ColumnLayout& layout, double* block, int used) {
-                   const Place place(frame, layout, block);
+                   const Place place(frame, layout, block, used);
                    MappedRows rows;
                    increment_momentum<S>(place, layout, at.corrected, block, rows);
                    add_particles(cell, frame, place, used, rows, to.records);

@@ -16,5 +16,11 @@ class Meetings(_mpm.Case):
                 ends.append(end)
         self.assertGreater(ends.count("completed"), 5)
 
+    def test_blocks_that_are_partly_filled(self):
+        """CPDI and CPDI2: what particles that had left a block had been decided how the sums over the others were rounded."""
+        for number in (82, 92):
+            with self.subTest(number=number):
+                self.assertEqual(_meetings.judge(number, 31, self.folder / str(number)), ("completed", ""))
+
 
 _mpm.main()

@@ -1,6 +1,8 @@
 // How the domains of CPDI and CPDI2 follow the motion, and what becomes of wide and tangled ones.
 #include "core/shape/cpdi.hpp"
 
+#include <random>
+
 #include <catch2/catch.hpp>
 
 #include "core/material/batch.hpp"
@@ -250,6 +252,48 @@ TEMPLATE_TEST_CASE("Domains that fill a cell stay in it, whatever round-off does
   for (const auto& axis : place.corner)
     for (const auto& corner : axis)
       CHECK(std::ranges::all_of(corner, [](double x) { return 0 <= x && x < 1; }));
+}
+
+TEMPLATE_TEST_CASE("Particles have the same bits whatever the unused lanes of their block hold", "", Cpdi,
+                   Cpdi2) {
+  constexpr std::size_t count = 64;
+  TransferCase<TestType> c({1, 1, 1}, count, 37);
+  std::mt19937 random(38);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<double> nodes(static_cast<std::size_t>(node_doubles * c.shape.nodes()));
+  for (double& u : nodes) u = unit(random);
+  typename TestType::Field field;
+  field.take_motion(nodes.data());
+  const ColumnLayout& layout = c.pool.layout();
+  std::vector<double> block(static_cast<std::size_t>(layout.block_doubles()));
+  const auto put = [&](int lane, std::size_t particle) {
+    const std::vector<double>& columns = c.particles[particle % count];
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      block[block_lanes * i + static_cast<std::size_t>(lane)] = columns[i];
+  };
+  const auto results = [&](int used) {
+    const auto place = c.block_place(block.data(), used);
+    const typename TestType::Interpolation increment(place, field.increment());
+    Row rows[9];
+    TestType::gradient(c.frame(), place, field, rows, 0);
+    std::vector<double> found;
+    for (int l = 0; l < used; ++l) {
+      for (int a = 0; a < 3; ++a) found.push_back(increment.value[a][l]);
+      for (const Row& row : rows) found.push_back(row[l]);
+    }
+    return found;
+  };
+  for (std::size_t first = 0; first < count; ++first) {
+    const int used = 1 + static_cast<int>(first % 7);
+    for (int l = 0; l < block_lanes; ++l) put(l, first);  // all in one cell, but for the unused ones below
+    const std::vector<double> alone = results(used);
+    int different = 0;
+    for (std::size_t other = 0; other < count; ++other) {
+      for (int l = used; l < block_lanes; ++l) put(l, other + static_cast<std::size_t>(l));
+      different += results(used) != alone;
+    }
+    CHECK(different == 0);
+  }
 }
 
 TEST_CASE("A tangled hexahedron becomes the parallelepiped of its mean edges, or else a cube") {

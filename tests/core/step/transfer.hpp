@@ -194,7 +194,9 @@ struct TransferCase {
     f.cells = &cells;
     return f;
   }
-  typename S::Place block_place(const double* block) const { return {frame(), pool.layout(), block}; }
+  typename S::Place block_place(const double* block, int used = core::block_lanes) const {
+    return {frame(), pool.layout(), block, used};
+  }
 
   /// Position in cells from node 0 of the brick, and the particle's lowest node. A point that round-off puts
   /// below its brick is in its first site; the grid's upper face belongs to the last one.
