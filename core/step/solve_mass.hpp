@@ -137,9 +137,9 @@ void PassesWith<S, T>::move_with_strain(Scratch& at) {
   copy_vector(shared_.nodes(), nodes, Motion::strain_velocity_at, Motion::velocity_at, nodes);
 }
 
-/// The same of the fields in at.fields, where they meet, with the blows of contact. Contact acts on the
-/// solved velocities once more, so that what touches does not approach with these, either; that changes the
-/// motion of particles, not their momenta.
+/// The solved velocities and increments of the fields in at.fields, with the blows of contact. Contact acts
+/// on the solved velocities once more, so that what touches does not approach with these, either; that
+/// changes the motion of particles, not their momenta.
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::meet_solved(Slot s, Scratch& at) {
   const int nodes = shared_.nodes();
