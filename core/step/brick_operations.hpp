@@ -174,8 +174,7 @@ template <ShapePolicy S, TransferPolicy T>
   if constexpr (Traits::deforms) {
     double* const nodes = at.sums.data();
     std::copy_n(moving_nodes(s, seen_number(s, component), at), record_count(), nodes);
-    for (int n = 0; n < record_count(); n += node_doubles)
-      std::copy_n(nodes + n + Motion::velocity_at, 3, nodes + n + Motion::strain_velocity_at);
+    copy_vector(shared_.nodes(), nodes, Motion::velocity_at, Motion::strain_velocity_at, nodes);
     with_gradient.take_motion(nodes);
     with_gradient.take_strain(frame, nodes);
     moving = &with_gradient;

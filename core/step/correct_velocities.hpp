@@ -81,9 +81,8 @@ void PassesWith<S, T>::take_corrected_fields(Slot s, Scratch& at, F sums) {
     if (orders_ == 1) std::ranges::copy(field.motion, at.nodes.data());
     double* const corrected = sums(k);
     add_order(s, orders_, field.component, at, corrected);
-    for (int n = 0; n < record_count(); n += node_doubles)
-      std::copy_n(corrected + n + Motion::velocity_at, 3,
-                  field.motion.data() + n + Motion::strain_velocity_at);
+    copy_vector(shared_.nodes(), corrected, Motion::velocity_at, Motion::strain_velocity_at,
+                field.motion.data());
   }
 }
 
@@ -93,10 +92,8 @@ void PassesWith<S, T>::meet_corrected(Slot s, Scratch& at) {
   take_corrected_fields(s, at, [&](std::size_t k) { return corrected_nodes(s, k); });
   contact_->resolve(*model_.grid, s, Contact::Velocity::of_correction, at.corrected_fields, at.contact);
   for (std::size_t k = 0; k < at.fields.size(); ++k) {
-    const double* resolved = at.corrected_fields[k].motion.data();
-    for (int n = 0; n < record_count(); n += node_doubles)
-      std::copy_n(resolved + n + Motion::strain_velocity_at, 3,
-                  corrected_nodes(s, k) + n + Motion::velocity_at);
+    copy_vector(shared_.nodes(), at.corrected_fields[k].motion.data(), Motion::strain_velocity_at,
+                Motion::velocity_at, corrected_nodes(s, k));
   }
 }
 

@@ -13,8 +13,9 @@ void hold(const Motion& direction, int axis) {
   double& held = direction.omitted_share();
   held = static_cast<double>(static_cast<int>(held) | 1 << axis);
 }
-bool holds(const Motion& direction, int axis) {
-  return (static_cast<int>(direction.omitted_share()) >> axis & 1) != 0;
+bool holds(const double* direction, int axis) {
+  const MotionRecord<const double> d{direction};
+  return (static_cast<int>(d.omitted_share()) >> axis & 1) != 0;
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ void advance_mass_solution(const BoundaryFaces& faces, int nodes, const double* 
     double* result = solution + node_doubles * n + u;
     for (int a = 0; a < 3; ++a) {
       double &residual = d.velocity()[a], &along = d.increment()[a];
-      if (holds(d, a)) {
+      if (holds(d.at, a)) {
         along = 0;
         continue;
       }
@@ -72,14 +73,11 @@ void advance_mass_solution(const BoundaryFaces& faces, int nodes, const double* 
   faces.fill(direction);
 }
 
-void add_increment(const BoundaryFaces& faces, int nodes, const double* motion, double* solution) {
-  for (int n = 0; n < nodes; ++n) {
-    const Motion s{solution + node_doubles * n};
-    for (int a = 0; a < 3; ++a) s.velocity()[a] += s.increment()[a];
-  }
+void add_increment(const BoundaryFaces& faces, int nodes, const double* direction, double* solution) {
+  add_vector(nodes, solution, Motion::increment_at, 1, Motion::velocity_at, solution);
   faces.for_each_node(solution, [&](int axis, int, Boundary boundary, double* at) {
-    const MotionRecord<const double> lumped{motion + (at - solution)};
-    if (boundary == Boundary::rigid_wall && lumped.velocity()[axis] == 0) Motion{at}.velocity()[axis] = 0;
+    if (boundary == Boundary::rigid_wall && holds(direction + (at - solution), axis))
+      Motion{at}.velocity()[axis] = 0;
   });
 }
 
@@ -89,18 +87,6 @@ void end_mass_solution(const BoundaryFaces& faces, double* solution) {
     if (boundary == Boundary::rigid_wall && sign * v > 0) v = 0;
   });
   faces.fill(solution);
-}
-
-void copy_vector(int nodes, const double* source, MotionVector from, MotionVector to, double* motion) {
-  for (int n = 0; n < nodes; ++n)
-    std::copy_n(source + node_doubles * n + from, 3, motion + node_doubles * n + to);
-}
-
-void add_vector(int nodes, const double* source, MotionVector from, double multiple, MotionVector to,
-                double* motion) {
-  for (int n = 0; n < nodes; ++n)
-    for (int a = 0; a < 3; ++a)
-      motion[node_doubles * n + to + a] += multiple * source[node_doubles * n + from + a];
 }
 
 }  // namespace mpm::core

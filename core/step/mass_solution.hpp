@@ -13,12 +13,9 @@
 
 namespace mpm::core {
 
-/// Which of a Motion's vectors is solved for: Motion::velocity_at or Motion::increment_at.
-using MotionVector = int;
-
-/// u = u_0 = the vector `from` of `motion`, and the first step of the iteration. What the walls have stopped
-/// is held: at rigid walls where that component of the vector `stopped` of `motion` is zero. Nodes below the
-/// cutoff take no part.
+/// Of a Motion's vectors u is solved for, the velocity or the increment: u = u_0 = the vector `from` of
+/// `motion`, and the first step of the iteration. What the walls have stopped is held: at rigid walls where
+/// that component of the vector `stopped` of `motion` is zero. Nodes below the cutoff take no part.
 void begin_mass_solution(const BoundaryFaces& faces, int nodes, double mass_cutoff, const double* motion,
                          MotionVector from, MotionVector stopped, MotionVector u, double* direction,
                          double* solution);
@@ -26,16 +23,10 @@ void begin_mass_solution(const BoundaryFaces& faces, int nodes, double mass_cuto
 void advance_mass_solution(const BoundaryFaces& faces, int nodes, const double* products, bool first,
                            const MassIteration::Step& step, MotionVector u, double* direction,
                            double* solution);
-/// The velocity at the end of the step from that at the start and the increment, both solutions; `motion`: of
-/// lumped mass, which tells what rigid walls have stopped.
-void add_increment(const BoundaryFaces& faces, int nodes, const double* motion, double* solution);
+/// The velocity at the end of the step from that at the start and the increment, both solutions. What the
+/// iteration for the increment has held at a rigid wall stays at rest.
+void add_increment(const BoundaryFaces& faces, int nodes, const double* direction, double* solution);
 /// Stops what a rigid wall does not let through, and sets the outer nodes.
 void end_mass_solution(const BoundaryFaces& faces, double* solution);
-
-/// Copies the vector `from` of Motions to the vector `to` of others, or of the same ones.
-void copy_vector(int nodes, const double* source, MotionVector from, MotionVector to, double* motion);
-/// Adds a multiple of it.
-void add_vector(int nodes, const double* source, MotionVector from, double multiple, MotionVector to,
-                double* motion);
 
 }  // namespace mpm::core

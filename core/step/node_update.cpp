@@ -245,6 +245,18 @@ void constrain_second_velocity(const BoundaryFaces& faces, double* record) {
 }
 }  // namespace
 
+void copy_vector(int nodes, const double* source, MotionVector from, MotionVector to, double* motion) {
+  for (int n = 0; n < nodes; ++n)
+    std::copy_n(source + node_doubles * n + from, 3, motion + node_doubles * n + to);
+}
+
+void add_vector(int nodes, const double* source, MotionVector from, double multiple, MotionVector to,
+                double* motion) {
+  for (int n = 0; n < nodes; ++n)
+    for (int a = 0; a < 3; ++a)
+      motion[node_doubles * n + to + a] += multiple * source[node_doubles * n + from + a];
+}
+
 void second_velocities(double mass_cutoff, const double* momenta, const double* masses,
                        const BoundaryFaces& faces, const NodeSelection& nodes, double* record) {
   nodes.for_each([&](int first, int count) {

@@ -91,6 +91,14 @@ inline constexpr int motion_width = 4;
 void keep_motion(const NodeSelection& nodes, const double* record, double* motion);
 void recall_motion(const NodeSelection& nodes, const double* motion, double* record);
 
+/// One of a Motion's vectors, as Motion::velocity_at.
+using MotionVector = int;
+/// Copies the vector `from` of Motions to the vector `to` of others, or of the same ones.
+void copy_vector(int nodes, const double* source, MotionVector from, MotionVector to, double* motion);
+/// Adds a multiple of it.
+void add_vector(int nodes, const double* source, MotionVector from, double multiple, MotionVector to,
+                double* motion);
+
 /// Sets the strain velocity to `momenta` (0..2 of each record) over `masses` (3 of each record): USF's
 /// velocity at the start of the step (both in `record`), or MUSL's re-mapped one (the masses in either).
 void second_velocities(double mass_cutoff, const double* momenta, const double* masses,

@@ -265,7 +265,7 @@ class PassesWith final : public Passes {
   void begin_mass();
   void take_lumped_motion(Slot s, std::int32_t component, std::size_t k, Scratch& at);
   void begin_solution(Slot s, MassSystem system, std::int32_t component, std::size_t k, Scratch& at);
-  void end_solution(Slot s, MassSystem system, std::int32_t component, std::size_t k, Scratch& at);
+  void end_solution(Slot s, MassSystem system, std::size_t k);
   void take_solved_motion(Slot s, std::size_t k, Scratch& at);
   void take_solved_strain(Slot s, std::size_t k, Scratch& at);
   void move_with_strain(Scratch& at);

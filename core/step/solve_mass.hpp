@@ -62,13 +62,10 @@ void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] 
 
 template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::end_solution([[maybe_unused]] Slot s, [[maybe_unused]] MassSystem system,
-                                    [[maybe_unused]] std::int32_t component, [[maybe_unused]] std::size_t k,
-                                    [[maybe_unused]] Scratch& at) {
+                                    [[maybe_unused]] std::size_t k) {
   if constexpr (Traits::solves) {
-    if (system == MassSystem::increment && scheme_ == Scheme::usf) {
-      take_lumped_motion(s, component, k, at);
-      add_increment(faces(s), shared_.nodes(), at.nodes.data(), solution(s, k));
-    }
+    if (system == MassSystem::increment && scheme_ == Scheme::usf)
+      add_increment(faces(s), shared_.nodes(), direction(s, k), solution(s, k));
     end_mass_solution(faces(s), solution(s, k));
   }
 }
@@ -104,9 +101,7 @@ void PassesWith<S, T>::solve_mass([[maybe_unused]] MassSystem system) {
       });
       first = false;
     }
-    for_fields([&](Slot s, std::int32_t component, std::size_t k, Scratch& at) {
-      end_solution(s, system, component, k, at);
-    });
+    for_fields([&](Slot s, std::int32_t, std::size_t k, Scratch&) { end_solution(s, system, k); });
   }
 }
 

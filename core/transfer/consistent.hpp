@@ -29,7 +29,7 @@
 //          (a drifting block of quadratic splines doubles its energy at 0.3 of a wave's crossing time)
 // Particles take S dv and move with S v. Walls hold in the solution what they hold with lumped mass; a node
 // whose solution would lead through a rigid wall comes to rest. With contact each component has its own M,
-// and the impulses of contact are among the forces (core/step/solve_mass.hpp). Shown by
+// and impulses of contact that balance forces are among these (core/step/solve_mass.hpp). Shown by
 // tests/core/step/consistent_mass_test.cpp and oracle_test.cpp.
 #pragma once
 

@@ -10,6 +10,7 @@ import numpy as np
 
 RIGID = _mpm.material("iron", 4.0, 'type="Rigid"')
 SURFACES = 'distance_type="2" min_distance="0.05"'
+CONSISTENT = 'mass="consistent"'
 
 
 def held(vx=0.0, vy=0.0, vz=0.0):
@@ -364,8 +365,8 @@ class Rigid(_mpm.Case):
         for density, shape, transfer, slope, friction in ((1, "linear", "", 0.5, 0.3), (4, "linear", "", 0.5, 0.3), (1, "linear", "", 0.3, 0.6),
                                                           (100, "QuadraticBSpline", "", 0.5, 0.3), (10, "linear", fmpm, 0.5, 0.3),
                                                           (10, "QuadraticBSpline", fmpm, 0.5, 0.3), (10, "linear", fmpm, 0.3, 0.6),
-                                                          (10, "QuadraticBSpline", xpic, 0.5, 0.3), (1, "linear", 'mass="consistent"', 0.5, 0.3),
-                                                          (10, "linear", 'mass="consistent"', 0.3, 0.6)):
+                                                          (10, "QuadraticBSpline", xpic, 0.5, 0.3), (1, "linear", CONSISTENT, 0.5, 0.3),
+                                                          (10, "linear", CONSISTENT, 0.3, 0.6)):
             with self.subTest(density=density, shape=shape, transfer=transfer, slope=slope):
                 _, summary, status = self.go(light(density, shape, transfer, slope, friction))
                 velocity, law = status["vx[body:top]"][-1], max(0, 10 * (math.sin(slope) - friction * math.cos(slope)) * 0.5)
@@ -380,7 +381,7 @@ class Rigid(_mpm.Case):
 
     def test_stack_on_a_driven_body(self):
         """A soft block on a free rigid one, on a base that moves: all move with the base, with all transfers, and friction holds them."""
-        for transfer in ("", 'transfer="XPIC" xpic_order="1"', 'transfer="XPIC" xpic_order="3"', 'transfer="FMPM" xpic_order="4"', 'mass="consistent"'):
+        for transfer in ("", 'transfer="XPIC" xpic_order="1"', 'transfer="XPIC" xpic_order="3"', 'transfer="FMPM" xpic_order="4"', CONSISTENT):
             with self.subTest(transfer=transfer):
                 soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
                 bodies = [_mpm.block("base", (0, 0, 0), (6, 4, 1), (1, 0, 0), of="iron", more=held(1)),
@@ -414,7 +415,7 @@ class Rigid(_mpm.Case):
         _, lumped, _ = self.go(thrown())
         for algorithm in ("MUSL", "USF"):
             with self.subTest(algorithm=algorithm):
-                _, summary, _ = self.go(thrown(algorithm=algorithm, transfer='mass="consistent"'))
+                _, summary, _ = self.go(thrown(algorithm=algorithm, transfer=CONSISTENT))
                 error, drift = momentum_error(summary), summary["energy"]["relative_drift"]
                 velocities = [[body["velocity"][2] for body in of["bodies"]] for of in (summary, lumped)]
                 print(f"thrown brick, {algorithm}, consistent mass: momentum {error:.1e}, velocities {velocities[0]}, lumped {velocities[1]}, drift {drift:+.1e}")
@@ -428,7 +429,7 @@ class Rigid(_mpm.Case):
         for algorithm, friction, transfer, others in (
                 ("MUSL", 0.2, "", ((2, 1, ""), (3, 2, ""), (4, 1, metis))), ("USF", "rough", "", ((2, 2, ""), (3, 1, metis))),
                 ("USL", 0.2, "", ((2, 2, metis), (3, 1, ""))), ("MUSL", 0.2, fmpm, ((3, 2, metis),)), ("USF", 0.2, xpic, ((2, 1, ""),)),
-                ("MUSL", 0.2, 'mass="consistent"', ((3, 1, metis),))):
+                ("MUSL", 0.2, CONSISTENT, ((3, 1, metis),))):
             how = {"algorithm": algorithm, "friction": friction, "transfer": transfer}
             one, summary, _ = self.go(thrown(**how), "one")
             for ranks, threads, partition in others:
