@@ -99,6 +99,8 @@ template <ShapePolicy S, TransferPolicy T>
   const bool damps = forces_.damping != 0;
   if (falls || is_rigid || damps)
     std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
+  const double damped = forces_.damping * velocity_dt;
+  if (damps) scale_velocities(1 - damped, layout, block);
   take_velocities(frame, place, layout, block, at);
   if (is_rigid) integrate_rigid_velocities(layout, weight, velocity_dt, block, used, at);
   // Of a prescribed velocity the constraint supplies the change.
@@ -106,8 +108,7 @@ template <ShapePolicy S, TransferPolicy T>
     correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed) prescribe_velocities(layout, motion, block, used, at);
   if (damps)
-    add_work_of_damping(forces_.damping * velocity_dt, motion.kind == BodyMotion::Kind::free, layout, block,
-                        used, at);
+    add_work_of_damping(damped, motion.kind == BodyMotion::Kind::free, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::free && velocity_limit_ < std::numeric_limits<double>::infinity())
     limit_velocities(layout, velocity_limit_, block, used, at);
 }

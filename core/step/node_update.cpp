@@ -174,14 +174,14 @@ void BoundaryFaces::mirror(int i, double* record) const {
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
                   const NodeSelection& nodes, double* record) {
   const Half gravity(Half::vector{forces.gravity.x, forces.gravity.y, forces.gravity.z, 0});
-  const double floor = forces.strain_mass_floor;
+  const double floor = forces.strain_mass_floor, kept = 1 - dt * forces.damping;
   const auto update = [&](double* at) {
     const MappedRecord<double> sums{at};
     const double m = sums.mass();
     if (!(m > mass_cutoff)) return store(at, Record(0.0));
     const double inverse = 1 / m;
-    const Half v = load<Half>(sums.momentum()) * Half(inverse);
-    const Half a = load<Half>(sums.force()) * Half(inverse) + gravity - Half(forces.damping) * v;
+    const Half v = load<Half>(sums.momentum()) * Half(kept * inverse);
+    const Half a = load<Half>(sums.force()) * Half(inverse) + gravity;
     const Half dv = Half(dt) * a;
     const Motion motion{at};
     store(motion.velocity(), v + dv);

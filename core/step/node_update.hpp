@@ -12,7 +12,10 @@ namespace mpm::core {
 /// Forces on nodes other than the particles' internal forces.
 struct NodeForces {
   Vec3<double> gravity{};  ///< acceleration
-  double damping = 0;      ///< 1/time: force per mass and velocity, against the velocity
+  /// 1/time: force per mass and velocity, against the velocity. It scales the velocities at the start of the
+  /// step, on the nodes as on the particles (PassesWith::update_velocities_apart), and is in no increment: so
+  /// it also damps what the grid does not resolve of the particles' velocities, which nothing else does.
+  double damping = 0;
   /// USL: for nodes lighter than this, only the share m / floor of the velocity increment enters the strain
   /// rate.
   double strain_mass_floor = 0;

@@ -36,6 +36,11 @@ void prescribe_velocities(const ColumnLayout& layout, const BodyMotion& motion, 
   sums.add(ReactionSums::moment, moment);
 }
 
+void scale_velocities(double factor, const ColumnLayout& layout, double* block) {
+  double* v = block + layout.offset(Column::velocity_x);
+  for (int i = 0; i < 3 * block_lanes; ++i) v[i] *= factor;
+}
+
 void limit_velocities(const ColumnLayout& layout, double limit, double* block, int used, ThreadScratch& at) {
   for (int i = 0; i < used; ++i) {
     double* v[3];

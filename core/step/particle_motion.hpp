@@ -29,6 +29,8 @@ struct alignas(128) ThreadScratch {
 /// and at the particle's position, that of the start of the step.
 void prescribe_velocities(const ColumnLayout& layout, const BodyMotion& motion, double* block, int used,
                           ThreadScratch& at);
+/// v *= factor.
+void scale_velocities(double factor, const ColumnLayout& layout, double* block);
 /// Applies LimitVelocity.
 void limit_velocities(const ColumnLayout& layout, double limit, double* block, int used, ThreadScratch& at);
 /// Velocities of a free rigid body: those in at.old, accelerated by `acceleration`. The force that replaces

@@ -215,7 +215,7 @@ TEST_CASE("Sums of a smaller block of nodes have the bits of all sums, and leave
   }
 }
 
-TEST_CASE("A free node moves by (f/m + g - c v) dt; one at the cutoff or below does not exist") {
+TEST_CASE("A free node moves by (f/m + g - c v) dt, of which its increment has (f/m + g) dt; one at the cutoff or below does not exist") {
   NodeForces forces;
   forces.gravity = {1, 2, -8};
   forces.damping = 0.5;
@@ -235,8 +235,8 @@ TEST_CASE("A free node moves by (f/m + g - c v) dt; one at the cutoff or below d
     std::copy_n(records.begin() + node_doubles * n, node_doubles, r.begin());
     return r;
   };
-  // v = (2, -1, 0.5), a = (4 + 1 - 1, 1 + 2 + 0.5, -2 - 8 - 0.25)
-  CHECK(record(0) == Record{3, -0.125, -2.0625, 8, 1, 0.875, -2.5625, 0});
+  // v = (2, -1, 0.5), f/m + g = (4 + 1, 1 + 2, -2 - 8), c dt = 1/8
+  CHECK(record(0) == Record{3, -0.125, -2.0625, 8, 1.25, 0.75, -2.5, 0});
   CHECK(record(1)[3] == 2);
   CHECK(record(1)[7] == 0.5);  // half of the floor
   CHECK(record(2) == Record{});
