@@ -27,6 +27,28 @@ Vec3<double> common(const Vec3<double>& a, const Vec3<double>& b) {
   return both;
 }
 
+double cosine(const Vec3<double>& a, const Vec3<double>& b) {
+  const double lengths = std::sqrt(dot(a, a) * dot(b, b));
+  return lengths > 0 ? dot(a, b) / lengths : 0;
+}
+
+/// The square of a gradient's change over a cell.
+double steepness(const Vec3<double>& gradient, const Vec3<double>& cell) {
+  double square = 0;
+  for (int a = 0; a < 3; ++a) square += cell[a] * gradient[a] * cell[a] * gradient[a];
+  return square;
+}
+
+/// Of two normals that should be one, that of the steeper gradient. Between them the weight passes over
+/// steadily: a normal that jumps from step to step keeps friction from settling.
+Vec3<double> of_the_steeper(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& cell) {
+  constexpr double steepest = 8;
+  const double of_a = steepness(a, cell), of_b = steepness(b, cell), longer = std::max(of_a, of_b);
+  if (!(longer > 0)) return {};
+  const double weight = std::pow(std::min(of_a, of_b) / longer, steepest);
+  return (of_a < of_b ? weight : 1) * a + (of_a < of_b ? 1 : weight) * b;
+}
+
 /// Without its component along n.
 Vec3<double> across(const Vec3<double>& d, const Vec3<double>& n) { return d - dot(d, n) * n; }
 
@@ -175,20 +197,11 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
     constexpr double least_volume = 0.1;
     if (first.volume < least_volume * g.cell_volume()) return false;
     // The steeper one is that of a face. At an edge of the body, and inside it, where wide shape functions of
-    // the material still reach, that is the material's; at an edge of the material the body's. Between them
-    // the weight passes over steadily: a normal that jumps from step to step keeps friction from settling.
-    constexpr double steepest = 8;
-    const auto steepness = [&](const Vec3<double>& gradient) {
-      double square = 0;
-      for (int a = 0; a < 3; ++a) square += g.cell[a] * gradient[a] * g.cell[a] * gradient[a];
-      return square;
-    };
-    const double body = steepness(first.gradient), material = steepness(second.gradient);
-    const double steeper = std::max(body, material);
-    if (!(steeper > 0)) return false;
-    const double weight = std::pow(std::min(body, material) / steeper, steepest);
-    const Vec3<double> surface =
-        (body < material ? weight : 1) * first.gradient - (body < material ? 1 : weight) * second.gradient;
+    // the material still reach, that is the material's; at an edge of the material the body's.
+    // Where wide shape functions reach beyond the middle of the body, its gradient is that of its other side.
+    const Vec3<double> body = first.gradient, material = -1.0 * second.gradient;
+    const bool is_beyond = cosine(body, material) < -0.9;
+    const Vec3<double> surface = is_beyond ? material : of_the_steeper(body, material, g.cell);
     const double length = std::sqrt(dot(surface, surface));
     if (length > 0) normal = (1 / length) * surface;
     return length > 0;
@@ -209,8 +222,24 @@ bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<do
   const Surface& decides = weight[1] > weight[0] ? second : first;
   if (weight[1] == weight[0] || slope_of(decides.gradient, decides.volume, g.cell) < least_slope)
     along = common(of_surface(first), -1.0 * of_surface(second));
-  // In the middle of a body of two cells.
-  if (along == Vec3<double>{}) along = second.volume * first.gradient - first.volume * second.gradient;
+  // Of two that have no direction in common, one has the node inside, as the middle of a plate of two cells
+  // or where wide functions of the other still reach: the other's face decides. What is opposite in them is
+  // that of sides that both have. Where a face of both is left, it is the side of one and the front of the
+  // other, which do not press on each other there.
+  if (along == Vec3<double>{}) {
+    constexpr double face = 0.5;  // least change of the volume over a cell, over itself
+    Vec3<double> of_first = (1 / first.volume) * first.gradient,
+                 of_second = (-1 / second.volume) * second.gradient;
+    for (int a = 0; a < 3; ++a) {
+      if (of_first[a] * of_second[a] >= 0) continue;
+      const double sum = of_first[a] + of_second[a];
+      const bool is_of_first = std::abs(of_first[a]) > std::abs(of_second[a]);
+      of_first[a] = is_of_first ? sum : 0;
+      of_second[a] = is_of_first ? 0 : sum;
+    }
+    if (std::min(steepness(of_first, g.cell), steepness(of_second, g.cell)) > face * face) return false;
+    along = of_the_steeper(of_first, of_second, g.cell);
+  }
   const double length = std::sqrt(dot(along, along));
   if (!(length > 0)) return false;
   normal = (1 / length) * along;
