@@ -114,6 +114,10 @@ bool same_frame(const core::WorkPlane& a, const core::WorkPlane& b) {
          close(a.z_axis, b.z_axis);
 }
 
+std::string words_of_units(const core::HeaderInput& header) {
+  return fmt::format("{} {} {}", header.length_unit, header.mass_unit, header.time_unit);
+}
+
 /// Rejects changes of the input with -rt that cannot take effect, since the particles already exist. Throws
 /// InputErrors.
 void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
@@ -121,34 +125,53 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
   core::Scene then = now;
   const std::string text = io::to_text(now);
   const auto compare = [&](const core::SourceLocation& at, const char* element, const std::string& name,
-                           bool differs = false) {
+                           std::string_view what, bool differs = false) {
     if (!differs && io::to_text(then) == text) return;
-    faults.push_back({at.file, at.line, element, name.empty() ? "" : "name", name,
-                      "differs from the input of the restart file: the particles exist already, so the "
-                      "change would have no effect; restore it (-rt may change Grid, Solution, Output, "
-                      "Deactive, loads and material parameters)"});
+    faults.push_back(
+        {at.file, at.line, element, name.empty() ? "" : "name", name,
+         fmt::format("differs from the input of the restart file{}: the particles exist already, so "
+                     "the change would have no effect; restore it (-rt may change Grid, Solution, "
+                     "Output, Deactive, loads and material parameters)",
+                     what)});
   };
+  if (const std::string before = words_of_units(old.header), stated = words_of_units(now.header);
+      before != stated)
+    faults.push_back(
+        {now.provenance.path,
+         0,
+         "Header",
+         {},
+         {},
+         fmt::format("Unit is \"{}\", but \"{}\" in the input of the restart file, in whose units its "
+                     "particles are: restore it, and give all numbers in those units",
+                     stated, before)});
   for (core::ComponentInput& component : then.components) {
     for (core::BodyInput& body : component.bodies) {
       const core::BodyInput* before = find_body(old, body.name);
       if (before == nullptr || body.deactivated) continue;
       // New loads, outputs and material parameters take effect; these properties do not.
       const core::BodyInput stated = body;
+      const auto check = [&](std::string_view what, bool differs = false) {
+        compare(stated.source, "Body", stated.name, what, differs);
+        body = stated;
+      };
       body.type = before->type;
       const std::optional<core::Geometry> geometry = translated(before->geometry, old, now);
       if (geometry) body.geometry = *geometry;
+      const bool moved = !same_frame(plane_of(*before, old), plane_of(stated, now));
+      check(" in its geometry", !geometry || moved);
       body.density = before->density;
+      check(" in its density (density, else ReferenceDensity of its material)");
       body.initial_velocity = before->initial_velocity;
       body.initial_velocity_expressions = before->initial_velocity_expressions;
+      check(" in its InitialVelocity");
       body.initial_temperature = before->initial_temperature;
-      const bool moved = !same_frame(plane_of(*before, old), plane_of(stated, now));
-      compare(stated.source, "Body", stated.name, !geometry || moved);
-      body = stated;
+      check(" in its initial temperature");
     }
   }
   then.detonations = old.detonations;
   // A missing Detonation has no line; it would precede the Grid.
-  compare(now.detonations.empty() ? now.grid.source : now.detonations.front().source, "Detonation", "");
+  compare(now.detonations.empty() ? now.grid.source : now.detonations.front().source, "Detonation", "", "");
   if (!faults.empty()) throw core::InputErrors(faults);
 }
 

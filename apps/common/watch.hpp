@@ -20,11 +20,11 @@ namespace mpm::apps {
 /// so their sum oscillates with the waves.
 inline constexpr double notable_drift = 0.02;
 inline constexpr std::size_t judged_rows = 10;
-/// The first step that is checked: earlier the total energy may be so small (a body that starts to fall) that
-/// the error of one step is a notable fraction of it.
+/// The first step of an explicit run that is checked: earlier the total energy may be so small (a body that
+/// starts to fall) that the error of one step is a notable fraction of it.
 inline constexpr std::int64_t first_judged_step = 50;
-/// A run with fewer steps is judged by its last row, above these: a body that falls from rest for n steps has
-/// an error of up to 1/n.
+/// An explicit run with fewer steps is judged by its last row, above these: a body that falls from rest for n
+/// steps has an error of up to 1/n.
 inline constexpr double notable_drift_of_short_run = 0.1;
 inline constexpr double notable_steps_of_drift = 2;
 
@@ -65,6 +65,8 @@ class Watch {
                     {"left the grid", {}, 0}};
   double mean_drift() const;
   bool drifted_early() const;
+  /// Energies of implicit steps are those of one time, so that all their rows are judged.
+  bool is_implicit() const { return scene_.solution.integration == core::Integration::implicit; }
   std::int64_t last_step_ = 0;  ///< of the rows
   double last_drift_ = 0;
   std::deque<double> drifts_;  ///< of the last judged_rows

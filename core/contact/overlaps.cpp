@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -34,6 +36,12 @@ std::size_t pair_number(std::int32_t a, std::int32_t b) {
   return number_of(static_cast<std::size_t>(std::min(a, b)), static_cast<std::size_t>(std::max(a, b)));
 }
 
+/// Whether y is within `half` of x along every axis. Lattices may be shifted by just half a spacing.
+bool is_near(const Vec3<double>& x, const Vec3<double>& y, double half) {
+  const Vec3<double> d = x - y;
+  return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= (1 + 1e-6) * half;
+}
+
 /// Adds the particles of a brick that overlap other components.
 void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::vector<Overlap>& found) {
   const BrickGrid& grid = *model.grid;
@@ -46,7 +54,6 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
       for (const ConstParticle p : block) {
         const Vec3<double> x = p.vector(Column::position_x);
         const double half = 0.5 * std::cbrt(p[Column::volume]);
-        const double reach = (1 + 1e-6) * half;  // lattices may be shifted by just half a spacing
         int lowest[3], highest[3];
         for (int a = 0; a < 3; ++a) {
           const auto cell = static_cast<int>(g.cell_index(x[a], a) - brick_cells * brick[a]);
@@ -55,9 +62,7 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
         }
         met.clear();
         others.for_each(lowest, highest, [&](const Vec3<double>& y, std::int32_t component) {
-          const Vec3<double> d = x - y;
-          const double apart = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-          if (component == tile.component || apart > reach) return;
+          if (component == tile.component || !is_near(x, y, half)) return;
           Overlap& overlap = found[pair_number(component, tile.component)];
           overlap.add(x, y, half);
           if (std::ranges::find(met, component) != met.end()) return;
@@ -67,6 +72,96 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
       }
     }
   }
+}
+
+/// Whether contact parts the components of two bodies, whose overlaps are those of the components.
+bool contact_parts(const Model& model, std::size_t a, std::size_t b) {
+  return model.scene->contact.enable && model.bodies[a].component != model.bodies[b].component;
+}
+
+/// Adds the particles of a brick that are in the place of another body's in that brick.
+void add_shared_places(const Model& model, Slot s, std::vector<Overlap>& found) {
+  const BrickGrid& grid = *model.grid;
+  const Brick& brick = grid.brick(s);
+  const auto other_body = [&](const ParticleTile& tile) { return tile.body != brick.tiles.front().body; };
+  if (brick.tiles.empty() || std::ranges::none_of(brick.tiles, other_body)) return;
+  struct Point {
+    Vec3<double> x;
+    std::size_t body;
+  };
+  // A brick that takes particles by node has some in the half cells below.
+  constexpr int below = 1, side = brick_cells + 2 * below;
+  const std::int64_t first[3] = {brick_cells * std::int64_t{brick.coord.x} - below,
+                                 brick_cells * std::int64_t{brick.coord.y} - below,
+                                 brick_cells * std::int64_t{brick.coord.z} - below};
+  std::vector<std::vector<Point>> cells(static_cast<std::size_t>(side * side * side));
+  const auto cell_of = [&](const Vec3<double>& x, int a) {
+    return static_cast<int>(
+        std::clamp<std::int64_t>(grid.geometry().cell_index(x[a], a) - first[a], 0, side - 1));
+  };
+  const auto at = [&](int i, int j, int k) -> std::vector<Point>& {
+    return cells[static_cast<std::size_t>(i + side * (j + side * k))];
+  };
+  for (const ConstParticleBlock& block : blocks_of(model, brick)) {
+    for (const ConstParticle p : block) {
+      const Vec3<double> x = p.vector(Column::position_x);
+      at(cell_of(x, 0), cell_of(x, 1), cell_of(x, 2)).push_back({x, static_cast<std::size_t>(block.body)});
+    }
+  }
+  std::vector<std::size_t> met;  // bodies, by one particle
+  for (const ConstParticleBlock& block : blocks_of(model, brick)) {
+    const auto body = static_cast<std::size_t>(block.body);
+    for (const ConstParticle p : block) {
+      const Vec3<double> x = p.vector(Column::position_x);
+      const double half = 0.5 * std::cbrt(p[Column::volume]);
+      met.clear();
+      const int c[3] = {cell_of(x, 0), cell_of(x, 1), cell_of(x, 2)};
+      for (int k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, side - 1); ++k) {
+        for (int j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, side - 1); ++j) {
+          for (int i = std::max(c[0] - 1, 0); i <= std::min(c[0] + 1, side - 1); ++i) {
+            for (const Point& other : at(i, j, k)) {
+              if (other.body == body || contact_parts(model, body, other.body) || !is_near(x, other.x, half))
+                continue;
+              Overlap& overlap = found[number_of(std::min(body, other.body), std::max(body, other.body))];
+              overlap.add(x, other.x, half);
+              if (std::ranges::find(met, other.body) != met.end()) continue;
+              met.push_back(other.body);
+              ++overlap.particles;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Of pairs among `many`: one sentence each.
+template <class Name>
+std::vector<std::string> in_words(const std::vector<Overlap>& found, std::size_t many, Reductions& ranks,
+                                  std::string_view kind, Name name, std::string_view advice) {
+  std::vector<std::int64_t> counts;
+  std::vector<double> bounds;
+  for (const Overlap& o : found) {
+    counts.push_back(o.particles);
+    for (int a = 0; a < 3; ++a) bounds.push_back(o.lower[a]), bounds.push_back(-o.upper[a]);
+  }
+  ranks.sum(std::span<std::int64_t>(counts));
+  ranks.minimum(bounds);
+  std::vector<std::string> words;
+  for (std::size_t b = 1; b < many; ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const std::size_t n = number_of(a, b);
+      if (counts[n] == 0) continue;
+      const double* box = bounds.data() + 6 * n;
+      words.push_back(fmt::format(
+          "{} '{}' and '{}' overlap at the start by {:.3g} x {:.3g} x {:.3g}, from ({:.6g}, {:.6g}, {:.6g}) "
+          "to "
+          "({:.6g}, {:.6g}, {:.6g}): {} of their particles are within half a spacing of the other's; {}",
+          kind, name(a), name(b), -box[1] - box[0], -box[3] - box[2], -box[5] - box[4], box[0], box[2],
+          box[4], 0 - box[1], 0 - box[3], 0 - box[5], counts[n], advice));
+    }
+  }
+  return words;
 }
 
 }  // namespace
@@ -104,30 +199,25 @@ std::vector<std::string> overlaps_in_words(const Model& model, Communication& co
     others.take(grid, points, s, {{0, 0, 0}, {brick_cells, brick_cells, brick_cells}});
     add_overlaps(model, s, others, found);
   }
-  std::vector<std::int64_t> counts;
-  std::vector<double> bounds;
-  for (const Overlap& o : found) {
-    counts.push_back(o.particles);
-    for (int a = 0; a < 3; ++a) bounds.push_back(o.lower[a]), bounds.push_back(-o.upper[a]);
-  }
-  communication.reductions.sum(std::span<std::int64_t>(counts));
-  communication.reductions.minimum(bounds);
-  std::vector<std::string> words;
-  for (std::size_t b = 1; b < components; ++b) {
-    for (std::size_t a = 0; a < b; ++a) {
-      const std::size_t n = number_of(a, b);
-      if (counts[n] == 0) continue;
-      const double* box = bounds.data() + 6 * n;
-      words.push_back(fmt::format(
-          "components '{}' and '{}' overlap at the start by {:.3g} x {:.3g} x {:.3g}, from ({:.6g}, {:.6g}, "
-          "{:.6g}) to ({:.6g}, {:.6g}, {:.6g}): {} of their particles are within half a spacing of the "
-          "other's; "
-          "contact will push them apart. Move the bodies, or give them one component",
-          scene.components[a].name, scene.components[b].name, -box[1] - box[0], -box[3] - box[2],
-          -box[5] - box[4], box[0], box[2], box[4], 0 - box[1], 0 - box[3], 0 - box[5], counts[n]));
-    }
-  }
-  return words;
+  return in_words(
+      found, components, communication.reductions, "components",
+      [&](std::size_t c) -> const std::string& { return scene.components[c].name; },
+      "contact will push them apart. Move the bodies, or give them one component");
+}
+
+std::vector<std::string> shared_places_in_words(const Model& model, Reductions& ranks) {
+  const std::size_t bodies = model.bodies.size();
+  constexpr std::size_t most_bodies = 256;
+  if (bodies < 2) return {};
+  if (bodies > most_bodies)
+    return {fmt::format("{} bodies: whether any are in the same place at the start is found for {} at most",
+                        bodies, most_bodies)};
+  std::vector<Overlap> found(number_of(0, bodies));
+  for (Slot s = 0; s < model.grid->owned(); ++s) add_shared_places(model, s, found);
+  return in_words(
+      found, bodies, ranks, "bodies",
+      [&](std::size_t b) -> const std::string& { return model.bodies[b].name; },
+      "their masses add up there. Move one of them, or cut it out of the other (BoolType)");
 }
 
 }  // namespace mpm::core

@@ -80,6 +80,7 @@ void ImplicitPassesWith<S>::add_tangent(const AlignedDoubles* displacements, con
         Batch& batch = at.batch;
         if (displacements != nullptr) {
           take_strains(frame, body, at);
+          if (linearised_) leave_yield_surface(batch);
           if (differences_)
             difference_tangent(*body.model, model_.options, batch,
                                at.copies.data() + batch_blocks * block_lanes * batch.layout->columns(),

@@ -457,8 +457,12 @@ void ImplicitIntegrator::fail(const std::string& why, std::span<const double> u)
                   "residual force, "
                   "{:.4g}, is at node {}. The state at the start of the step is kept. Use a smaller "
                   "Implicit@min_step, "
-                  "load more slowly, or use a larger rtol",
-                  model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where),
+                  "load more slowly, or use a larger rtol{}",
+                  model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where,
+                  rule_.dynamic()
+                      ? ""
+                      : ". Quasi-static steps find no equilibrium where nothing holds a body against its "
+                        "loads, or where these exceed what its material bears"),
       true);
 }
 

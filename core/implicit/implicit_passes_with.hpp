@@ -31,7 +31,8 @@ class ImplicitPassesWith final : public ImplicitPasses {
         loads_(model),
         failed_(model),
         averages_(model.scene->solution.averaging == VolumeAveraging::cell),
-        differences_(model.scene->solution.implicit && model.scene->solution.implicit->difference_tangent) {
+        differences_(model.scene->solution.implicit && model.scene->solution.implicit->difference_tangent),
+        linearised_(model.scene->solution.implicit && model.scene->solution.implicit->linearised()) {
 #pragma omp parallel
     flush_denormals_to_zero();
     for (int t = 0; t < omp_get_max_threads(); ++t) scratch_.push_back(std::make_unique<Scratch>());
@@ -184,6 +185,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   Vec3<double> gravity_{};  ///< of this step
   bool averages_;           ///< volume changes over the particles of a site
   bool differences_;        ///< derivatives of the stress by differences
+  bool linearised_;         ///< semi-implicit steps
   double dt_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratch_;          ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot

@@ -1,6 +1,7 @@
 #include "core/implicit/stress_response.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mpm::core {
 
@@ -47,6 +48,16 @@ bool set_midstep_gradient(const Rows9& displacement_gradient, Batch& batch) {
     for (int i = 0; i < 9; ++i) store(batch.gradient[i] + row, select(usable, each[i], Real(0.0)));
   });
   return keep_orientation;
+}
+
+void leave_yield_surface(Batch& batch) {
+  constexpr double part = 1e-8;
+  const int deviator = batch.layout->offset(Column::s_xx), pressure = batch.layout->offset(Column::pressure);
+  for (int b = 0; b < batch.blocks; ++b) {
+    double *const s = batch.block[b] + deviator, *const p = batch.block[b] + pressure;
+    for (int i = 0; i < 6 * block_lanes; ++i) s[i] *= 1 - part;
+    for (int i = 0; i < block_lanes; ++i) p[i] += part * std::abs(p[i]);  // a limit of tension
+  }
 }
 
 void difference_tangent(const ConstitutiveModel& material, const UpdateOptions& options, Batch& batch,

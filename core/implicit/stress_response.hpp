@@ -48,6 +48,11 @@ inline Mat3<T> inverse(const Mat3<T>& m) {
 /// orientation; those that do not, and the lanes out of use, get no strain.
 bool set_midstep_gradient(const Rows9& displacement_gradient, Batch& batch);
 
+/// Moves the stress of a batch off a yield surface on which it lies, by a negligible part of it, to the
+/// elastic side. A linearised step takes the derivative there, for no strain yet: round-off would choose
+/// between the elastic and the plastic one.
+void leave_yield_surface(Batch& batch);
+
 /// The stress' derivative by central differences of update(): for laws without a tangent of their own. The
 /// batch's blocks hold the state at the start of the step, before and after. `room`: for a copy of them.
 void difference_tangent(const ConstitutiveModel& material, const UpdateOptions& options, Batch& batch,

@@ -46,6 +46,12 @@ void ImplicitPassesWith<S>::move_block(const BrickFrame& frame, const ParticleTi
     if (lags && layout.has(Column::acceleration_lag_x))
       add_increments(layout, place, at.lags, Column::acceleration_lag_x, block);
   } else {
+    // A run that goes on from dynamic steps had velocities.
+    const double *mass = block + layout.offset(Column::mass), *v = velocity(0);
+    for (int l = 0; l < used; ++l)
+      at.work -= 0.5 * mass[l] *
+                 (v[l] * v[l] + v[l + block_lanes] * v[l + block_lanes] +
+                  v[l + 2 * block_lanes] * v[l + 2 * block_lanes]);
     std::fill_n(velocity(0), 3 * block_lanes, 0.0);
   }
   const MotionOfBlock<S> motion{place, at.displacements};

@@ -218,9 +218,11 @@ void create_particles(Model& model, std::span<const BodySeeds> bodies, Communica
     };
     const auto base = static_cast<double>(model.next_identity);
     StartVelocity velocity(*of.input, model.clock.time);
+    const bool at_rest = StartVelocity::is_at_rest(model.scene->solution, *of.input);
     for_each_piece(*of.source, ranks.rank(), ranks.size(), [&](const std::vector<Seed>& seeds) {
       for (const Seed& s : seeds) {
         fill_columns(layout, *of.input, velocity, s, base + static_cast<double>(s.identity), values);
+        if (at_rest) std::fill_n(values.begin() + layout.index(Column::velocity_x), 3, 0.0);
         const BrickCoord to = model.grid->geometry().brick_at(s.position);
         particles.add(to, static_cast<int>(of.body), values.data(), layout.columns());
       }

@@ -7,6 +7,7 @@
 
 #include "core/expressions/formula.hpp"
 #include "core/scene/body.hpp"
+#include "core/scene/solution.hpp"
 
 namespace mpm::core {
 
@@ -14,6 +15,12 @@ class StartVelocity {
  public:
   /// `time`: of the creation. The input must outlive this.
   StartVelocity(const BodyInput& input, double time);
+  /// Whether particles begin without the body's velocity: in quasi-static steps they move only where their
+  /// motion is prescribed.
+  static bool is_at_rest(const SolutionInput& solution, const BodyInput& input) {
+    return solution.integration == Integration::implicit && solution.implicit &&
+           solution.implicit->quasistatic() && !input.prescribed_velocity;
+  }
 
   static const Expressions& expressions_of(const BodyInput& input) {
     return input.prescribed_velocity ? input.prescribed_velocity_expressions

@@ -32,7 +32,9 @@ core::ShapeFunction shape_function(std::string_view word) {
 
 void require_built(const Node& node, std::string_view attribute, std::string_view shape,
                    const BuildContext& context) {
-  if (std::ranges::find(core::built_shapes, shape) != std::ranges::end(core::built_shapes)) return;
+  const bool is_known = !shape.empty();  // else it has been reported
+  if (!is_known || std::ranges::find(core::built_shapes, shape) != std::ranges::end(core::built_shapes))
+    return;
   node.report(context.diagnostics, attribute,
               fmt::format("this program was built without {}: expected {}, or a program built with the CMake "
                           "option -DMPM_SHAPES=all",

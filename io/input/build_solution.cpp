@@ -276,7 +276,7 @@ void build_body_history(core::TimeHistoryInput& history, const Node& node, const
     if (!core::has_reaction(scene, *bodies[*body]))
       of.report(context.diagnostics, "name",
                 "force and moment are those of rigid bodies in contact and of bodies with a prescribed "
-                "velocity, with explicit steps; this body is neither");
+                "velocity; this body is neither");
     history.bodies.emplace_back(names[*body]);
   }
   const bool asks = history.force || history.moment;

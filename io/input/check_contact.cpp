@@ -65,9 +65,11 @@ void check_rigid(const Node& node, const Bodies& bodies, const core::Scene& scen
     if (core::is_rigid(scene.materials[body->material])) ++rigid;
   }
   if (rigid > 0 && known > 1)
-    node.report(context.diagnostics,
-                "a rigid body in contact must be alone in its component, which moves as one: give the other "
-                "bodies components of their own");
+    node.report(
+        context.diagnostics,
+        "a rigid body in contact must be alone in its component, which moves as one: give the other "
+        "bodies components of their own. One rigid body of several shapes, as a shank with a nose, is a "
+        "Bool body: A minus ((A minus the first shape) minus the second), A being a block around both");
 }
 
 }  // namespace

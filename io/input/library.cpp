@@ -91,8 +91,8 @@ LibraryEntry parse_entry(const Document& document, std::uint32_t index, const Li
   return entry;
 }
 
-/// The units of Header/Unit, if all three are recognised.
-std::optional<core::UnitSystem> header_units(const Document& document) {
+/// The units of Header/Unit, if all three are recognised; else `why` says what is not.
+std::optional<core::UnitSystem> header_units(const Document& document, std::string* why = nullptr) {
   std::optional<core::UnitSystem> units;
   for_each_child(document, 0, [&](std::uint32_t header) {
     if (document.elements()[header].name != "Header") return;
@@ -103,7 +103,9 @@ std::optional<core::UnitSystem> header_units(const Document& document) {
                                           value_of(document, unit, "mass"), value_of(document, unit, "time"));
       try {
         units = core::UnitSystem::parse(all);
-      } catch (const core::UnitError&) {}  // free text is allowed there
+      } catch (const core::UnitError& error) {  // free text is allowed there
+        if (why != nullptr) *why = error.what();
+      }
     });
   });
   return units;
@@ -115,7 +117,7 @@ class Filler {
       : document_(document),
         library_(library),
         diagnostics_(diagnostics),
-        header_units_(header_units(document)) {}
+        header_units_(header_units(document, &unknown_units_)) {}
 
   void fill(std::uint32_t material) {
     const auto given = attribute(material, "library");
@@ -171,9 +173,12 @@ class Filler {
     std::optional<core::UnitSystem> units;
     if (!given) {
       if (!header_units_)
-        diagnostics_.add(document_.elements()[material].line, "Material",
-                         "attribute 'units' is missing: library values are converted to the units of this "
-                         "input, as in units=\"mm g ms\" (or give length, mass and time in Header / Unit)");
+        diagnostics_.add(
+            document_.elements()[material].line, "Material",
+            fmt::format(
+                "attribute 'units' is missing: library values are converted to the units of this input, "
+                "as in units=\"mm g ms\" (or give length, mass and time in Header / Unit{})",
+                unknown_units_.empty() ? "" : "; of those given there " + unknown_units_));
       units = header_units_;
     } else {
       try {
@@ -226,6 +231,7 @@ class Filler {
   Document& document_;
   const Library& library_;
   Diagnostics& diagnostics_;
+  std::string unknown_units_;  ///< why those of Header / Unit are not known
   std::optional<core::UnitSystem> header_units_;
   std::optional<core::UnitSystem> first_units_;
 };

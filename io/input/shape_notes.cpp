@@ -1,6 +1,8 @@
 #include "io/input/shape_notes.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <variant>
 
 #include <fmt/format.h>
@@ -50,6 +52,49 @@ void note_blocks(const core::Scene& scene, std::vector<core::Diagnostic>& notes)
                    first->name, block.spacing, block.size.x, block.size.y, block.size.z, edges.x, edges.y,
                    edges.z, first->density * volume(edges), first->density * volume(block.size),
                    more > 0 ? fmt::format(" (and {} more such bodies)", more) : "")});
+}
+
+namespace {
+
+/// The largest distance of neighbouring particles; 0 where the geometry does not say it.
+double largest_spacing(const core::Geometry& geometry) {
+  return std::visit(
+      [](const auto& of) {
+        if constexpr (requires { of.spacing; })
+          return of.spacing;
+        else if constexpr (requires { of.top_spacing; })
+          return std::max(of.bottom_spacing, of.top_spacing);
+        else
+          return 0.0;
+      },
+      geometry);
+}
+
+}  // namespace
+
+void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  double cell = std::numeric_limits<double>::infinity();
+  for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    const auto* difference = std::get_if<core::BoolGeometry>(&body.geometry);
+    const core::BodyInput* shape = &body;
+    while (difference != nullptr) {
+      shape = &core::body_at(scene, difference->minuend);
+      difference = std::get_if<core::BoolGeometry>(&shape->geometry);
+    }
+    const double spacing = largest_spacing(shape->geometry);
+    if (!(spacing > (1 + 1e-9) * cell)) return;
+    notes.push_back(
+        {body.source.file,
+         body.source.line,
+         "Body",
+         {},
+         {},
+         fmt::format("body '{}': its particles are {:.6g} apart, more than a cell, {:.6g}: neighbours "
+                     "then share few nodes or none, and the body has little strength or none. Use a dp "
+                     "of about half a cell",
+                     body.name, spacing, cell)});
+  });
 }
 
 void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {

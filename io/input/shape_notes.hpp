@@ -10,6 +10,9 @@ namespace mpm::io {
 /// The blocks whose particles, of whole number along each edge, have another volume than the input says.
 void note_blocks(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
+/// Bodies whose particles are farther apart than the smallest cell is long.
+void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
 /// A scene none of whose bodies takes part in the run.
 void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 

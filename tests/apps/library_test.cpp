@@ -215,6 +215,11 @@ TEST_CASE("faults about the library", "[library]") {
   CHECK(error_about("<Material name='cu' library='OFHC-Cu-JC'/>") ==
         "case.xmp:1: <Material>: attribute 'units' is missing: library values are converted to the units of "
         "this input, as in units=\"mm g ms\" (or give length, mass and time in Header / Unit)");
+  CHECK(error_about("<Header><Unit time='milliseconds' length='mm' mass='g'/></Header>"
+                    "<Material name='cu' library='OFHC-Cu-JC'/>")
+            .find("(or give length, mass and time in Header / Unit; of those given there 'milliseconds' is "
+                  "no unit "
+                  "of length, mass or time") != std::string::npos);
   CHECK(error_about("<Material name='cu' library='OFHC-Cu-JC' units='mm g msec'/>") ==
         "case.xmp:1: <Material units=\"mm g msec\">: 'msec' is no unit of length, mass or time; known are m, "
         "dm, cm, mm, um, nm, km, in, ft, kg, g, mg, ug, t, tonne, lb, s, ms, us, ns, min, h");

@@ -92,6 +92,16 @@ class ImplicitContact(_mpm.Case):
         np.testing.assert_allclose(found[0], found[1], rtol=1e-6)
         self.assertGreater(np.hypot(*found[0][-1][:2]), found[0][-1][2])
 
+    def test_a_platen_holds_what_reaches_beyond_its_middle(self):
+        """A column under a platen of two cells, which moves by 0.8 of one in ten steps: splines of the column reach beyond the platen's
+        middle, where its gradient is that of its upper face. The force then fell by half."""
+        found = []
+        for steps in (1, 10):
+            text = scene(((0, 0, 0), (1, 1, 8)), ((0, 0, 8), (1, 1, 2)), (0, 0, -0.8), "CubicBSpline", 0.0, steps, "222220", grid=((0, 0, 0), (1, 1, 14)))
+            self.run_in(f"platen{steps}", [self.write(text)])
+            found.append(self.forces(f"platen{steps}")[-1][2])
+        self.assertGreater(found[1] / found[0], 0.7)
+
     def test_the_edge_of_a_strip_carries_its_part(self):
         """L. Prandtl's load of a strip on cohesive soil, (2 + pi) c over its width, is the same without friction and of a rough strip:
         the normal at the strip's edge is that of the soil. Two cells over the half of the width; the normal of a corner lost a third of the load."""

@@ -9,8 +9,8 @@ using namespace mpm::tests;
 
 namespace {
 
-/// Two blocks of 4 x 4 x 4 cells with a gap along x; what is said about them.
-std::vector<std::string> words(double gap, double aside = 0) {
+/// Two blocks of 4 x 4 x 4 cells with a gap along x; what is said about their components, or about them.
+std::vector<std::string> words(double gap, double aside = 0, bool of_bodies = false, bool contact = true) {
   ReferenceCase c = open_space(ReferenceShape::linear, ReferenceScheme::musl);
   const ReferenceParticle like = tumbling_block().particles.front();
   for (const bool second : {false, true}) {
@@ -27,6 +27,9 @@ std::vector<std::string> words(double gap, double aside = 0) {
   SmallRun run(c, 512, true);
   run.scene->components[0].name = "one";
   run.scene->components[1].name = "two";
+  run.scene->contact.enable = contact;
+  for (std::size_t b = 0; b < run.model.bodies.size(); ++b) run.model.bodies[b].name = b == 0 ? "a" : "b";
+  if (of_bodies) return mpm::core::shared_places_in_words(run.model, run.solo.reductions);
   return mpm::core::overlaps_in_words(run.model, run.solo);
 }
 
@@ -49,4 +52,14 @@ TEST_CASE("Overlaps at the start: with their size, place and number of particles
         "or give them one component");
   const std::string deep = words(-3.8, 0.1).front();  // several layers: still the whole of what is in common
   CHECK(deep.find("by 3.8 x 3.9 x 4, from (3.2, 4.4, 4.2) to (7, 8.3, 8.2): 1024 of") != std::string::npos);
+}
+
+TEST_CASE("Bodies in the same place that contact does not part") {
+  CHECK(words(0, 0.25, true, false).empty());
+  CHECK(words(-0.3, 0, true, true).empty());  // their components overlap
+  const std::vector<std::string> found = words(-3.8, 0.1, true, false);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].find("bodies 'a' and 'b' overlap at the start by 3.8 x 3.9 x 4, from (3.2, 4.4, 4.2) to (7, "
+                      "8.3, 8.2)") == 0);
+  CHECK(found[0].find("masses add up") != std::string::npos);
 }

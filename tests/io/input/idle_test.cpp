@@ -437,6 +437,22 @@ TEST_CASE("quasi-static steps read no velocities") {
                                  "artificial viscosity"});
 }
 
+TEST_CASE("an explosive that is lit after the end") {
+  const auto notes = [](const std::string& time) {
+    const std::string explosive = replaced(
+        bar, law,
+        "<StrengthModel type='HighExpBurn' Young='10' Poisson='0.3' D='6930' beta='0' PCJ='21e3' mu='0'");
+    return notes_of(replaced(
+        explosive, "<Grid ",
+        "<Detonation><Item type='point' time='" + time + "' x='0' y='0' z='0'/></Detonation><Grid "));
+  };
+  const auto said = [](const std::vector<std::string>& all) {
+    return std::ranges::count(all, "line 17: <Item time=\"0.08\">: no effect: the run ends before");
+  };
+  CHECK(said(notes("0.08")) == 1);
+  CHECK(said(notes("0.07")) == 0);
+}
+
 TEST_CASE("a block whose spacing does not divide its edges") {
   const auto notes = [](const std::string& dp) {
     return notes_of(replaced(bar, "dp=\"0.38\" x0=\"0\" y0=\"0\" z0=\"0\" lx=\"3.8\" ly=\"3.8\" lz=\"19\"",
@@ -448,7 +464,12 @@ TEST_CASE("a block whose spacing does not divide its edges") {
         std::vector<std::string>{
             "line 12: <Body>: body 'rod': dp 0.7 does not divide its edges 2 x 2 x 2: its particles "
             "fill 2.1 x 2.1 x 2.1, with the mass 0.0827007 instead of 0.07144"});
-  CHECK(notes("3").size() == 1);
+  const std::vector<std::string> wide = notes("3");
+  REQUIRE(wide.size() == 2);
+  CHECK(wide[1] ==
+        "line 12: <Body>: body 'rod': its particles are 3 apart, more than a cell, 0.76: neighbours then "
+        "share few "
+        "nodes or none, and the body has little strength or none. Use a dp of about half a cell");
 }
 
 TEST_CASE("outputs of nothing, and a run of nothing") {
