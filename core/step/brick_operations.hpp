@@ -107,8 +107,7 @@ template <ShapePolicy S, TransferPolicy T>
   if (falls && motion.kind != BodyMotion::Kind::prescribed)
     correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed) prescribe_velocities(layout, motion, block, used, at);
-  if (damps)
-    add_work_of_damping(damped, motion.kind == BodyMotion::Kind::free, layout, block, used, at);
+  if (damps) add_work_of_damping(damped, motion.kind == BodyMotion::Kind::free, layout, block, used, at);
   if (motion.kind == BodyMotion::Kind::free && velocity_limit_ < std::numeric_limits<double>::infinity())
     limit_velocities(layout, velocity_limit_, block, used, at);
 }

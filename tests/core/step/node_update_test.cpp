@@ -215,7 +215,9 @@ TEST_CASE("Sums of a smaller block of nodes have the bits of all sums, and leave
   }
 }
 
-TEST_CASE("A free node moves by (f/m + g - c v) dt, of which its increment has (f/m + g) dt; one at the cutoff or below does not exist") {
+TEST_CASE(
+    "A free node moves by (f/m + g - c v) dt, of which its increment has (f/m + g) dt; one at the cutoff or "
+    "below does not exist") {
   NodeForces forces;
   forces.gravity = {1, 2, -8};
   forces.damping = 0.5;
