@@ -155,13 +155,20 @@ void Contact::find_overlap(const BrickGrid& grid, Slot s, int node, std::span<co
                            std::span<const int> present) {
   constexpr double least = 0.3;  // of a cell
   const std::array<int, 3> in_brick = grid.shape().node(node);
-  const Vec3<double> place = grid.geometry().node_place(grid.brick(s).coord, in_brick);
+  const BrickCoord coord = grid.brick(s).coord;
+  const Vec3<double> place = grid.geometry().node_place(coord, in_brick);
+  double cell = 1;  // the part of a cell around the node that is inside the grid: half of it at a face
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t brick[3] = {coord.x, coord.y, coord.z};
+    const std::int64_t i = brick_cells * brick[a] + in_brick[a];
+    if (i == 0 || i == grid.geometry().cells[a]) cell *= 0.5;
+  }
   const auto filled = [&](int f) {
     const FieldNodes& field = fields[static_cast<std::size_t>(f)];
     const double
         full = full_mass_[static_cast<std::size_t>(field.component)],
         mass = field.surface[static_cast<std::size_t>(node_doubles * node + node_field::surface_mass.first)];
-    return full > 0 ? mass / full : 0.0;
+    return full > 0 ? mass / (cell * full) : 0.0;
   };
   const auto velocity = [&](int f) {
     return velocity_at(rigid_->state(rigid(fields[static_cast<std::size_t>(f)].component)), place);

@@ -162,6 +162,15 @@ class FreeRigid(_mpm.Case):
         outcome = self.run_in("meet", [text], code=_mpm.NUMERICAL_FAILURE)
         self.assertIn("'left' and 'right', both moving freely, have met and overlap", outcome.complaint)
 
+    def test_thin_free_bodies_on_planes_of_symmetry(self):
+        """Quarters of bodies 1.6 cells wide: around a node on a plane only half a cell can be filled."""
+        bodies = [iron("left", (2, 0, 0), (3, 0.8, 0.8), (1, 0, 0)), iron("right", (6, 0, 0), (3, 0.8, 0.8), (-1, 0, 0))]
+        text = scene(bodies, 2.0, 0.01)
+        for axis in "YZ":
+            text = text.replace(f'<{axis}Min value="0" boundary="0"/>', f'<{axis}Min value="0" boundary="2"/>')
+        outcome = self.run_in("meet", [self.write(text)], code=_mpm.NUMERICAL_FAILURE)
+        self.assertIn("'left' and 'right', both moving freely, have met and overlap", outcome.complaint)
+
     def test_two_free_bodies_of_given_mass(self):
         """Bodies pass without touching, or stop the run where they have entered each other, whatever mass they are given."""
         for factor in (0.1, 1, 10):
