@@ -114,7 +114,9 @@ bool same_frame(const core::WorkPlane& a, const core::WorkPlane& b) {
          close(a.z_axis, b.z_axis);
 }
 
+/// Empty where the input does not give them.
 std::string words_of_units(const core::HeaderInput& header) {
+  if (header.length_unit.empty() && header.mass_unit.empty() && header.time_unit.empty()) return {};
   return fmt::format("{} {} {}", header.length_unit, header.mass_unit, header.time_unit);
 }
 
@@ -135,7 +137,7 @@ void refuse_what_is_over(const core::Scene& old, const core::Scene& now) {
                      what)});
   };
   if (const std::string before = words_of_units(old.header), stated = words_of_units(now.header);
-      before != stated)
+      !before.empty() && !stated.empty() && before != stated)
     faults.push_back(
         {now.provenance.path,
          0,

@@ -22,8 +22,9 @@
 // normal_vector_weight, as in explicit steps. With equal weights it is the direction of what grad V_1 and
 // -grad V_2 have in common, the smaller one of each component of the same sign: where the two fill the cell
 // both are equal; a free side of one or both, which tilts the mean of the two normals, is not in common.
-// Along the axes of the grid that is exact. Where they have nothing in common, as in the middle of a body of
-// two cells, it is V_2 grad V_1 - V_1 grad V_2, in which V_1/(V_1 + V_2) grows.
+// Along the axes of the grid that is exact. Where they have nothing in common, one of them has the node
+// inside, as the middle of a plate of two cells, or the node is beyond a face that wide shape functions
+// reach: the normal is that of the steeper one of grad V/V, or they do not touch (touch() has the rule).
 //
 // Which nodes stick, and the friction of those that slide, are those of the last solution: a step is solved
 // again, from there, until they agree. A node that sticks with more than mu p slides; one that slides against

@@ -250,11 +250,9 @@ class Restart(Case):
         left, right = _mpm.BOUNCING
         lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="0"/></Detonation></PeneBlast>'
         tag = ": differs from the input of the restart file"
-        header = bounce(end=END / 8).replace("<Material", '<Header><Unit length="mm" mass="g" time="ms"/></Header><Material', 1)
         for text, complaints in [
                 (bounce(end=END / 8, bodies=[left, right.replace('vx="-3"', 'vx="-2"')]), [f'<Body name="right">{tag} in its InitialVelocity']),
                 (bounce(end=END / 8, bodies=[left.replace('lx="6"', 'lx="5"'), right]), [f'<Body name="left">{tag} in its geometry']),
-                (header, ['<Header>: Unit is "mm g ms"']),
                 (bounce(end=END / 8).replace("</PeneBlast>", lit), [f"<Detonation>{tag}"])]:
             other = self.write(text, "other.xmp")
             for ranks in (1, 2):
@@ -262,6 +260,21 @@ class Restart(Case):
                 for words in complaints:
                     self.assertEqual(outcome.complaint.count(words), 1, outcome)
         self.assertFalse((self.folder / "over").exists())
+
+    def test_units_do_not_change(self):
+        """Those of an input without Unit are not known."""
+        def text(unit):
+            header = f"<Header>{unit}</Header><Material" if unit else "<Material"
+            return bounce(end=END / 8, output=f'<Restart time_interval="{END / 32}"/>').replace("<Material", header, 1)
+
+        metres, millimetres = ('<Unit length="{}" mass="{}" time="{}"/>'.format(*units.split()) for units in ("m kg s", "mm g ms"))
+        self.write(text(metres), "metres.xmp")
+        self.run_in("metres", [self.folder / "metres.xmp"])
+        restart = _mpm.restarts(self.folder / "metres", "metres")[0]
+        for unit in (metres, ""):
+            self.run_in("same", [restart, "-rt", self.write(text(unit), "same.xmp")])
+        outcome = self.run_in("others", [restart, "-rt", self.write(text(millimetres), "others.xmp")], code=INPUT_ERROR, ranks=2)
+        self.assertEqual(outcome.complaint.count('<Header>: Unit is "mm g ms", but "m kg s" in the input of the restart file'), 1, outcome)
 
     def test_work_planes_are_compared_by_their_values(self):
         """A plane may get another place in the list or another name, or go where it changes nothing; it may not move."""
