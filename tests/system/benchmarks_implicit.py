@@ -188,9 +188,10 @@ class Quick(_mpm.RunOnce):
     def test_footing(self):
         self.assertLess(abs(self.one("last", "footing", **{"steps by": "implicit, held"})), 0.05)
         self.assertLess(abs(self.one("last", "frictional_footing") + 0.046), 0.01)
-        # Measured +1.0 and -1.1 %, nearly the same with any friction.
-        for by in ("rough", "smooth"):
-            self.assertLess(abs(self.one("last", "footing", **{"steps by": f"implicit, contact, {by}"})), 0.02)
+        # As with a body of four cells instead of two, +2.7 and -1.0 %. It was +1.0 and -1.1 % while that of two did not hold what reaches
+        # beyond its middle.
+        for by, error in (("rough", 0.026), ("smooth", -0.012)):
+            self.assertLess(abs(self.one("last", "footing", **{"steps by": f"implicit, contact, {by}"}) - error), 0.005)
         # Two cells in explicit contact press a wider strip: measured +31 %.
         self.assertLess(abs(self.one("last", "footing", **{"steps by": "explicit 0.001"}) - 0.31), 0.03)
 
