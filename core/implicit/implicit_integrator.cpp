@@ -453,16 +453,17 @@ void ImplicitIntegrator::fail(const std::string& why, std::span<const double> u)
                                                   : fmt::format("({:.6g}, {:.6g}, {:.6g}){}", place[0],
                                                                 place[1], place[2], bodies_around(place));
   throw NumericalFailure(
-      fmt::format("step {}, time {:.9g}: no equilibrium with the smallest step, {:.4g}: {}; the largest "
-                  "residual force, "
-                  "{:.4g}, is at node {}. The state at the start of the step is kept. Use a smaller "
-                  "Implicit@min_step, "
-                  "load more slowly, or use a larger rtol{}",
-                  model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where,
-                  rule_.dynamic()
-                      ? ""
-                      : ". Quasi-static steps find no equilibrium where nothing holds a body against its "
-                        "loads, or where these exceed what its material bears"),
+      fmt::format(
+          "step {}, time {:.9g}: no equilibrium with the smallest step, {:.4g}: {}; the largest "
+          "residual force, "
+          "{:.4g}, is at node {}. The state at the start of the step is kept. Use a smaller "
+          "Implicit@min_step, "
+          "load more slowly, or use a larger rtol{}",
+          model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where,
+          rule_.dynamic()
+              ? ""
+              : ". Quasi-static steps have none where nothing holds a body against its loads, or where "
+                "these exceed what its material bears"),
       true);
 }
 
