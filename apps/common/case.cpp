@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "io/input/echo.hpp"
 #include "io/input/reader.hpp"
 #include "io/output/file.hpp"
