@@ -31,6 +31,7 @@ struct Body {
   std::optional<Vec3<double>> prescribed_velocity;
   bool rigid = false;                     ///< moves freely under gravity where no velocity is prescribed
   std::optional<RigidState> rigid_state;  ///< in contact; the same on all ranks
+  std::vector<double> face_forces;        ///< of implicit steps (body_faces.hpp); the same on all ranks
   bool inertia_given = false;  ///< energy of rotation and spin follow from the rigid state, not its particles
   bool no_output = false;
   /// Memory of this rank's particles; bodies with the same columns share one.

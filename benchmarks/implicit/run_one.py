@@ -44,7 +44,8 @@ class Step:
 
     length: float
     unknowns: int
-    norms: tuple  # of the residual, from the first guess on
+    norms: tuple  # of the residual of its first solution, from the first guess on
+    newton: int  # iterations of all solutions
     linear: int
     cuts: int  # times that it was taken again, shorter
 
@@ -53,7 +54,8 @@ def steps_of(log):
     found = []
     line = (r"^implicit +step \d+: time \S+, length (\S+); (\d+) unknowns; residual ([^;]*); (\d+) linear iterations(.*)$")
     for length, unknowns, norms, linear, more in re.findall(line, log, re.MULTILINE):
-        found.append(Step(float(length), int(unknowns), tuple(map(float, norms.split())), int(linear),
+        solutions = [tuple(map(float, each.split())) for each in norms.split("|")]
+        found.append(Step(float(length), int(unknowns), solutions[0], sum(len(s) - 1 for s in solutions), int(linear),
                           more.count("; shortened")))
     return found
 
@@ -105,7 +107,7 @@ def run(one, out, keep=False):
         seconds = (spent["loop"] - spent["output"]) * min(1.0, processor / one.ranks / wall)
         row.update(particles=result.summary["particles"], steps=result.summary["steps"], seconds=seconds)
         if steps:
-            row.update(unknowns=max(s.unknowns for s in steps), newton=sum(len(s.norms) - 1 for s in steps),
+            row.update(unknowns=max(s.unknowns for s in steps), newton=sum(s.newton for s in steps),
                        linear=sum(s.linear for s in steps), cuts=sum(s.cuts for s in steps))
         row.update({name: value if isinstance(value, str) else float(value) for name, value in one.measure(result).items()})
     elif code in (2, 3):

@@ -55,7 +55,7 @@ def explicit(end, factor=0.8, damping=None, more="", transfer="FLIP"):
 
 def pressed_block(shape, h, height, velocity, in_contact, solution, materials, output):
     """A block of 2 x 2 cells between smooth walls and a rigid platen on it with this velocity, a number or an expression: it is
-    in contact, or holds the nodes."""
+    in contact, or the block sticks to it."""
     body = block("block", (0, 0, 0), (2 * h, 2 * h, height), h / 2)
     platen = block("platen", (0, 0, height), (2 * h, 2 * h, 2 * h), h / 2, "rigid", moved(vz=velocity))
     parts = (grid(shape, (0, 0, 0), (2 * h, 2 * h, height + 4 * h), "222220", h), solution, materials, output)

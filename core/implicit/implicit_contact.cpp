@@ -11,12 +11,6 @@ namespace mpm::core {
 
 namespace {
 
-constexpr Mat3<double> unit{1, 0, 0, 0, 1, 0, 0, 0, 1};
-
-Mat3<double> outer(const Vec3<double>& a, const Vec3<double>& b) {
-  return {a.x * b.x, a.x * b.y, a.x * b.z, a.y * b.x, a.y * b.y, a.y * b.z, a.z * b.x, a.z * b.y, a.z * b.z};
-}
-
 Vec3<double> vector_of(const double* from) { return {from[0], from[1], from[2]}; }
 
 /// Of two vectors what they have in common: by component the smaller one, where both have the same sign.
@@ -49,9 +43,6 @@ Vec3<double> of_the_steeper(const Vec3<double>& a, const Vec3<double>& b, const 
   return (of_a < of_b ? weight : 1) * a + (of_a < of_b ? 1 : weight) * b;
 }
 
-/// Without its component along n.
-Vec3<double> across(const Vec3<double>& d, const Vec3<double>& n) { return d - dot(d, n) * n; }
-
 }  // namespace
 
 ImplicitContact::ImplicitContact(Model& model, RigidBodies* rigid, NodeUnknowns& unknowns)
@@ -70,6 +61,7 @@ ImplicitContact::ImplicitContact(Model& model, RigidBodies* rigid, NodeUnknowns&
     stiffness_[c] = std::max(stiffness_[c], body.model->reference_density() * speed * speed * h);
     weight_[c] = std::max(weight_[c], normal_weight(scene, c, static_cast<std::size_t>(body.material)));
   }
+  if (rigid_ != nullptr) at_faces_.assign(rigid_->count(), false);
   friction_.assign(components * components, {});
   for (std::size_t a = 0; a < components; ++a)
     for (std::size_t b = 0; b < components; ++b)
@@ -86,6 +78,7 @@ void ImplicitContact::begin_step(const Loads& loads, double dt) {
     rigid_->begin_step(loads, gravity, {.dt = dt, .velocity_dt = dt});
   step_ = model_.clock.step;
   dt_ = dt;
+  if (rigid_ != nullptr) impulses_.assign(rigid_->count(), {});
 }
 
 /// Own nodes that several components reach, each once.
@@ -191,7 +184,8 @@ void ImplicitContact::find_nodes(ImplicitPasses& passes, std::span<const double>
 bool ImplicitContact::touch(const Surface& first, const Surface& second, Vec3<double>& normal) const {
   const GridGeometry& g = model_.grid->geometry();
   if (rigid(second.component) >= 0) return false;
-  if (rigid(first.component) >= 0) {
+  if (const int number = rigid(first.component); number >= 0) {
+    if (at_faces_[static_cast<std::size_t>(number)]) return false;
     // Of a body's volume around a node over that of a cell: at its corners it is an eighth, at its faces a
     // half; beyond them it is less.
     constexpr double least_volume = 0.1;
@@ -267,36 +261,22 @@ void ImplicitContact::add_touch(std::size_t first, std::size_t second, const Vec
   if (a.held == 7 && b.held == 7) return;
   const double k_a = stiffness_[static_cast<std::size_t>(a.component)],
                k_b = stiffness_[static_cast<std::size_t>(b.component)];
-  Touch touch{first,
-              second,
-              place,
-              normal,
-              rigidity * std::max(k_a, k_b),
-              k_a > 0 && k_b > 0 ? k_a * k_b / (k_a + k_b) : std::max(k_a, k_b),
-              coefficient};
+  Touch touch{first, second, place, {}};
   touch.counts = (a.number >= 0 ? a.own : b.own) != no_own;
-  touch.sticks = touch.coefficient > 0;
+  ContactSpring& spring = touch.spring;
+  spring.normal = normal;
+  spring.k = rigidity * std::max(k_a, k_b);
+  spring.cell_stiffness = k_a > 0 && k_b > 0 ? k_a * k_b / (k_a + k_b) : std::max(k_a, k_b);
+  spring.coefficient = coefficient;
+  spring.sticks = coefficient > 0;
   const auto last = last_.find(key_of(touch));
-  if (touch.coefficient > 0 && last != last_.end()) std::tie(touch.sticks, touch.friction) = last->second;
+  if (coefficient > 0 && last != last_.end()) std::tie(spring.sticks, spring.friction) = last->second;
   touches_.push_back(touch);
 }
 
 void ImplicitContact::take_displacements() {
   for (Member& member : members_)
     if (member.number >= 0) member.displacement = vector_of(unknowns_.shared(member.at));
-}
-
-ImplicitContact::Response ImplicitContact::response(const Touch& touch) const {
-  const Vec3<double>&n = touch.normal, d = relative(touch);
-  Response found;
-  found.pressure = std::max(0.0, -touch.k * dot(d, n));
-  found.force = found.pressure * n - touch.friction;
-  // Where nothing has moved yet they press: a body that contact alone holds is held from the start.
-  if (dot(d, n) <= 0) found.stiffness = touch.k * outer(n, n);
-  if (!touch.sticks) return found;
-  found.force = found.force - touch.k * across(d, n);
-  found.stiffness = found.stiffness + touch.k * (unit - outer(n, n));
-  return found;
 }
 
 void ImplicitContact::add_tangent(double factor, bool values, BlockMatrix& matrix) const {
@@ -322,43 +302,15 @@ void ImplicitContact::add_tangent(double factor, bool values, BlockMatrix& matri
   }
 }
 
-namespace {
-/// How often in a step a node changes between sticking and sliding; and after how many solutions its pressure
-/// is the mean of the last two.
-constexpr int most_turns = 4, steady = 10;
-}  // namespace
-
-ImplicitContact::Changes ImplicitContact::find_friction(double relaxation) {
-  Changes changes;
+void ImplicitContact::find_friction(double relaxation, ContactSpring::Changes& changes) {
   next_ = touches_;
-  for (Touch& touch : next_) {
-    if (touch.coefficient == 0) continue;
-    const Vec3<double> slip = across(relative(touch), touch.normal);
-    const bool sticking = touch.sticks;
-    const double pressure = response(touch).pressure;
-    touch.pressure = touch.solutions++ < steady ? pressure : 0.5 * (touch.pressure + pressure);
-    const double most = touch.coefficient * touch.pressure;
-    const Vec3<double> before = sticking ? touch.k * slip : touch.friction;
-    // Friction grows with the slip up to its bound. A node that slides and has turned round sticks; one that
-    // has done so several times goes on sliding, as little as it may.
-    touch.sticks =
-        sticking ? dot(before, before) <= most * most : touch.turns < most_turns && dot(slip, before) < 0;
-    const Vec3<double> wanted = sticking ? before : before + relaxation * touch.cell_stiffness * slip;
-    const double length = std::sqrt(dot(wanted, wanted));
-    touch.friction = touch.sticks ? Vec3<double>{} : (length > most ? most / length : 1.0) * wanted;
-    const Vec3<double> change = (touch.sticks ? Vec3<double>{} : touch.friction) - before;
-    if (touch.sticks != sticking) ++touch.turns;
-    if (!touch.counts) continue;
-    if (!(touch.sticks && sticking)) changes.change.add(std::sqrt(dot(change, change)));
-    changes.most.add(most);
-  }
-  return changes;
+  for (Touch& touch : next_) touch.spring.find_friction(relative(touch), relaxation, touch.counts, changes);
 }
 
 void ImplicitContact::keep_friction() {
   last_.clear();
   for (const Touch& touch : touches_)
-    if (touch.coefficient > 0) last_[key_of(touch)] = {touch.sticks, touch.friction};
+    if (touch.spring.coefficient > 0) last_[key_of(touch)] = {touch.spring.sticks, touch.spring.friction};
 }
 
 /// Nodes that press go on together, those that stick in all directions. The impulses follow one after the
@@ -379,7 +331,7 @@ void ImplicitContact::find_stops(std::span<const double> velocity_at_end, double
     Vec3<double> missing = (1 / dt_) * relative(touch) - before;
     for (int i = 0; i < 3; ++i)
       if (!a.moves(i) && !b.moves(i)) missing[i] = 0;
-    if (!touch.sticks) missing = dot(missing, touch.normal) * touch.normal;
+    if (!touch.spring.sticks) missing = dot(missing, touch.spring.normal) * touch.spring.normal;
     Stop& stop = stops_[t];
     for (int i = 0; i < 3; ++i) {
       const double both = per_mass(a, i) + per_mass(b, i);
@@ -411,9 +363,18 @@ void ImplicitContact::find_start(std::span<const Vec3<double>> force_of_own) {
   }
 }
 
+void ImplicitContact::add_face(std::int32_t rigid, std::int32_t deformable, const Vec3<double>& place,
+                               const Vec3<double>& impulse, double given, double heat, StepStatistics& to) {
+  to.contact.pairs.resize(pairs_.size());
+  const auto [first, second] = std::minmax({rigid, deformable});
+  to.contact.add(pairs_.number(first, second), second == deformable ? impulse : -1.0 * impulse, heat);
+  const int number = rigid_->of_component(rigid);
+  impulses_[static_cast<std::size_t>(number)].add(-1.0 * impulse, place - rigid_->state(number).centre,
+                                                  -given);
+}
+
 void ImplicitContact::end_step(StepStatistics& to) {
   to.contact.pairs.resize(pairs_.size());
-  if (rigid_ != nullptr) impulses_.assign(rigid_->count(), {});
   for (std::size_t t = 0; t < touches_.size(); ++t) {
     const Touch& touch = touches_[t];
     if (!touch.counts) continue;
@@ -427,7 +388,7 @@ void ImplicitContact::end_step(StepStatistics& to) {
     to.contact.dissipated.add(-stop.gained);
     const auto [first, second] = std::minmax({a.component, b.component});
     to.contact.add(pairs_.number(first, second), second == b.component ? impulse : -1.0 * impulse,
-                   -dot(mean, across(d, touch.normal)));
+                   -dot(mean, across(d, touch.spring.normal)));
     if (a.rigid < 0) continue;
     const Vec3<double> way = a.displacement;
     impulses_[static_cast<std::size_t>(a.rigid)].add(-1.0 * impulse,

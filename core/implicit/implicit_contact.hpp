@@ -48,6 +48,7 @@
 #include <vector>
 
 #include "core/contact/rigid_bodies.hpp"
+#include "core/implicit/contact_spring.hpp"
 #include "core/implicit/implicit_passes.hpp"
 #include "core/implicit/node_unknowns.hpp"
 
@@ -84,16 +85,8 @@ class ImplicitContact {
   struct Touch {
     std::size_t first, second;  ///< of members()
     Vec3<double> place;         ///< of the node
-    Vec3<double> normal;        ///< from the first to the second
-    double k;                   ///< stiffness
-    double cell_stiffness;      ///< of a cell of each, in series
-    double coefficient;         ///< of friction
-    bool counts = false;        ///< on this rank: of one of the ranks that know it
-    bool sticks = false;
-    Vec3<double> friction{};  ///< t of a node that slides
-    double pressure = 0;      ///< p of the last solutions
-    int solutions = 0;        ///< of this step
-    int turns = 0;            ///< changes between sticking and sliding in this step
+    ContactSpring spring;
+    bool counts = false;  ///< on this rank: of one of the ranks that know it
   };
   std::span<const Member> members() const { return members_; }
   std::span<const Touch> touches() const { return touches_; }
@@ -101,12 +94,9 @@ class ImplicitContact {
   /// Takes the displacements of the members once NodeUnknowns::distribute() has sent those of all ranks.
   void take_displacements();
 
-  struct Response {
-    Vec3<double> force{};      ///< on the second
-    Mat3<double> stiffness{};  ///< minus its derivative by the second's displacement
-    double pressure = 0;       ///< p, a force
-  };
-  Response response(const Touch& touch) const;
+  ContactSpring::Response response(const Touch& touch) const {
+    return touch.spring.response(relative(touch));
+  }
   /// f(own node, force on it) of each touch.
   template <class F>
   void for_each_force(F f) const {
@@ -127,15 +117,9 @@ class ImplicitContact {
   bool rubs() const {
     return std::ranges::any_of(friction_, [](const Friction& f) { return f.coefficient > 0; });
   }
-  /// Over this rank's touches.
-  struct Changes {
-    ExactSum change;  ///< of the friction of nodes that slide
-    ExactSum most;    ///< mu p of all
-  };
-  /// Finds which nodes stick, and friction, by the displacements taken; take_friction() sets them.
-  /// `relaxation`: stiffness, over that of a cell, with which friction grows with the slip of a node that
-  /// slides.
-  Changes find_friction(double relaxation);
+  /// Finds which nodes stick, and friction, by the displacements taken (ContactSpring::find_friction);
+  /// take_friction() sets them.
+  void find_friction(double relaxation, ContactSpring::Changes& changes);
   void take_friction() { touches_ = next_; }
   /// Keeps them as the first guess of the next step.
   void keep_friction();
@@ -155,6 +139,14 @@ class ImplicitContact {
   /// Quasi-static steps: the force at the start, that of equilibrium, by the forces on own nodes without
   /// contact: the mean with that at the end does the work.
   void find_start(std::span<const Vec3<double>> force_of_own);
+
+  /// Rigid bodies that act on others at their faces (body_faces.hpp), and not here: add_face() is given what
+  /// a point of such a face does in the step, `impulse` on the deformable component and `given`, the work of
+  /// the rigid one.
+  void leave_to_faces(int body) { at_faces_[static_cast<std::size_t>(rigid_->of_body(body))] = true; }
+  void add_face(std::int32_t rigid, std::int32_t deformable, const Vec3<double>& place,
+                const Vec3<double>& impulse, double given, double heat, StepStatistics& to);
+  double coefficient(std::int32_t a, std::int32_t b) const { return friction(a, b).coefficient; }
 
   /// What contact has done in the step; the motion of rigid bodies at its end. Collective.
   void end_step(StepStatistics& to);
@@ -212,6 +204,7 @@ class ImplicitContact {
   }
   std::map<Key, std::tuple<bool, Vec3<double>>> last_;
   std::vector<RigidImpulse> impulses_;
+  std::vector<bool> at_faces_;  ///< by rigid body
 };
 
 /// Null where nothing can meet: without contact, or with one component.

@@ -1,50 +1,20 @@
 #include "core/implicit/implicit_integrator.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "core/contact/contact_points.hpp"
-#include "core/particle_range.hpp"
 #include "core/step/speeds.hpp"
-#include "core/step/stepper.hpp"
 
 namespace mpm::core {
 
 namespace {
 
-/// Steps with fewer iterations are easy: the next one may be longer.
-constexpr int easy = 8;
-constexpr double growth = 1.5;
-/// A quasi-static run's steps, and a dynamic step over the largest explicit one, where the input names none.
-constexpr double default_load_steps = 20, default_ratio = 20;
 /// Nodes with less than CellStabilisation::hardly_any of the volume of a cell around them may belong to a
 /// fragment that nothing holds. They get a stiffness of their own, of this part of the material's: so little
 /// that it bears no weight over the way of a step, and enough for the matrix not to be singular.
 constexpr double ground = 1e-10;
-/// Friction has settled where it changes by less than this part of what it may be; and how often a step is
-/// solved for that.
-constexpr double settled_friction = 1e-3;
-/// The stiffness of a cell in shear over that in compression, about.
-constexpr double shear_share = 0.25;
-constexpr int many_frictions = 10, most_frictions = 40;
-/// Forces of this strain are rounding errors: a body without loads is in equilibrium.
-constexpr double rounding = 1e-13;
-/// The smallest step over the given one, where the input names none.
-constexpr double default_smallest = 1.0 / 1024;
-
-double length_of(const ImplicitInput& input, const Model& model) {
-  if (input.time_step) return *input.time_step;
-  const double explicit_step = default_ratio * model.clock.first_critical_dt;
-  const bool by_loads = input.quasistatic() || !std::isfinite(explicit_step);
-  const double length = by_loads ? model.scene->solution.end_time / default_load_steps : explicit_step;
-  return std::max(std::min(length, input.max_step.value_or(length)), input.min_step.value_or(0));
-}
 
 }  // namespace
 
@@ -54,15 +24,18 @@ ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communicatio
       halo_(communication.halo),
       solver_(solver),
       input_(model.scene->solution.implicit.value_or(ImplicitInput{})),
-      cells_(make_cells_in_use(model, communication.halo)),
+      face_points_(acting_faces(model, communication.reductions)),
+      with_faces_(bodies_of(face_points_)),
+      cells_(make_cells_in_use(model, communication.halo, with_faces_)),
       rigid_(make_rigid_bodies(model, communication.reductions)),
-      passes_(make_implicit_passes(model, rigid_.get(), fields_)),
+      passes_(make_implicit_passes(model, rigid_.get(), with_faces_, fields_)),
       unknowns_(model, communication, fields_),
       stabilisation_(model, fields_),
       lags_(TimeRule::lags(input_)) {
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     moves_bodies_ |= passes_->loads().motion(b).kind == BodyMotion::Kind::prescribed &&
-                     (!rigid_ || rigid_->of_body(b) < 0);
+                     (!rigid_ || rigid_->of_body(b) < 0) &&
+                     std::ranges::find(with_faces_, b) == with_faces_.end();
   const double h = model.grid->geometry().smallest_cell();
   for (const Body& body : model.bodies) {
     const double c = body.model->initial_sound_speed();
@@ -70,10 +43,11 @@ ImplicitIntegrator::ImplicitIntegrator(Model& model, Communication& communicatio
   }
   if (!(held_diagonal_ > 0)) held_diagonal_ = 1;
   contact_ = make_implicit_contact(model, rigid_.get(), unknowns_);
-}
-
-const char* ImplicitIntegrator::name_of_solution() const {
-  return input_.linearised() ? "linear system" : "Newton's method";
+  if (with_faces_.empty()) return;
+  if (contact_)
+    for (const int b : with_faces_) contact_->leave_to_faces(b);
+  faces_ =
+      std::make_unique<BodyFaces>(model, ranks_, fields_, unknowns_, std::move(face_points_), contact_.get());
 }
 
 std::vector<Phase> ImplicitIntegrator::phases() {
@@ -88,11 +62,6 @@ std::vector<Phase> ImplicitIntegrator::phases() {
   step.push_back({name_of_solution(), [this] { solve(); }});
   step.push_back({"grid to particles", [this] { move(); }});
   return step;
-}
-
-double ImplicitIntegrator::next_step(const Clock& clock) const {
-  const double length = length_of(input_, model_);
-  return clock.next_dt > 0 ? std::min(clock.next_dt, input_.max_step.value_or(length)) : length;
 }
 
 /// Components that may meet have fields of their own.
@@ -118,6 +87,7 @@ void ImplicitIntegrator::prepare() {
   fields_.find(*model_.grid);
   passes_->begin_step(dt, rule_.dynamic() ? 0.5 : 1.0);
   if (contact_) contact_->begin_step(passes_->loads(), dt);
+  if (faces_) faces_->begin_step(passes_->loads(), dt);
   passes_->map_start();
   unknowns_.exchange(mapped::implicit_start);
   const std::vector<double> sums = unknowns_.number();
@@ -157,6 +127,7 @@ void ImplicitIntegrator::prepare() {
     if (rule_.dynamic() && !(at.mass > cutoff)) at.ground = 0;
   }
   if (contact_) find_contacts();
+  if (faces_) faces_->find_points(*passes_);
   if (lags_) {
     passes_->map_lag();
     unknowns_.exchange(mapped::implicit_lag);
@@ -168,6 +139,7 @@ void ImplicitIntegrator::prepare() {
   const std::vector<double> at_rest(3 * state_.size(), 0.0);
   distribute(at_rest);
   passes_->map_forces(displacements_);
+  if (faces_) faces_->add_start_forces();
   unknowns_.exchange(mapped::implicit_force);
   const double damping = model_.scene->solution.damping;
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
@@ -177,34 +149,11 @@ void ImplicitIntegrator::prepare() {
   });
 }
 
-/// Nodes go on with their velocity; those of a linearised step begin at their place, where it is linearised.
-/// What walls hold is there, and with products by differences of residuals everything that is held.
-std::vector<double> ImplicitIntegrator::first_guess(bool at_rest) const {
-  std::vector<double> u(3 * state_.size());
-  for (std::size_t i = 0; i < state_.size(); ++i) {
-    for (int a = 0; a < 3; ++a) {
-      const std::size_t at = 3 * i + static_cast<std::size_t>(a);
-      const double to = unknowns_.held_displacements()[at];
-      if (held(i, a) && (to == 0 || input_.matrix_free))
-        u[at] = to;
-      else
-        u[at] = at_rest ? 0 : free_motion(state_[i], a);
-    }
-  }
-  return u;
-}
-
-bool ImplicitIntegrator::overstrains(std::span<const double> u) {
-  if (ranks_.any(!map_forces(u))) return true;
-  StepMotion motion = passes_->motion_of(displacements_);
-  motion.combine(ranks_);
-  return motion.overstrains();
-}
-
 bool ImplicitIntegrator::map_forces(std::span<const double> u) {
   distribute(u);
   const bool usable = passes_->map_forces(displacements_);
   stabilisation_.add_forces(displacements_);
+  if (faces_) faces_->add_forces(displacements_);
   unknowns_.exchange(mapped::implicit_force);
   return usable;
 }
@@ -288,6 +237,7 @@ void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix
   passes_->add_tangent(&displacements_, unknowns_, matrix);
   stabilisation_.add_tangent(unknowns_, true, matrix);
   if (contact_) contact_->add_tangent(1 + rule_.carry, true, matrix);
+  if (faces_) faces_->add_tangent(&displacements_, matrix);
   const double per_mass = rule_.inertia + model_.scene->solution.damping * rule_.gain;
   for (std::size_t i = 0; i < state_.size(); ++i) {
     double diagonal[9] = {};
@@ -296,175 +246,6 @@ void ImplicitIntegrator::jacobian(std::span<const double> u, BlockMatrix& matrix
     const std::int64_t number = unknowns_.first() + static_cast<std::int64_t>(i);
     matrix.add(std::span(&number, 1), diagonal);
   }
-}
-
-std::string ImplicitIntegrator::objection(const NewtonReport& report, std::span<const double> u) {
-  if (!report.converged) return report.reason;
-  distribute(u);
-  StepMotion motion = passes_->motion_of(displacements_);
-  motion.combine(ranks_);
-  std::vector<std::string> names;
-  for (const Body& body : model_.bodies) names.push_back(body.name);
-  return motion.objection(names);
-}
-
-NewtonReport ImplicitIntegrator::solve_once(std::span<double> u, const NewtonOptions& options) {
-  const NewtonReport report = solver_.solve(*this, u, options);
-  ++solves_;
-  total_.iterations += report.iterations;
-  total_.linear_iterations += report.linear_iterations;
-  total_.structure_seconds += report.structure_seconds;
-  total_.residual_seconds += report.residual_seconds;
-  total_.jacobian_seconds += report.jacobian_seconds;
-  total_.setup_seconds += report.setup_seconds;
-  total_.linear_seconds += report.linear_seconds;
-  return report;
-}
-
-/// Solves again with the friction that the last solution allows, until it no longer changes.
-void ImplicitIntegrator::settle_friction(std::span<double> u, const NewtonOptions& options,
-                                         NewtonReport& report) {
-  double relaxation = shear_share, last = 0;
-  for (int i = 0; report.converged; ++i) {
-    distribute(u);
-    ImplicitContact::Changes mine = contact_->find_friction(relaxation);
-    ExactSum sums[2] = {mine.change, mine.most};
-    ranks_.sum(std::span(sums));
-    const double change = sums[0].value();
-    if (change <= settled_friction * sums[1].value()) return contact_->keep_friction();
-    // Softer bodies than a cell of the material overshoot; and what goes to and fro settles by ever less.
-    if (i > 1 && change > last) relaxation *= 0.5;
-    if (i > many_frictions) relaxation *= 0.8;
-    last = change;
-    if (i == most_frictions) {
-      report.converged = false;
-      report.reason = "friction does not settle";
-      return;
-    }
-    contact_->take_friction();
-    const NewtonReport next = solve_once(u, options);
-    report.converged = next.converged;
-    report.reason = next.reason;
-    report.linear_iterations += next.linear_iterations;
-    report.iterations = std::max(report.iterations, next.iterations);  // of a solution
-    for (std::size_t n = 1; n < next.norms.size(); ++n) report.norms.push_back(next.norms[n]);
-  }
-}
-
-void ImplicitIntegrator::solve() {
-  const double length = length_of(input_, model_);
-  const double no_force = rounding * held_diagonal_ * model_.grid->geometry().smallest_cell();
-  const NewtonOptions options{input_.relative_tolerance, input_.absolute_tolerance.value_or(no_force),
-                              input_.max_newton, input_.matrix_free, input_.linearised()};
-  const double planned = next_step(model_.clock), first = model_.clock.dt;  // which EndTime may have cut
-  const double smallest = input_.min_step.value_or(default_smallest * length);
-  std::string cuts;
-  bool at_rest = input_.linearised();
-  for (;;) {
-    std::vector<double> u = first_guess(at_rest);
-    NewtonReport report = solve_once(u, options);
-    if (contact_ && contact_->rubs()) settle_friction(u, options, report);
-    const std::string why = objection(report, u);
-    const double dt = model_.clock.dt;
-    const std::string norms = fmt::format("{:.2e}", fmt::join(report.norms, " "));
-    if (why.empty()) {
-      solution_ = std::move(u);
-      words_ =
-          fmt::format("step {}: time {:.6g}, length {:.4g}; {} unknowns; residual {}; {} linear iterations{}",
-                      model_.clock.step + 1, model_.clock.time + dt, dt, 3 * unknowns_.all(), norms,
-                      report.linear_iterations, cuts);
-      double& next = model_.clock.next_dt;
-      next = report.iterations <= easy ? std::min(dt * growth, input_.max_step.value_or(length)) : dt;
-      if (dt == first && dt < planned) next = planned;
-      return;
-    }
-    ++rejected_;
-    if (!at_rest && rule_.dynamic() && overstrains(first_guess(false))) {
-      cuts += fmt::format("; begun again at rest: {} (residual {})", why, norms);
-      at_rest = true;
-    } else {
-      const double shorter = std::max(0.5 * dt, smallest);
-      if (!(shorter < dt)) fail(why + ", residual " + norms, u);
-      cuts += fmt::format("; shortened from {:.4g}: {} (residual {})", dt, why, norms);
-      at_rest = input_.linearised();
-      model_.clock.dt = shorter;
-    }
-    prepare();
-  }
-}
-
-std::string ImplicitIntegrator::words_of_run() const {
-  if (solves_ == 0) return {};
-  return fmt::format("{}; {} Newton iterations and {} linear ones in {} solutions, {} of them rejected",
-                     solver_.description(), total_.iterations, total_.linear_iterations, solves_, rejected_);
-}
-
-std::vector<PartOfPhase> ImplicitIntegrator::parts() const {
-  const std::string phase = name_of_solution();
-  return {{phase, "structure of the matrix", total_.structure_seconds},
-          {phase, "residuals", total_.residual_seconds},
-          {phase, "Jacobians", total_.jacobian_seconds},
-          {phase, "preconditioner or factors", total_.setup_seconds},
-          {phase, "linear systems", total_.linear_seconds}};
-}
-
-/// " of bodies a, b": those with particles within a cell and a half of a place. Collective.
-std::string ImplicitIntegrator::bodies_around(const std::array<double, 3>& place) {
-  constexpr double reach = 1.5;
-  const GridGeometry& g = model_.grid->geometry();
-  std::vector<double> none(model_.bodies.size(), 1.0);
-  for (const ConstParticleBlock& block : blocks_of(std::as_const(model_))) {
-    for (const ConstParticle p : block) {
-      const Vec3<double> x = p.vector(Column::position_x);
-      bool near = true;
-      for (std::size_t a = 0; a < 3; ++a)
-        near &= std::abs(x[static_cast<int>(a)] - place[a]) <= reach * g.cell[static_cast<int>(a)];
-      if (near) none[static_cast<std::size_t>(block.body)] = 0;
-    }
-  }
-  ranks_.minimum(none);
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < none.size(); ++b)
-    if (none[b] == 0) names.push_back(fmt::format("\"{}\"", model_.bodies[b].name));
-  if (names.empty()) return {};
-  return fmt::format(" of {} {}", names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "));
-}
-
-/// Names the node of the largest residual of the last iteration, at `u`, and the bodies with particles around
-/// it.
-void ImplicitIntegrator::fail(const std::string& why, std::span<const double> u) {
-  std::vector<double> r(u.size());
-  residual(u, r);
-  double largest = 0;
-  std::size_t at = 0;
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) > largest)) continue;
-    largest = std::abs(r[k]);
-    at = k / 3;
-  }
-  const double of_all = ranks_.largest(largest);
-  const bool mine = largest > 0 && largest == of_all;
-  const int from = static_cast<int>(ranks_.smallest(mine ? ranks_.rank() : ranks_.size()));
-  std::array<double, 3> place;
-  place.fill(std::numeric_limits<double>::infinity());
-  if (from == ranks_.rank()) std::copy_n(unknowns_.coordinates().data() + 3 * at, 3, place.begin());
-  ranks_.minimum(place);
-  const std::string where = from == ranks_.size() ? "unknown"
-                                                  : fmt::format("({:.6g}, {:.6g}, {:.6g}){}", place[0],
-                                                                place[1], place[2], bodies_around(place));
-  throw NumericalFailure(
-      fmt::format(
-          "step {}, time {:.9g}: no equilibrium with the smallest step, {:.4g}: {}; the largest "
-          "residual force, "
-          "{:.4g}, is at node {}. The state at the start of the step is kept. Use a smaller "
-          "Implicit@min_step, "
-          "load more slowly, or use a larger rtol{}",
-          model_.clock.step + 1, model_.clock.time, model_.clock.dt, why, of_all, where,
-          rule_.dynamic()
-              ? ""
-              : ". Quasi-static steps have none where nothing holds a body against its loads, or where "
-                "these exceed what its material bears"),
-      true);
 }
 
 /// The forces are those of the end of the step, or where it is dynamic the means over it; damping counts
@@ -477,7 +258,7 @@ void ImplicitIntegrator::find_reactions() {
   unknowns_.for_each_own([&](std::size_t i, const double* sum) {
     NodeState& at = state_[i];
     for (int a = 0; a < 3; ++a) {
-      if (!moved(i, a)) continue;
+      if (!moves_bodies_ || !moved(i, a)) continue;
       const std::size_t k = 3 * i + static_cast<std::size_t>(a);
       const double at_end = at.external[a] + sum[4 + a];
       at.impulse[a] = -dt * (at_end + at.contact[a]);
@@ -495,10 +276,11 @@ void ImplicitIntegrator::find_reactions() {
 }
 
 void ImplicitIntegrator::move() {
-  if (moves_bodies_) find_reactions();
+  if (moves_bodies_ || (faces_ && !contact_)) find_reactions();
   // The last residual of a line search need not be that of the solution.
   distribute(solution_);
   find_contact_forces();
+  if (faces_) faces_->end_step(displacements_, of_nodes_);
   const double cutoff = model_.grid->geometry().mass_cutoff;
   std::vector<double> gained(solution_.size()), lag_gained(lags_ ? solution_.size() : 0);
   for (std::size_t i = 0; i < state_.size(); ++i) {
@@ -564,6 +346,8 @@ StepStatistics ImplicitIntegrator::take_statistics() {
   StepStatistics all = passes_->take_statistics();
   all.work += of_nodes_.work;
   all.contact += of_nodes_.contact;
+  all.reactions.resize(std::max(all.reactions.size(), of_nodes_.reactions.size()));
+  for (std::size_t r = 0; r < of_nodes_.reactions.size(); ++r) all.reactions[r] += of_nodes_.reactions[r];
   of_nodes_ = {};
   return all;
 }

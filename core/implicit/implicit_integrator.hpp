@@ -21,6 +21,7 @@
 #include <array>
 #include <memory>
 
+#include "core/implicit/body_faces.hpp"
 #include "core/implicit/brick_fields.hpp"
 #include "core/implicit/cell_stabilisation.hpp"
 #include "core/implicit/implicit_contact.hpp"
@@ -80,13 +81,17 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     passes_->add_tangent(nullptr, unknowns_, matrix);
     stabilisation_.add_tangent(unknowns_, false, matrix);
     if (contact_) contact_->add_tangent(0, false, matrix);
+    if (faces_) faces_->add_tangent(nullptr, matrix);
   }
   void jacobian(std::span<const double> u, BlockMatrix& matrix) override;
 
   void prepare();
   void solve();
   NewtonReport solve_once(std::span<double> u, const NewtonOptions& options);
+  /// The same again in a step, with its report added.
+  void solve_again(std::span<double> u, const NewtonOptions& options, NewtonReport& report);
   void settle_friction(std::span<double> u, const NewtonOptions& options, NewtonReport& report);
+  void settle_contact(std::span<double> u, const NewtonOptions& options, NewtonReport& report);
   /// Impulses on the nodes that bodies of prescribed motion hold, by the solution; to these bodies.
   /// Collective.
   void find_reactions();
@@ -126,6 +131,8 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   NodeHalo& halo_;
   NewtonSolver& solver_;
   const ImplicitInput input_;
+  std::vector<FacePoint> face_points_;  ///< of bodies that act at their faces; until faces_ takes them
+  const std::vector<int> with_faces_;   ///< these bodies
   std::unique_ptr<CellsInUse> cells_;
   std::unique_ptr<RigidBodies> rigid_;  ///< in contact; null without
   BrickFields fields_;
@@ -133,6 +140,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
   NodeUnknowns unknowns_;
   CellStabilisation stabilisation_;
   std::unique_ptr<ImplicitContact> contact_;  ///< null without
+  std::unique_ptr<BodyFaces> faces_;          ///< null without bodies that act at their faces
   TimeRule rule_;
   const bool lags_;            ///< particles carry a lag
   bool moves_bodies_ = false;  ///< some body has a prescribed motion

@@ -60,8 +60,10 @@ class ImplicitPasses {
 };
 
 /// For the scene's shape functions. `rigid`: the rigid bodies in contact, which give the nodes nothing but
-/// their surface; null without. `fields` and `rigid` outlive the passes.
+/// their surface; null without. `with_faces`: bodies that act at their faces (body_faces.hpp), which give
+/// nodes that they share with others nothing. `fields` and `rigid` outlive the passes.
 std::unique_ptr<ImplicitPasses> make_implicit_passes(Model& model, const RigidBodies* rigid,
+                                                     std::span<const int> with_faces,
                                                      const BrickFields& fields);
 
 }  // namespace mpm::core

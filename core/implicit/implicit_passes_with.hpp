@@ -24,7 +24,8 @@ namespace mpm::core {
 template <ShapePolicy S>
 class ImplicitPassesWith final : public ImplicitPasses {
  public:
-  ImplicitPassesWith(Model& model, const RigidBodies* rigid, const BrickFields& fields)
+  ImplicitPassesWith(Model& model, const RigidBodies* rigid, std::span<const int> with_faces,
+                     const BrickFields& fields)
       : model_(model),
         rigid_(rigid),
         fields_(fields),
@@ -33,6 +34,10 @@ class ImplicitPassesWith final : public ImplicitPasses {
         averages_(model.scene->solution.averaging == VolumeAveraging::cell),
         differences_(model.scene->solution.implicit && model.scene->solution.implicit->difference_tangent),
         linearised_(model.scene->solution.implicit && model.scene->solution.implicit->linearised()) {
+    gives_nothing_.assign(model.bodies.size(), false);
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+      gives_nothing_[b] = this->rigid(static_cast<int>(b)) >= 0;
+    for (const int b : with_faces) gives_nothing_[static_cast<std::size_t>(b)] = true;
 #pragma omp parallel
     flush_denormals_to_zero();
     for (int t = 0; t < omp_get_max_threads(); ++t) scratch_.push_back(std::make_unique<Scratch>());
@@ -94,11 +99,11 @@ class ImplicitPassesWith final : public ImplicitPasses {
       for (const BrickField& field : fields_.of(s)) f(field, at);
     });
   }
-  /// f(tile, layout, block, lanes in use), without rigid bodies in contact unless `all`.
+  /// f(tile, layout, block, lanes in use), without bodies that give the nodes nothing unless `all`.
   template <class F>
   void for_each_block(const BrickField& field, bool all, F f) {
     for (const ParticleTile& tile : model_.grid->brick(field.slot).tiles) {
-      if (!field.has(tile) || (!all && rigid(tile.body) >= 0)) continue;
+      if (!field.has(tile) || (!all && gives_nothing(tile.body))) continue;
       BlockPool& pool = *model_.bodies[static_cast<std::size_t>(tile.body)].pool;
       for (std::size_t b = 0; b < tile.blocks.size(); ++b)
         f(tile, pool.layout(), pool.block(tile.blocks[b]), tile.used_lanes(b));
@@ -158,6 +163,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   }
   /// Number of the rigid body in contact that is this body; -1: none.
   int rigid(int body) const { return rigid_ == nullptr ? -1 : rigid_->of_body(body); }
+  bool gives_nothing(int body) const { return gives_nothing_[static_cast<std::size_t>(body)]; }
   bool prescribed(int body) const { return loads_.motion(body).kind == BodyMotion::Kind::prescribed; }
   ReactionSums& reaction_of(int body, Scratch& at) const {
     std::vector<ReactionSums>& reactions = at.statistics.reactions;
@@ -182,10 +188,11 @@ class ImplicitPassesWith final : public ImplicitPasses {
   const BrickFields& fields_;
   Loads loads_;
   FailedComponent failed_;
-  Vec3<double> gravity_{};  ///< of this step
-  bool averages_;           ///< volume changes over the particles of a site
-  bool differences_;        ///< derivatives of the stress by differences
-  bool linearised_;         ///< semi-implicit steps
+  Vec3<double> gravity_{};           ///< of this step
+  std::vector<bool> gives_nothing_;  ///< by body: to the nodes
+  bool averages_;                    ///< volume changes over the particles of a site
+  bool differences_;                 ///< derivatives of the stress by differences
+  bool linearised_;                  ///< semi-implicit steps
   double dt_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratch_;          ///< by thread
   std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
@@ -237,7 +244,12 @@ void ImplicitPassesWith<S>::take_gradients(const BrickFrame& frame, Scratch& at)
 
 template <ShapePolicy S>
 bool ImplicitPassesWith<S>::take_strains(const BrickFrame& frame, const Body& body, Scratch& at) const {
-  take_gradients(frame, at);
+  if (body.model->rigid()) {
+    // Of one that acts at its faces, the field is that of the others around it.
+    for (double(&row)[batch_particles] : at.gradient) std::fill_n(row, batch_particles, 0.0);
+  } else {
+    take_gradients(frame, at);
+  }
   const bool averaged = !averages(body) || average_gradients(at);
   return set_midstep_gradient(strains(body, at), at.batch) && averaged;
 }

@@ -78,7 +78,9 @@ void ImplicitPassesWith<S>::map_surface() {
   for_fields([&](const BrickField& field, Scratch&) {
     const BrickFrame frame(*model_.grid, field.slot, field.number);
     double* const contributions = clear_contributions(field);
-    const auto map = [&](const ParticleTile&, const ColumnLayout& layout, const double* block, int used) {
+    const auto map = [&](const ParticleTile& tile, const ColumnLayout& layout, const double* block,
+                         int used) {
+      if (field.component == all_components && gives_nothing(tile.body)) return;
       const Place place(frame, layout, block, used);
       for (int l = 0; l < used; ++l) {
         const double volume = block[layout.offset(Column::volume) + l];
@@ -151,8 +153,9 @@ void ImplicitPassesWith<S>::add_reactions(const AlignedDoubles& impulses) {
     const BrickCoord brick = model_.grid->brick(field.slot).coord;
     const double* of_nodes = records(impulses, field);
     for_each_block(
-        field, false, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
-          if (!prescribed(tile.body)) return;
+        field, true, [&](const ParticleTile& tile, const ColumnLayout& layout, double* block, int used) {
+          if (!prescribed(tile.body) || rigid(tile.body) >= 0) return;
+          const bool at_faces = gives_nothing(tile.body);  // body_faces.hpp has its forces
           const Place place(frame, layout, block, used);
           double mass = 0;
           Vec3<double> impulse{}, moment{}, mass_place{};
@@ -161,6 +164,7 @@ void ImplicitPassesWith<S>::add_reactions(const AlignedDoubles& impulses) {
             const double volume = get(Column::volume), m = get(Column::mass);
             mass += m;
             for (int a = 0; a < 3; ++a) mass_place[a] += m * get(next(Column::position_x, a));
+            if (at_faces) continue;
             for_each_weight<S>(place, l, g.inverse_cell, [&](int node, double shape) {
               const double* v = MotionRecord<const double>{of_nodes + node_doubles * node}.velocity();
               const Vec3<double> given = (volume * shape) * Vec3<double>{v[0], v[1], v[2]};

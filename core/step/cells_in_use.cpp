@@ -1,5 +1,6 @@
 #include "core/step/cells_in_use.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "core/shape/cells_of_particles.hpp"
@@ -54,7 +55,7 @@ void add_mirror_images(const GridGeometry& geometry, BrickCoord brick, CellsArou
 
 }  // namespace
 
-std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component) {
+std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component, std::span<const int> without) {
   const BrickGrid& grid = *model.grid;
   const Brick& brick = grid.brick(s);
   const BrickFrame frame(grid.geometry(), brick.coord);
@@ -63,6 +64,7 @@ std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component) {
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];
     if (component != all_components && tile.component != component) continue;
+    if (std::ranges::find(without, tile.body) != without.end()) continue;
     const BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
     const BlockPrefetch prefetch(model, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
@@ -77,13 +79,14 @@ void CellsInUse::find_own(Slot s) {
   BrickGrid& grid = *model_.grid;
   prefetch_coming_bricks(grid, s);
   if (!grid.has_fields_by_component()) {
-    const std::optional<Cells> known = grid.own_cells(s);
-    cells(s, 0) = known ? *known : find_cells(model_, s);
+    std::optional<Cells> known;
+    if (without_.empty()) known = grid.own_cells(s);
+    cells(s, 0) = known ? *known : find_cells(model_, s, all_components, without_);
     return;
   }
   cells(s, 0) = 0;
   for (int f = 0; const std::int32_t component : grid.components(s))
-    cells(s, f++) = find_cells(model_, s, component);
+    cells(s, f++) = find_cells(model_, s, component, without_);
 }
 
 void CellsInUse::write_to_nodes(Slot s) {
@@ -170,12 +173,12 @@ void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around) co
   add_mirror_images(grid.geometry(), brick.coord, around);
 }
 
-std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo) {
-  return with_shape(model.scene->grid.shape,
-                    [&]<class S>(std::type_identity<S>) -> std::unique_ptr<CellsInUse> {
-                      if constexpr (needs_cells<S>) return std::make_unique<CellsInUse>(model, halo);
-                      return nullptr;
-                    });
+std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo, std::vector<int> without) {
+  using Made = std::unique_ptr<CellsInUse>;
+  return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> Made {
+    if constexpr (needs_cells<S>) return std::make_unique<CellsInUse>(model, halo, std::move(without));
+    return nullptr;
+  });
 }
 
 }  // namespace mpm::core

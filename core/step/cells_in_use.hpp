@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/communication/node_halo.hpp"
@@ -13,12 +15,16 @@
 
 namespace mpm::core {
 
-/// The cells that hold a brick's particles of a component, (i, j, k) in bit i + 4 j + 16 k.
-std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = all_components);
+/// The cells that hold a brick's particles of a component, (i, j, k) in bit i + 4 j + 16 k; of all bodies but
+/// those of `without`.
+std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = all_components,
+                         std::span<const int> without = {});
 
 class CellsInUse {
  public:
-  CellsInUse(Model& model, NodeHalo& halo) : model_(model), halo_(halo) {}
+  /// `without`: bodies that use no cells.
+  CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without = {})
+      : model_(model), halo_(halo), without_(std::move(without)) {}
 
   /// Finds the cells of the bricks; when it returns, the exchange is in progress. Collective.
   void find();
@@ -36,10 +42,11 @@ class CellsInUse {
 
   Model& model_;
   NodeHalo& halo_;
+  const std::vector<int> without_;
   std::vector<Cells> cells_;  ///< by BrickGrid::field_index()
 };
 
 /// Null for shape functions that do not depend on which cells are in use.
-std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo);
+std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo, std::vector<int> without = {});
 
 }  // namespace mpm::core

@@ -227,7 +227,8 @@ Ledger read_ledger(hid_t file) {
   return ledger;
 }
 
-constexpr const char *rigid_motion = "rigid_motion", *reaction_sums = "reaction";
+constexpr const char *rigid_motion = "rigid_motion", *reaction_sums = "reaction",
+                     *face_forces = "face_forces";
 
 void write_body(hid_t group, const BodyRecord& b) {
   hdf5::write_attribute(group, "name", b.name);
@@ -246,6 +247,7 @@ void write_body(hid_t group, const BodyRecord& b) {
     hdf5::write_all(group, rigid_motion, std::span<const double>(values));
   }
   if (b.reaction) hdf5::write_all(group, reaction_sums, limbs_of(b.reaction->sums));
+  if (!b.face_forces.empty()) hdf5::write_all(group, face_forces, std::span<const double>(b.face_forces));
 }
 
 BodyRecord read_body(hid_t group) {
@@ -276,6 +278,7 @@ BodyRecord read_body(hid_t group) {
       throw FileError("the reaction of a body has the wrong length");
     std::ranges::copy(sums, b.reaction.emplace().sums.begin());
   }
+  if (hdf5::has_link(group, face_forces)) b.face_forces = hdf5::read_all_double(group, face_forces);
   return b;
 }
 
@@ -405,7 +408,8 @@ RestartContents contents_of(const core::Model& model, const RestartExtra& extra,
                         0,
                         0,
                         b.rigid_state,
-                        {}});
+                        {},
+                        b.face_forces});
   }
   c.ledger = summed(model, c.bodies, ranks);
   return c;
@@ -419,7 +423,7 @@ std::uint64_t expected_bytes(const RestartContents& c) {
   for (const auto& [name, mark] : c.extra.marks) bytes += 2048 + mark.size();
   bytes += sizeof(core::ExactSum) * (2 + sums_of_pair * c.ledger.contact.pairs.size());
   for (const BodyRecord& b : c.bodies)
-    bytes += 16384 + (b.reaction ? 2048 + sizeof(core::ReactionSums) : 0) +
+    bytes += 16384 + (b.reaction ? 2048 + sizeof(core::ReactionSums) : 0) + 8 * b.face_forces.size() +
              8 * b.columns.size() * static_cast<std::uint64_t>(b.particles);
   return bytes;
 }

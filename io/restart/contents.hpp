@@ -35,6 +35,7 @@ struct BodyRecord {
   std::int64_t left = 0;
   std::optional<core::RigidState> rigid;       ///< of rigid bodies in contact
   std::optional<core::ReactionSums> reaction;  ///< of all ranks
+  std::vector<double> face_forces;             ///< of rigid bodies in implicit steps
 };
 
 struct RestartContents {

@@ -204,7 +204,11 @@ void restore_ledger(const RestartContents& contents, const Fit& fit, core::Model
   model.ledger.body_eroded.assign(model.bodies.size(), 0);
   model.ledger.body_left.assign(model.bodies.size(), 0);
   for (std::size_t b = 0; b < contents.bodies.size(); ++b)
-    if (fit.bodies[b]) model.bodies[fit.bodies[b]->number].rigid_state = contents.bodies[b].rigid;
+    if (fit.bodies[b]) {
+      core::Body& body = model.bodies[fit.bodies[b]->number];
+      body.rigid_state = contents.bodies[b].rigid;
+      body.face_forces = contents.bodies[b].face_forces;
+    }
   if (!keeper) return;
   for (std::size_t b = 0; b < contents.bodies.size(); ++b) {
     if (!fit.bodies[b]) continue;

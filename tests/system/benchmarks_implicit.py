@@ -136,9 +136,9 @@ class Solutions(unittest.TestCase):
         self.assertTrue(math.isnan(laws.seen_order((1e-1, 1e-16))))
 
     def test_log_lines(self):
-        log = ("implicit   step 3: time 0.3, length 0.05; 270 unknowns; residual 2.4e-01 1e-3; 3 linear iterations; shortened from "
-               "0.1: a node moves by 2 cells (residual 1e-1 1e-7)\n")
-        self.assertEqual(run_one.steps_of(log), [run_one.Step(0.05, 270, (0.24, 1e-3), 3, 1)])
+        log = ("implicit   step 3: time 0.3, length 0.05; 270 unknowns; residual 2.4e-01 1e-3 | 2e-2 1e-4 1e-7; 3 linear iterations; "
+               "shortened from 0.1: a node moves by 2 cells (residual 1e-1 1e-7)\n")
+        self.assertEqual(run_one.steps_of(log), [run_one.Step(0.05, 270, (0.24, 1e-3), 3, 3, 1)])
 
 
 @unittest.skipUnless(list((_mpm.BIN.parent / "lib").glob("libmpm_implicit.*")), "built without PETSc")
@@ -169,8 +169,9 @@ class Quick(_mpm.RunOnce):
     def test_platen(self):
         where = {"steps by": "implicit", "shape": "QuadraticBSpline"}
         coarse, fine = (self.one("stress", "platen", **where, cells=n) for n in (8, 16))
-        self.assertLess(fine, 0.8 * coarse)  # measured 0.114 and 0.084: the kink at the platen
-        self.assertLess(self.one("below", "platen", **where, cells=16), 0.04)
+        self.assertLess(coarse, 0.05)  # measured 0.034 and 0.024
+        self.assertLess(fine, 0.8 * coarse)
+        self.assertLess(self.one("below", "platen", **where, cells=16), 0.03)
 
     def test_cantilever(self):
         for by in ("implicit", "explicit"):
@@ -186,12 +187,9 @@ class Quick(_mpm.RunOnce):
         self.assertLess(self.one("inside", "cylinder", body="plastic", shape="QuadraticBSpline"), 0.05)
 
     def test_footing(self):
-        self.assertLess(abs(self.one("last", "footing", **{"steps by": "implicit, held"})), 0.05)
-        self.assertLess(abs(self.one("last", "frictional_footing") + 0.046), 0.01)
-        # As with a body of four cells instead of two, +2.7 and -1.0 %. It was +1.0 and -1.1 % while that of two did not hold what reaches
-        # beyond its middle.
-        for by, error in (("rough", 0.026), ("smooth", -0.012)):
-            self.assertLess(abs(self.one("last", "footing", **{"steps by": f"implicit, contact, {by}"}) - error), 0.005)
+        for by, error in (("tied", 0.093), ("contact, rough", 0.025), ("contact, smooth", 0.006)):
+            self.assertLess(abs(self.one("last", "footing", **{"steps by": f"implicit, {by}"}) - error), 0.01, by)
+        self.assertLess(abs(self.one("last", "frictional_footing") + 0.072), 0.01)
         # Two cells in explicit contact press a wider strip: measured +31 %.
         self.assertLess(abs(self.one("last", "footing", **{"steps by": "explicit 0.001"}) - 0.31), 0.03)
 

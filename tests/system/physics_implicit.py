@@ -67,15 +67,14 @@ def energy_left(radius, angle, steps):
 
 
 def residuals(outcome_folder):
-    """The residuals of every step, from the log."""
+    """The residuals of every step's first solution, from the log."""
     text = (outcome_folder / "case.out").read_text()
-    return [[float(word) for word in found.split()] for found in re.findall(r"implicit +step .*residual ([^;]*);", text)]
+    return [[float(word) for word in found.split()] for found in re.findall(r"implicit +step .*residual ([^;|]*)", text)]
 
 
 class Implicit(_mpm.Case):
     def test_uniform_compression_is_exact(self):
-        """While no particle changes its cell. A cell cannot have a kink: while the ram's face is inside one, the top of
-        the column is strained as the whole cell is, and the column seems softer by the share of that cell."""
+        """Wherever the ram's face is in a cell, while no particle changes its own."""
         travel = 0.2
         for shape in SHAPES:
             with self.subTest(shape=shape):
@@ -84,13 +83,13 @@ class Implicit(_mpm.Case):
                 exact = 32 * energy_of(1 - travel / 8)
                 kinetic = 0.5 * 4 * travel**2
                 self.assertAlmostEqual(energy["kinetic"], kinetic, delta=1e-9)
-                self.assertLess(abs(energy["internal"] / exact - 1), 0.08)
+                self.assertLess(abs(energy["internal"] / exact - 1), 0.01)
                 # The ram does the work that the column stores.
-                self.assertLess(abs(energy["relative_drift"]), 1e-6 if shape == "linear" else 0.02)
+                self.assertLess(abs(energy["relative_drift"]), 1e-5 if shape == "linear" else 0.005)
 
     def test_newton_converges_quadratically_with_every_law(self):
-        """A cube that a platen presses, and shears half as much, from a fixed face, in two steps: of the last three residuals
-        above round-off, the exponent by which they fall (2: quadratic), the larger of the steps. Measured 1.88 to 2.6."""
+        """A cube that a platen presses, and shears half as much, from a fixed face, in two steps: of three residuals that
+        follow each other above round-off, the exponent by which they fall (2: quadratic), the largest. Measured 1.8 to 4.3."""
         for law, (parameters, strain) in LAWS.items():
             with self.subTest(law=law):
                 ram = _mpm.block("ram", (1, 1, 4), (6, 6, 2), of="ram",
@@ -106,10 +105,10 @@ class Implicit(_mpm.Case):
                 for norms in steps:
                     self.assertLessEqual(len(norms), 10, norms)
                     # The first holds the linear answer to the whole way of the ram.
-                    a, b, c = [n for n in norms[1:] if n > 1e-14][-3:]
-                    orders.append(math.log(c / b) / math.log(b / a))
-                print(f"{law}: orders {orders[0]:.2f} {orders[1]:.2f}, {len(steps[0]) - 1} and {len(steps[1]) - 1} iterations")
-                self.assertGreater(max(orders), 1.8, steps)
+                    above = [n for n in norms[1:] if n > 5e-14]
+                    orders += [math.log(c / b) / math.log(b / a) for a, b, c in zip(above, above[1:], above[2:]) if a > b > c]
+                print(f"{law}: order {max(orders):.2f}, {len(steps[0]) - 1} and {len(steps[1]) - 1} iterations")
+                self.assertGreater(max(orders), 1.75, steps)
 
     def test_ranks_threads_and_restart_agree_to_the_tolerance(self):
         whole = column("QuadraticBSpline", 1.0, 8, more='rtol="1e-9"',
@@ -125,7 +124,7 @@ class Implicit(_mpm.Case):
         results["again"] = self.state_of("again")
         for name, (place, pressure) in results.items():
             with self.subTest(run=name):
-                self.assertLess(np.abs(place - results["1x1"][0]).max(), 1e-7)
+                self.assertLess(np.abs(place - results["1x1"][0]).max(), 1e-6)  # a bit of the file's single precision is 5e-7
                 self.assertLess(np.abs(pressure - results["1x1"][1]).max(), 1e-4 * np.abs(pressure).max())
 
     def state_of(self, folder):
@@ -434,7 +433,7 @@ class Far(_mpm.Case):
         top travels over three bricks, into bricks of any rank; a second step goes on from there."""
         bodies = [_mpm.block("column", (0, 0, 0), (2, 2, 24)),
                   _mpm.block("ram", (0, 0, 24), (2, 2, 1), of="ram", more='<PrescribedVelocity vx="0" vy="0" vz="-12"/>')]
-        text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 26), "222210"), implicit(1.25, step=1, more='rtol="1e-10"'),
+        text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 26), "222210"), implicit(1.25, step=1, more='rtol="1e-10" stabilisation="0"'),
                           [SOFT, RAM], '<PostProcessing time_interval="1" h5part="1" var="pres"/>')
         for ranks in (1, 2, 3):
             with self.subTest(ranks=ranks):
@@ -503,7 +502,7 @@ class Far(_mpm.Case):
                 bodies = [_mpm.block("column", (0, 0, 0), (2, 2, 16)),
                           _mpm.block("ram", (0, 0, 16), (2, 2, 1), of="ram",
                                      more=f'<PrescribedVelocity vx="0" vy="0" vz="{-travel}"/>')]
-                text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 18), "222210"), implicit(1.0, step=1),
+                text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 18), "222210"), implicit(1.0, step=1, more='stabilisation="0"'),
                                   [material, RAM], '<PostProcessing time_interval="1" h5part="1" var="SigmaZ"/>')
                 self.run_in(str(travel), [self.write(text)])
                 stretch = 1 - travel / 16

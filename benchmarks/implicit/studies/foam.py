@@ -111,7 +111,7 @@ artificial viscosity) the platen is in contact, and moves at the stated part of 
             stress = np.array([-(v * result.column("SigmaZ", i)[mine]).sum() / v.sum() for i, v in enumerate(volumes)])
             strain = np.log(HEIGHT / heights)
             flat = (strain > 0) & (strain < knee)
-            iterations, ends = [len(s.norms) - 1 for s in result.steps], np.cumsum([s.length for s in result.steps])
+            iterations, ends = [s.newton for s in result.steps], np.cumsum([s.length for s in result.steps])
             turn = int((HEIGHT - speed * ends > HEIGHT * np.exp(-knee)).sum())
             gap = HEIGHT * np.exp(-strain_at(stress[-1])) - heights[-1]
             found = {"plateau": np.abs(stress[flat] / exact(strain[flat]) - 1).max(), "gap": gap / h,

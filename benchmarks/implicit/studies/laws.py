@@ -30,9 +30,9 @@ LAWS = {
 
 
 def seen_order(norms):
-    """Of the last three residuals above round-off, some 1e-16 of the forces that balance, log(r2/r1)/log(r1/r0). Without the
+    """Of the last three residuals above round-off, some 1e-13 of the forces that balance at the platen's face, log(r2/r1)/log(r1/r0). Without the
     first, which holds the linear answer to the platen's whole way."""
-    above = [n for n in norms[1:] if n > 1e-14]
+    above = [n for n in norms[1:] if n > 5e-13]
     if len(above) < 3 or not above[-3] > above[-2] > above[-1]:
         return math.nan
     return math.log(above[-1] / above[-2]) / math.log(above[-2] / above[-3])

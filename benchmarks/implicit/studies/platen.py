@@ -26,10 +26,9 @@ class Platen(study.Study):
 between symmetry planes, two by two cells wide, is compressed to half its height by a rigid body with `PrescribedVelocity`.
 Exact: uniform strain, the vertical stress is {STRESS:.1f}. *stress*: root mean square of the error of the vertical stress
 over its exact value; *below*: without the particles that began in the upper eighth; *place*: root mean square of the error
-of height over the height. *implicit*: a step moves the platen by half a cell; *implicit n*: n steps. In a single step, and as long
-as the platen's face is at a node at the start of every step, uniform strain is a linear field of displacement, and functions that
-reproduce it at the held nodes are exact; *contact n*: n steps, the platen is in contact and holds no nodes. In the explicit
-runs it is in contact, too, and moves at the stated part of the speed of waves, {WAVE:.1f}; the slower it is, the smaller the forces of
+of height over the height. *implicit*: a step moves the platen by half a cell, so that its face is inside cells in
+every second step; *implicit n*: n steps; the block sticks to it. *contact n*: n steps, the platen is in contact without friction. In the explicit
+runs it is in contact, and moves at the stated part of the speed of waves, {WAVE:.1f}; the slower it is, the smaller the forces of
 inertia, and the longer the run. Dynamic relaxation is shorter: the study below."""
     labels = ("steps by", "shape", "cells")
     measured = ("stress", "below", "place")

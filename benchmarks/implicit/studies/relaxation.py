@@ -10,7 +10,7 @@ class Relaxation(platen.Platen):
     title = "A platen, beside dynamic relaxation"
     about = f"""The block of the study above with `{SHAPE}`, and its errors. *implicit n*: n steps. *explicit relaxed*: the platen comes to
 rest in the first half of {platen.RELAXED["relaxed short"]:g} (*short*) or {platen.RELAXED["relaxed long"]:g} periods of the slowest wave
-(*long*), which `DynamicRelax` damps critically; it is in contact, where the implicit steps hold the nodes. By
+(*long*), which `DynamicRelax` damps critically; it is in contact; in the implicit steps the block sticks to it. By
 `implicit.py run --study relaxation --repeat 3`: the list of runs three times over, of each run the median time."""
 
     def runs(self):

@@ -1,0 +1,177 @@
+#include "core/implicit/face_points.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <unordered_map>
+#include <variant>
+
+#include "core/grid/brick_grid.hpp"
+#include "core/particle_range.hpp"
+
+namespace mpm::core {
+
+namespace {
+
+/// What a particle tells all ranks.
+struct Sample {
+  double body, identity, x[3], volume;
+};
+
+std::vector<Sample> samples_of_all(const Model& model, std::span<const int> bodies, Reductions& ranks) {
+  std::string bytes;
+  for (const ConstParticleBlock& block : blocks_of(model)) {
+    if (std::ranges::find(bodies, block.body) == bodies.end()) continue;
+    for (const ConstParticle p : block) {
+      const Vec3<double> x = p.vector(Column::position_x);
+      const Sample sample{
+          static_cast<double>(block.body), p[Column::identity], {x.x, x.y, x.z}, p[Column::volume]};
+      bytes.append(reinterpret_cast<const char*>(&sample), sizeof sample);
+    }
+  }
+  std::vector<Sample> all;
+  for (const std::string& of_rank : ranks.gather(bytes)) {
+    const std::size_t first = all.size();
+    all.resize(first + of_rank.size() / sizeof(Sample));
+    if (!of_rank.empty()) std::memcpy(all.data() + first, of_rank.data(), of_rank.size());
+  }
+  std::ranges::sort(all, [](const Sample& a, const Sample& b) {
+    return a.body != b.body ? a.body < b.body : a.identity < b.identity;
+  });
+  return all;
+}
+
+/// Finds points by place: those in the 27 boxes of edge `size` around one.
+class Boxes {
+ public:
+  explicit Boxes(double size) : per_size_(1 / size) {}
+  void add(const Vec3<double>& x, std::size_t number) { of_[key(box(x))].push_back(number); }
+  template <class F>
+  void for_each_around(const Vec3<double>& x, F f) const {
+    const std::array<std::int64_t, 3> at = box(x);
+    for (std::int64_t i = -1; i <= 1; ++i)
+      for (std::int64_t j = -1; j <= 1; ++j)
+        for (std::int64_t k = -1; k <= 1; ++k) {
+          const auto found = of_.find(key({at[0] + i, at[1] + j, at[2] + k}));
+          if (found == of_.end()) continue;
+          for (const std::size_t number : found->second) f(number);
+        }
+  }
+
+ private:
+  std::array<std::int64_t, 3> box(const Vec3<double>& x) const {
+    std::array<std::int64_t, 3> at;
+    for (std::size_t a = 0; a < 3; ++a)
+      at[a] = static_cast<std::int64_t>(std::floor(per_size_ * x[static_cast<int>(a)]));
+    return at;
+  }
+  static std::uint64_t key(const std::array<std::int64_t, 3>& at) {
+    constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
+    std::uint64_t all = 0;
+    for (const std::int64_t i : at) all = all << 21 | (static_cast<std::uint64_t>(i) & mask);
+    return all;
+  }
+  double per_size_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> of_;
+};
+
+/// The axes of the lattice of a body.
+std::array<Vec3<double>, 3> axes_of(const Scene& scene, const BodyInput& input) {
+  if (!input.work_plane) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const WorkPlane& plane = scene.work_planes[*input.work_plane];
+  return {plane.x_axis, plane.y_axis, plane.z_axis};
+}
+
+/// The ends of a body's lattice. `of_body`: its particles.
+std::vector<FacePoint> ends_of_lattice(std::span<const Sample> of_body,
+                                       const std::array<Vec3<double>, 3>& axes) {
+  const double spacing = std::cbrt(of_body.front().volume);
+  constexpr double least = 0.3, most = 1.5,
+                   aside = 0.4;  // of the spacing, to the next particle along an axis
+  Boxes boxes(most * spacing);
+  const auto place = [&](std::size_t i) {
+    return Vec3<double>{of_body[i].x[0], of_body[i].x[1], of_body[i].x[2]};
+  };
+  for (std::size_t i = 0; i < of_body.size(); ++i) boxes.add(place(i), i);
+  std::vector<FacePoint> points;
+  for (std::size_t i = 0; i < of_body.size(); ++i) {
+    const Vec3<double> x = place(i);
+    double next[3][2] = {};  // distance of the next particle backward and forward; 0: none
+    boxes.for_each_around(x, [&](std::size_t j) {
+      const Vec3<double> to = place(j) - x;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double along = dot(to, axes[a]);
+        const Vec3<double> rest = to - along * axes[a];
+        if (std::abs(along) < least * spacing || std::abs(along) > most * spacing) continue;
+        if (dot(rest, rest) > aside * aside * spacing * spacing) continue;
+        double& of = next[a][along > 0];
+        of = of > 0 ? std::min(of, std::abs(along)) : std::abs(along);
+      }
+    });
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (next[a][side] > 0) continue;
+        const double size = next[a][1 - side] > 0 ? next[a][1 - side] : spacing;
+        const Vec3<double> outward = (side == 0 ? -1.0 : 1.0) * axes[a];
+        points.push_back(
+            {static_cast<int>(of_body[i].body), x + 0.5 * size * outward, outward, of_body[i].volume / size});
+      }
+  }
+  return points;
+}
+
+/// Whether the sides enclose the volume of the particles, as those of a lattice do (Gauss).
+bool enclose(std::span<const FacePoint> sides, std::span<const Sample> of_body) {
+  const Vec3<double> from{of_body.front().x[0], of_body.front().x[1], of_body.front().x[2]};
+  double within = 0, volume = 0;
+  for (const FacePoint& side : sides) within += side.area * dot(side.normal, side.place - from) / 3;
+  for (const Sample& particle : of_body) volume += particle.volume;
+  constexpr double rounding = 1e-6;
+  return std::abs(within - volume) <= rounding * volume;
+}
+
+/// Of a body with curved faces.
+std::vector<FacePoint> with_smooth_normals(std::span<const FacePoint> sides) {
+  // No two sides of a lattice have this distance, which rounding would decide.
+  const double reach = 2.5 * std::sqrt(sides.front().area);
+  Boxes boxes(reach);
+  for (std::size_t i = 0; i < sides.size(); ++i) boxes.add(sides[i].place, i);
+  std::vector<FacePoint> points;
+  for (const FacePoint& side : sides) {
+    Vec3<double> sum{};
+    boxes.for_each_around(side.place, [&](std::size_t j) {
+      const Vec3<double> to = sides[j].place - side.place;
+      const bool is_opposite = dot(sides[j].normal, side.normal) < -0.5;  // of a thin shell
+      if (dot(to, to) <= reach * reach && !is_opposite) sum = sum + sides[j].area * sides[j].normal;
+    });
+    const Vec3<double> normal = (1 / std::sqrt(dot(sum, sum))) * sum;
+    constexpr double least_cosine = 0.5;  // some side of each place has 0.58
+    if (dot(normal, side.normal) < least_cosine) continue;
+    points.push_back(side);
+    points.back().normal = normal;
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<FacePoint> find_face_points(const Model& model, std::span<const int> bodies, Reductions& ranks) {
+  const std::vector<Sample> all = samples_of_all(model, bodies, ranks);
+  const std::vector<const BodyInput*> inputs = active_bodies(*model.scene);
+  std::vector<FacePoint> points;
+  for (auto from = all.begin(); from != all.end();) {
+    const auto to = std::find_if(from, all.end(), [&](const Sample& s) { return s.body != from->body; });
+    const BodyInput& input = *inputs[static_cast<std::size_t>(from->body)];
+    std::vector<FacePoint> of_body = ends_of_lattice({from, to}, axes_of(*model.scene, input));
+    if (enclose(of_body, {from, to})) {
+      if (!std::holds_alternative<BlockGeometry>(input.geometry)) of_body = with_smooth_normals(of_body);
+      points.insert(points.end(), of_body.begin(), of_body.end());
+    }
+    from = to;
+  }
+  return points;
+}
+
+}  // namespace mpm::core
