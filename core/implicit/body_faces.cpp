@@ -97,16 +97,10 @@ BodyFaces::BodyFaces(Model& model, Reductions& ranks, const BrickFields& fields,
       moved_(model.bodies.size()),
       way_(model.bodies.size()),
       reaction_(model.bodies.size()),
-      stiffness_(model.scene->components.size() + 1, 0.0),
+      deforms_(model.scene->components.size(), false),
       layers_(nodes_per_axis(model.scene->grid.shape)) {
-  const double h = model.grid->geometry().smallest_cell();
-  for (const Body& body : model.bodies) {
-    if (body.model->rigid()) continue;
-    const double c = body.model->initial_sound_speed(), k = body.model->reference_density() * c * c * h;
-    double& of = stiffness_[static_cast<std::size_t>(body.component)];
-    of = std::max(of, k);
-    stiffness_.back() = std::max(stiffness_.back(), k);
-  }
+  for (const Body& body : model.bodies)
+    if (!body.model->rigid()) deforms_[static_cast<std::size_t>(body.component)] = true;
   take_kept();
 }
 
@@ -139,11 +133,16 @@ Vec3<double> BodyFaces::place(std::size_t number) const {
 }
 
 void BodyFaces::find_points(ImplicitPasses& passes) {
-  passes.map_surface();
-  unknowns_.exchange(mapped::implicit_surface);
   const auto doubles = static_cast<std::size_t>(node_doubles * unknowns_.nodes());
-  sums_.resize(doubles * fields_.count());
-  for (const BrickField& field : fields_.all()) unknowns_.sums(field, sums_.data() + doubles * field.index);
+  const auto sum = [&](NodeFields what, std::vector<double>& to) {
+    unknowns_.exchange(what);
+    to.resize(doubles * fields_.count());
+    for (const BrickField& field : fields_.all()) unknowns_.sums(field, to.data() + doubles * field.index);
+  };
+  passes.map_motion();
+  sum(mapped::implicit_motion, moduli_);
+  passes.map_surface();
+  sum(mapped::implicit_surface, sums_);
   points_.clear();
   for (std::size_t p = 0; p < faces_.size(); ++p) add_points_of(p);
   find_patches();
@@ -188,7 +187,7 @@ void BodyFaces::add_points_of(std::size_t number) {
   for (const Slot s : {at_home, grid.find(next)}) {
     if (s == no_slot || s >= grid.owned()) continue;
     for (const BrickField& field : fields_.of(s)) {
-      if (field.component >= 0 && stiffness_[static_cast<std::size_t>(field.component)] == 0) continue;
+      if (field.component >= 0 && !deforms_[static_cast<std::size_t>(field.component)]) continue;
       if (s != at_home && has(at_home, field.component)) continue;
       Point point;
       if (touch(field, number, x, point)) points_.push_back(std::move(point));
@@ -210,7 +209,9 @@ bool BodyFaces::touch(const BrickField& field, std::size_t number, const Vec3<do
     first[a] = weights_along(
         layers_, GridGeometry::scaled(place[a], g.origin[a], g.inverse_cell[a]) - corner[a], w[a]);
   const NodeUnknowns::Node* nodes = unknowns_.of(field);
-  const double* sums = sums_.data() + static_cast<std::size_t>(node_doubles * shape.nodes()) * field.index;
+  const std::size_t first_sum = static_cast<std::size_t>(node_doubles * shape.nodes()) * field.index;
+  const double *sums = sums_.data() + first_sum, *moduli = moduli_.data() + first_sum;
+  double stiff = 0, of_stiff = 0;           // sums of volumes times moduli, and of volumes
   double active = 0, volume = 0, room = 0;  // room: of cells around the nodes, inside the grid
   Vec3<double> gradient{};
   for (int k = 0; k < layers_; ++k)
@@ -227,6 +228,8 @@ bool BodyFaces::touch(const BrickField& field, std::size_t number, const Vec3<do
         point.weights.push_back({node, weight});
         if (nodes[node].from != node) continue;
         const double* sum = sums + node_doubles * node;
+        stiff += weight * moduli[node_doubles * node + node_field::modulus.first];
+        of_stiff += weight * moduli[node_doubles * node + node_field::volume.first];
         double part = 1;
         for (int a = 0; a < 3; ++a) {
           // A wall continues what is behind it.
@@ -254,9 +257,7 @@ bool BodyFaces::touch(const BrickField& field, std::size_t number, const Vec3<do
   point.field = field.index;
   point.component = field.component;
   ContactSpring& spring = point.spring;
-  const double h = g.smallest_cell();
-  const double cell =
-      field.component < 0 ? stiffness_.back() : stiffness_[static_cast<std::size_t>(field.component)];
+  const double h = g.smallest_cell(), cell = stiff / of_stiff * h;
   spring.normal = face.normal;
   spring.k = rigidity * cell * face.area / (h * h);
   spring.cell_stiffness = cell * face.area / (h * h);

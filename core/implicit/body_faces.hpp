@@ -115,10 +115,11 @@ class BodyFaces {
   const std::vector<FacePoint> faces_;     ///< where they were at the start of the run, or after a restart
   std::vector<Vec3<double>> moved_, way_;  ///< by body: since then, and in this step
   std::vector<std::size_t> reaction_;      ///< by body: number among the model's reactions
-  std::vector<double> stiffness_;          ///< of a cell, by component, force/length; the last of all
+  std::vector<bool> deforms_;              ///< by component
   int layers_;                             ///< nodes of a weight along an axis
   double dt_ = 0;
-  std::vector<double> sums_;  ///< volumes and gradients of the fields
+  std::vector<double> moduli_;  ///< stiffness of the material at the nodes of the fields
+  std::vector<double> sums_;    ///< volumes and gradients of the fields
   std::vector<Point> points_;
   std::size_t patches_ = 0;
   std::vector<ContactSpring> next_;  ///< by point
