@@ -108,16 +108,20 @@ std::size_t BodyFaces::first_of(int body) const {
   return static_cast<std::size_t>(std::ranges::find(faces_, body, &FacePoint::body) - faces_.begin());
 }
 
-/// Those that the model has from a restart file.
+/// Those that the model has from a restart file, of points that the bodies still have.
 void BodyFaces::take_kept() {
   for (const int b : bodies_of(faces_)) {
     const std::vector<double>& values = model_.bodies[static_cast<std::size_t>(b)].face_forces;
-    const std::size_t first = kept_.size();
-    kept_.resize(first + values.size() / size_of_kept);
-    if (!values.empty())
-      std::memcpy(kept_.data() + first, values.data(), sizeof(Kept) * (kept_.size() - first));
-    for (std::size_t i = first; i < kept_.size(); ++i) kept_[i].number += static_cast<double>(first_of(b));
+    const std::size_t first = first_of(b), all = faces_.size();
+    for (std::size_t at = 0; at + size_of_kept <= values.size(); at += size_of_kept) {
+      Kept k;
+      std::memcpy(&k, values.data() + at, sizeof k);
+      k.number += static_cast<double>(first);
+      const bool is_here = k.number >= static_cast<double>(first) && k.number < static_cast<double>(all);
+      if (is_here && faces_[static_cast<std::size_t>(k.number)].body == b) kept_.push_back(k);
+    }
   }
+  std::ranges::sort(kept_, {}, key_of);
 }
 
 void BodyFaces::begin_step(const Loads& loads, double dt) {
@@ -407,16 +411,31 @@ void BodyFaces::take_forces(const AlignedDoubles& displacements) {
   }
 }
 
+/// The forces per area of patches.
+std::vector<Vec3<double>> BodyFaces::tractions(const AlignedDoubles& displacements) const {
+  std::vector<Vec3<double>> mean(patches_);
+  std::vector<double> area(mean.size());
+  for (const Point& point : points_) {
+    mean[point.patch] = mean[point.patch] + point.spring.response(relative(point, displacements)).force;
+    area[point.patch] += faces_[point.number].area;
+  }
+  for (std::size_t p = 0; p < mean.size(); ++p) mean[p] = (1 / area[p]) * mean[p];
+  return mean;
+}
+
 void BodyFaces::end_step(const AlignedDoubles& displacements, StepStatistics& to) {
   if (contact_ == nullptr) to.reactions.resize(model_.reactions.size());
-  const std::vector<Vec3<double>> violated = violations(displacements);
+  const std::vector<Vec3<double>> violated = violations(displacements), traction = tractions(displacements);
   std::string bytes;
   for (const Point& point : points_) {
     const FacePoint& face = faces_[point.number];
     const Vec3<double> d = relative(point, displacements), way = way_[static_cast<std::size_t>(face.body)];
     const ContactSpring::Response found = point.spring.response(d);
-    const Vec3<double> mean = 0.5 * (point.start + found.force),
-                       t = found.pressure * face.normal - found.force;
+    const Vec3<double> mean = 0.5 * (point.start + found.force);
+    // Of what is tied the mean of the patch.
+    const Vec3<double> force = point.spring.tied ? face.area * traction[point.patch] : found.force;
+    const double pressure = point.spring.tied ? dot(force, face.normal) : found.pressure;
+    const Vec3<double> t = pressure * face.normal - force;
     // Of what holds the mean; where the two have parted, how far.
     Vec3<double> left = point.spring.held(d, violated[point.patch]);
     if (!point.spring.tied && found.pressure == 0)
@@ -424,7 +443,7 @@ void BodyFaces::end_step(const AlignedDoubles& displacements, StepStatistics& to
     const Kept keep{static_cast<double>(point.number),
                     static_cast<double>(point.component),
                     point.spring.sticks ? 1.0 : 0.0,
-                    found.pressure,
+                    pressure,
                     {t.x, t.y, t.z},
                     {left.x, left.y, left.z}};
     bytes.append(reinterpret_cast<const char*>(&keep), sizeof keep);

@@ -14,8 +14,9 @@
 // multigrid bears. The force of a point goes on from step to step, also through a restart. What is left of
 // the displacement, the violation, is made good in the mean of a patch, the points of a body in one cell: a
 // step is solved again from the forces found, and from this mean in the place of each point's own, until it
-// is less than most_violation. Made good point by point it would hold nodes that reach the face by a
-// hundredth of their function, too: a tied strip footing then bore 43 % too much.
+// is less than most_violation. So is the force of points that are tied. Made good point by point, and with
+// the force of each, it would hold nodes that reach the face by a hundredth of their function, too: a tied
+// strip footing then bore 43 % too much.
 //
 // A point touches a body that has its face there, opposite, or at a distance of up to about 0.3 cells: where
 // the volume around the point is not much less than its change along the normal over a cell. Across the
@@ -101,6 +102,7 @@ class BodyFaces {
   bool touch(const BrickField& field, std::size_t number, const Vec3<double>& place, Point& point) const;
   /// What a solution leaves of the displacement where springs hold it, by patch.
   std::vector<Vec3<double>> violations(const AlignedDoubles& displacements) const;
+  std::vector<Vec3<double>> tractions(const AlignedDoubles& displacements) const;
   Vec3<double> relative(const Point& point, const AlignedDoubles& displacements) const;
   static std::pair<double, double> key_of(const Kept& k) { return {k.number, k.component}; }
   const Kept* kept(const std::pair<double, double>& key) const;

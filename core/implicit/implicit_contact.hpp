@@ -2,18 +2,15 @@
 // prescribed motion.
 //
 // Where components meet at a node each has a displacement of its own (node_unknowns.hpp); that of a rigid
-// body is given. Two of them that touch there press on each other and rub: with d, the displacement of the
-// second less that of the first in the step, n, the normal from the first to the second, and mu, the
-// coefficient of friction, the first exerts on the second, and the second with the opposite sign on the
-// first,
-//   f = p n - t   p = k max(0, -d.n)   t = k d_t where they stick, mu p d_t/|d_t| where they slide
-// with d_t = d - (d.n) n: they may part and slide. k is `rigidity` times the stiffness of a cell of the
-// stiffer one, so that in a step they enter each other, and creep where they stick, by the part 1/rigidity of
-// the elastic displacement. The force is a function of the displacements at the node alone and enters the
-// residual and, with its derivative, the Jacobian. Of more than two components at a node every two touch.
+// body is given. Two of them that touch there press on each other and rub by a spring (contact_spring.hpp) of
+// `rigidity` times the stiffness of a cell of the stiffer one, so that in a step they enter each other, and
+// creep where they stick, by the part 1/rigidity of the elastic displacement. The force is a function of the
+// displacements at the node alone and enters the residual and, with its derivative, the Jacobian. Of more
+// than two components at a node every two touch.
 //
-// A node touches a rigid body that fills at least a tenth of a cell around it; the normal is that of the
-// steeper of the two volumes, the body's and the material's: where both have a face these are opposite, and
+// Rigid bodies act in quasi-static steps at their faces (body_faces.hpp) and not here, unless they turn. In
+// others a node touches a rigid body that fills at least a tenth of a cell around it; the normal is that of
+// the steeper of the two volumes, the body's and the material's: where both have a face these are opposite, and
 // at an edge of one, whose normal is that of the corner, the face of the other decides. Two deformable
 // components touch where, with the volumes V that they fill around the node and their gradients along the
 // normal over a cell, V_1 + V_2 >= least_cover max(|dV_1|, |dV_2|): the sum of the volumes is the larger
@@ -25,11 +22,6 @@
 // Along the axes of the grid that is exact. Where they have nothing in common, one of them has the node
 // inside, as the middle of a plate of two cells, or the node is beyond a face that wide shape functions
 // reach: the normal is that of the steeper one of grad V/V, or they do not touch (touch() has the rule).
-//
-// Which nodes stick, and the friction of those that slide, are those of the last solution: a step is solved
-// again, from there, until they agree. A node that sticks with more than mu p slides; one that slides against
-// its friction sticks. Within a solution friction is thus linear or constant, and the matrix symmetric: with
-// mu p inside, Newton's method goes to and fro between directions of sliding.
 //
 // In a dynamic step contact acts with one force all through the step, and not with the mean of those at its
 // ends (C. Kane et al., Comput. Methods Appl. Mech. Eng. 180 (1999) 1); nodes that meet are stopped against

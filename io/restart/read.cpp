@@ -207,7 +207,8 @@ void restore_ledger(const RestartContents& contents, const Fit& fit, core::Model
     if (fit.bodies[b]) {
       core::Body& body = model.bodies[fit.bodies[b]->number];
       body.rigid_state = contents.bodies[b].rigid;
-      body.face_forces = contents.bodies[b].face_forces;
+      const auto& implicit = model.scene->solution.implicit;
+      if (implicit && implicit->quasistatic()) body.face_forces = contents.bodies[b].face_forces;
     }
   if (!keeper) return;
   for (std::size_t b = 0; b < contents.bodies.size(); ++b) {
