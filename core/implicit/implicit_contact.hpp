@@ -10,8 +10,8 @@
 //
 // Rigid bodies act in quasi-static steps at their faces (body_faces.hpp) and not here, unless they turn. In
 // others a node touches a rigid body that fills at least a tenth of a cell around it; the normal is that of
-// the steeper of the two volumes, the body's and the material's: where both have a face these are opposite, and
-// at an edge of one, whose normal is that of the corner, the face of the other decides. Two deformable
+// the steeper of the two volumes, the body's and the material's: where both have a face these are opposite,
+// and at an edge of one, whose normal is that of the corner, the face of the other decides. Two deformable
 // components touch where, with the volumes V that they fill around the node and their gradients along the
 // normal over a cell, V_1 + V_2 >= least_cover max(|dV_1|, |dV_2|): the sum of the volumes is the larger
 // gradient or more where no gap is between them, whatever part of the cell's width they cover, and falls to
