@@ -94,6 +94,7 @@ BodyFaces::BodyFaces(Model& model, Reductions& ranks, const BrickFields& fields,
       unknowns_(unknowns),
       contact_(contact),
       faces_(std::move(points)),
+      first_(model.bodies.size()),
       moved_(model.bodies.size()),
       way_(model.bodies.size()),
       reaction_(model.bodies.size()),
@@ -101,18 +102,15 @@ BodyFaces::BodyFaces(Model& model, Reductions& ranks, const BrickFields& fields,
       layers_(nodes_per_axis(model.scene->grid.shape)) {
   for (const Body& body : model.bodies)
     if (!body.model->rigid()) deforms_[static_cast<std::size_t>(body.component)] = true;
+  for (std::size_t p = faces_.size(); p-- > 0;) first_[static_cast<std::size_t>(faces_[p].body)] = p;
   take_kept();
-}
-
-std::size_t BodyFaces::first_of(int body) const {
-  return static_cast<std::size_t>(std::ranges::find(faces_, body, &FacePoint::body) - faces_.begin());
 }
 
 /// Those that the model has from a restart file, of points that the bodies still have.
 void BodyFaces::take_kept() {
   for (const int b : bodies_of(faces_)) {
     const std::vector<double>& values = model_.bodies[static_cast<std::size_t>(b)].face_forces;
-    const std::size_t first = first_of(b), all = faces_.size();
+    const std::size_t first = first_[static_cast<std::size_t>(b)], all = faces_.size();
     for (std::size_t at = 0; at + size_of_kept <= values.size(); at += size_of_kept) {
       Kept k;
       std::memcpy(&k, values.data() + at, sizeof k);
@@ -136,17 +134,16 @@ Vec3<double> BodyFaces::place(std::size_t number) const {
   return faces_[number].place + moved_[static_cast<std::size_t>(faces_[number].body)];
 }
 
-void BodyFaces::find_points(ImplicitPasses& passes) {
+void BodyFaces::take_sums(std::vector<double>& to) const {
   const auto doubles = static_cast<std::size_t>(node_doubles * unknowns_.nodes());
-  const auto sum = [&](NodeFields what, std::vector<double>& to) {
-    unknowns_.exchange(what);
-    to.resize(doubles * fields_.count());
-    for (const BrickField& field : fields_.all()) unknowns_.sums(field, to.data() + doubles * field.index);
-  };
-  passes.map_motion();
-  sum(mapped::implicit_motion, moduli_);
+  to.resize(doubles * fields_.count());
+  for (const BrickField& field : fields_.all()) unknowns_.sums(field, to.data() + doubles * field.index);
+}
+
+void BodyFaces::find_points(ImplicitPasses& passes) {
   passes.map_surface();
-  sum(mapped::implicit_surface, sums_);
+  unknowns_.exchange(mapped::implicit_surface);
+  take_sums(sums_);
   points_.clear();
   for (std::size_t p = 0; p < faces_.size(); ++p) add_points_of(p);
   find_patches();
@@ -473,8 +470,8 @@ void BodyFaces::end_step(const AlignedDoubles& displacements, StepStatistics& to
         model_.bodies[static_cast<std::size_t>(faces_[static_cast<std::size_t>(k.number)].body)].face_forces;
     const auto* values = reinterpret_cast<const double*>(&k);
     of_body.insert(of_body.end(), values, values + size_of_kept);
-    of_body[of_body.size() - size_of_kept] -=
-        static_cast<double>(first_of(faces_[static_cast<std::size_t>(k.number)].body));
+    of_body[of_body.size() - size_of_kept] -= static_cast<double>(
+        first_[static_cast<std::size_t>(faces_[static_cast<std::size_t>(k.number)].body)]);
   }
   for (std::size_t b = 0; b < moved_.size(); ++b) moved_[b] = moved_[b] + way_[b];
 }

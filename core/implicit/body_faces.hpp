@@ -51,7 +51,9 @@ class BodyFaces {
 
   /// Begins a step, or begins it anew with another length.
   void begin_step(const Loads& loads, double dt);
-  /// Finds where faces touch other bodies, once the nodes are numbered. Collective.
+  /// Takes the stiffness of the material, once mapped::implicit_motion has been exchanged.
+  void take_moduli() { take_sums(moduli_); }
+  /// Finds where faces touch other bodies, once the nodes are numbered, after take_moduli(). Collective.
   void find_points(ImplicitPasses& passes);
 
   /// Adds forces to the contributions, in the components of node_field::force.
@@ -74,8 +76,6 @@ class BodyFaces {
   /// move. Collective.
   void end_step(const AlignedDoubles& displacements, StepStatistics& to);
 
-  std::size_t count() const { return points_.size(); }
-
  private:
   /// A point where it touches.
   struct Point {
@@ -94,8 +94,8 @@ class BodyFaces {
     double friction[3], gap[3];
   };
   static constexpr std::size_t size_of_kept = sizeof(Kept) / sizeof(double);
-  std::size_t first_of(int body) const;
   void take_kept();
+  void take_sums(std::vector<double>& to) const;
   void add_points_of(std::size_t number);
   void find_patches();
   void add_force(const Point& point, const Vec3<double>& force);
@@ -115,6 +115,7 @@ class BodyFaces {
   NodeUnknowns& unknowns_;
   ImplicitContact* contact_;
   const std::vector<FacePoint> faces_;     ///< where they were at the start of the run, or after a restart
+  std::vector<std::size_t> first_;         ///< of these, by body
   std::vector<Vec3<double>> moved_, way_;  ///< by body: since then, and in this step
   std::vector<std::size_t> reaction_;      ///< by body: number among the model's reactions
   std::vector<bool> deforms_;              ///< by component

@@ -95,6 +95,7 @@ void ImplicitIntegrator::prepare() {
   state_.assign(unknowns_.own(), {});
   passes_->map_motion();
   unknowns_.exchange(mapped::implicit_motion);
+  if (faces_) faces_->take_moduli();
   stabilisation_.find_cells(unknowns_);
   const GridGeometry& g = model_.grid->geometry();
   const double cell_volume = g.cell_volume();

@@ -204,7 +204,7 @@ TEST_CASE("Face points are those of the bodies asked for, in their order", "[imp
   const auto add = [&](std::size_t component, Geometry geometry) -> BodyInput& {
     return scene.components[component].bodies.emplace_back(body(std::move(geometry)));
   };
-  add(0, block(0.5, {-6, -6, -6}, {1, 1, 1})).deactivated = true;  // has no number
+  add(0, block(0.5, {-6, -6, -6}, {1, 1, 1})).deactivated = true;  // the model does not count it
   add(0, block(0.5, {-4, -4, -4}, {0.5, 0.5, 0.5}));
   add(0, block(0.5, {0, 0, 0}, {1, 1, 1}));
   // Beside the first: bodies that touch both have a face there.
