@@ -1,12 +1,11 @@
 // The motion of the free rigid bodies in a step, by trials of all of them at once: the contacts of bodies of
 // prescribed motion with them, and the sums over the nodes of all ranks.
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
-#include <type_traits>
 
 #include <fmt/format.h>
 
+#include "core/communication/gather_records.hpp"
 #include "core/contact/rigid_bodies.hpp"
 #include "core/step/stepper.hpp"
 
@@ -14,17 +13,8 @@ namespace mpm::core {
 
 void RigidBodies::gather(RigidStage stage, std::span<const RigidContact> mine) {
   if (std::ranges::none_of(bodies_, &Rigid::driven)) return;  // on all ranks
-  static_assert(std::is_trivially_copyable_v<RigidContact>);
-  constexpr std::size_t size = sizeof(RigidContact);
-  std::string bytes(size * mine.size(), 0);
-  if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
   std::vector<RigidContact>& all = contacts(stage);
-  all.clear();
-  for (const std::string& of_rank : ranks_.gather(bytes)) {
-    const std::size_t first = all.size();
-    all.resize(first + of_rank.size() / size);
-    if (!of_rank.empty()) std::memcpy(all.data() + first, of_rank.data(), of_rank.size());
-  }
+  all = gather_records(mine, ranks_);
   std::ranges::sort(all, [](const RigidContact& a, const RigidContact& b) { return a < b; });
 }
 

@@ -35,11 +35,12 @@ ContactSpring::Response ContactSpring::response(const Vec3<double>& in_step) con
   return found;
 }
 
-Vec3<double> ContactSpring::held(const Vec3<double>& d, const Vec3<double>& v) const {
-  if (tied) return v;
+Vec3<double> ContactSpring::held(const Vec3<double>& in_step) const {
+  const Vec3<double> d = in_step + gap;
+  if (tied) return d;
   Vec3<double> part{};
-  if (response(d).pressure > 0) part = dot(v, normal) * normal;
-  return sticks ? part + across(v, normal) : part;
+  if (response(in_step).pressure > 0) part = dot(d, normal) * normal;
+  return sticks ? part + across(d, normal) : part;
 }
 
 void ContactSpring::take_force(const Vec3<double>& d) {

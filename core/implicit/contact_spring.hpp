@@ -43,9 +43,8 @@ struct ContactSpring {
     double pressure = 0;       ///< p, a force
   };
   Response response(const Vec3<double>& d) const;
-  /// The part of v in the directions in which the spring holds at d; and that of d itself, with the gap.
-  Vec3<double> held(const Vec3<double>& d, const Vec3<double>& v) const;
-  Vec3<double> held(const Vec3<double>& d) const { return held(d, d + gap); }
+  /// The part of d, with the gap, in the directions in which the spring holds.
+  Vec3<double> held(const Vec3<double>& d) const;
   /// Takes its force at d for p_0 and t_0.
   void take_force(const Vec3<double>& d);
   /// f(direction) of each direction, of length 1, in which it answers with the stiffness k.

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <string>
 #include <unordered_map>
 #include <variant>
 
+#include "core/communication/gather_records.hpp"
 #include "core/grid/brick_grid.hpp"
 #include "core/particle_range.hpp"
 
@@ -21,22 +20,16 @@ struct Sample {
 };
 
 std::vector<Sample> samples_of_all(const Model& model, std::span<const int> bodies, Reductions& ranks) {
-  std::string bytes;
+  std::vector<Sample> mine;
   for (const ConstParticleBlock& block : blocks_of(model)) {
     if (std::ranges::find(bodies, block.body) == bodies.end()) continue;
     for (const ConstParticle p : block) {
       const Vec3<double> x = p.vector(Column::position_x);
-      const Sample sample{
-          static_cast<double>(block.body), p[Column::identity], {x.x, x.y, x.z}, p[Column::volume]};
-      bytes.append(reinterpret_cast<const char*>(&sample), sizeof sample);
+      mine.push_back(
+          {static_cast<double>(block.body), p[Column::identity], {x.x, x.y, x.z}, p[Column::volume]});
     }
   }
-  std::vector<Sample> all;
-  for (const std::string& of_rank : ranks.gather(bytes)) {
-    const std::size_t first = all.size();
-    all.resize(first + of_rank.size() / sizeof(Sample));
-    if (!of_rank.empty()) std::memcpy(all.data() + first, of_rank.data(), of_rank.size());
-  }
+  std::vector<Sample> all = gather_records(std::span<const Sample>(mine), ranks);
   std::ranges::sort(all, [](const Sample& a, const Sample& b) {
     return a.body != b.body ? a.body < b.body : a.identity < b.identity;
   });

@@ -128,7 +128,7 @@ void ImplicitIntegrator::prepare() {
     if (rule_.dynamic() && !(at.mass > cutoff)) at.ground = 0;
   }
   if (contact_) find_contacts();
-  if (faces_) faces_->find_points(*passes_);
+  if (faces_) faces_->find_patches(*passes_);
   if (lags_) {
     passes_->map_lag();
     unknowns_.exchange(mapped::implicit_lag);

@@ -165,7 +165,7 @@ void ImplicitIntegrator::settle_contact(std::span<double> u, const NewtonOptions
     if (!report.converged) return;
     if (!faces_) break;
     distribute(u);
-    const double violation = ranks_.largest(faces_->violation(displacements_));
+    const double violation = faces_->violation(displacements_);
     if (violation <= BodyFaces::most_violation || violation > slow * last || i == most_violations) break;
     last = violation;
     faces_->take_forces(displacements_);
