@@ -10,6 +10,13 @@
 
 namespace mpm::core {
 
+namespace {
+
+/// Along an axis. Particles of SGMP do not feel displacements that alternate from node to node.
+int nodes_per_patch(ShapeFunction shape) { return shape == ShapeFunction::sgmp ? 2 : 1; }
+
+}  // namespace
+
 std::vector<FacePoint> acting_faces(const Model& model, Reductions& ranks) {
   std::vector<int> bodies;
   const auto& input = model.scene->solution.implicit;
@@ -44,6 +51,7 @@ BodyFaces::BodyFaces(Model& model, Reductions& ranks, const BrickFields& fields,
       contact_(contact),
       points_(std::move(points)),
       material_(model, fields, unknowns),
+      cover_(model, ranks, points_),
       patches_(model, ranks, fields, unknowns),
       first_(model.bodies.size()),
       moved_(model.bodies.size()),
@@ -89,7 +97,10 @@ void BodyFaces::find_patches(ImplicitPasses& passes) {
   unknowns_.exchange(mapped::implicit_surface);
   material_.take_surface();
   patches_.clear();
-  for (std::size_t p = 0; p < points_.size(); ++p) find_touches(p);
+  const bool tied = contact_ == nullptr;
+  const std::vector<bool> covered = tied ? cover_.find(moved_) : std::vector<bool>{};
+  for (std::size_t p = 0; p < points_.size(); ++p)
+    if (!tied || covered[p]) find_touches(p);
   patches_.complete();
   for (FacePatch& patch : patches_.all()) prepare(patch);
 }
@@ -128,14 +139,23 @@ void BodyFaces::find_touches(std::size_t number) {
   }
 }
 
+/// Of the patch of a point. What is tied has patches; in contact, which bears no tension, a point is one, and
+/// material presses as far as it reaches, and no farther.
 FacePatch::Key BodyFaces::key_of(std::size_t number, std::int32_t component) const {
   const GridGeometry& g = model_.grid->geometry();
   const FacePoint& point = points_[number];
   const Vec3<double> x = place(number);
   const int normal = axis_of(point.normal);
-  FacePatch::Key key{point.body, component, normal};
+  FacePatch::Key key{point.body, component, FacePatch::many_points};
+  if (contact_ != nullptr) {
+    key[2] = static_cast<std::int64_t>(number);
+    return key;
+  }
+  key[3] = normal;
+  const int nodes = nodes_per_patch(model_.scene->grid.shape);
   for (int a = 0; a < 3; ++a)
-    key[static_cast<std::size_t>(3 + a)] = a == normal ? g.cell_index(x[a], a) : nearest_node(g, x, a);
+    key[static_cast<std::size_t>(4 + a)] =
+        a == normal ? g.cell_index(x[a], a) : nearest_node(g, x, a) / nodes;
   return key;
 }
 

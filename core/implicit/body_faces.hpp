@@ -1,14 +1,15 @@
 // Rigid bodies of prescribed motion in quasi-static steps: they act on other bodies at their faces.
 //
-// A face lies anywhere between nodes. The points of a body around one node of its face (face_points.hpp) are
-// a patch (face_patches.hpp), whose displacement u is that of the nodes with the weights of the functions
-// whose gradients particles feel; and
+// A face lies anywhere between nodes. It has points (face_points.hpp), which form patches (face_patches.hpp).
+// The displacement u of the material at a patch is that of its nodes, with the weights of the functions whose
+// gradients particles feel. There a spring acts between the material and the body (contact_spring.hpp), with
+// the force
 //   f = f(u - u_b)
-// is the force of a spring (contact_spring.hpp) there between the material and the body, whose displacement
-// u_b is given: tied without contact, and pressed or sliding with it. It acts on the nodes by the same
-// weights. A uniform stress with its pressure on the face is thus in equilibrium wherever the face cuts the
-// cells, which it is not with forces at nodes inside the body alone. (Penalties at points of boundaries that
-// do not follow the grid: B. Chandra et al., Acta Geotechnica 16 (2021) 2315.)
+// of their displacements, that of the body given: tied without contact, and pressed or sliding with it. The
+// force acts on the nodes by the same weights. A uniform stress with its pressure on the face is thus in
+// equilibrium wherever the face cuts the cells, which it is not with forces at nodes inside the body alone.
+// (Penalties at points of boundaries that do not follow the grid: B. Chandra et al., Acta Geotechnica 16
+// (2021) 2315.)
 //
 // The stiffness of the patches on the face of a cell together is `rigidity` times that of the cell, which
 // multigrid bears. What is left of the displacement, the violation, is made good: a step is solved again from
@@ -26,6 +27,7 @@
 
 #include "core/implicit/brick_fields.hpp"
 #include "core/implicit/contact_spring.hpp"
+#include "core/implicit/face_cover.hpp"
 #include "core/implicit/face_patches.hpp"
 #include "core/implicit/face_points.hpp"
 #include "core/implicit/face_touch.hpp"
@@ -100,6 +102,7 @@ class BodyFaces {
   ImplicitContact* contact_;
   const std::vector<FacePoint> points_;  ///< where they were at the start of the run, or after a restart
   MaterialAtFaces material_;
+  FaceCover cover_;
   FacePatches patches_;
   std::vector<std::size_t> first_;         ///< of the points, by body
   std::vector<Vec3<double>> moved_, way_;  ///< by body: since then, and in this step

@@ -56,11 +56,11 @@ void FacePatches::complete() {
 /// Whether bricks may share a patch: where they take particles by cell, those on both sides of its node.
 bool FacePatches::is_shared(const FacePatch::Key& key) const {
   const GridGeometry& g = model_.grid->geometry();
-  if (g.site == Site::node) return false;
+  if (g.site == Site::node || key[2] != FacePatch::many_points) return false;
   bool shared = false;
   for (std::size_t a = 0; a < 3; ++a)
-    shared |= static_cast<std::int64_t>(a) != key[2] && key[3 + a] % brick_cells == 0 && key[3 + a] > 0 &&
-              key[3 + a] < g.cells[a];
+    shared |= static_cast<std::int64_t>(a) != key[3] && key[4 + a] % brick_cells == 0 && key[4 + a] > 0 &&
+              key[4 + a] < g.cells[a];
   return shared;
 }
 

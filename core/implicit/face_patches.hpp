@@ -1,11 +1,15 @@
-// Patches: the points of a rigid body's face around one node, which touch one component.
+// Patches of a rigid body's face, which each touch one component: of a body that is tied the points around
+// one node, or two, and in contact each point alone.
 //
 // The displacement of the material at a patch and the forces on its nodes have the same weights,
 //   W_i = sum_s A_s N_i(x_s) / sum_s A_s   u = sum_i W_i u_i   f_i = W_i f
-// with the areas A_s of its points and the N_i there (face_touch.hpp). There are as many patches as nodes
-// that reach half of one or more. Springs at single points would hold nodes that reach the face by a
-// hundredth of their function, too; and forces that are uniform over cells may alternate from cell to cell,
-// which nodes between two cells do not feel: they grew from step to step to hundreds of times the stress.
+// with the areas A_s of its points and the N_i there (face_touch.hpp).
+//
+// Of what is tied there are then as many patches as nodes that reach half of one or more. Tied point by
+// point, nodes that reach the face by a hundredth of their function would be held, too, and points beside the
+// edge would pull: strip footings bore 20 to 40 % too much. With patches that are cells forces may alternate
+// from one to the next, which the nodes between do not feel: they grew from step to step to hundreds of times
+// the stress. In contact points do not pull, and press as far as the material reaches.
 //
 // Where bricks take particles by cell, those of different bricks, and ranks, may share a patch: then each has
 // a part, and all ranks with a part know the whole.
@@ -42,8 +46,10 @@ struct PatchSums {
 };
 
 struct FacePatch {
-  /// Body, component, axis of the normal and, by axis, the node, or the cell along the normal.
-  using Key = std::array<std::int64_t, 6>;
+  /// Body, component, and a point alone; or many_points, axis of the normal and, by axis, the node, or the
+  /// cell along the normal.
+  using Key = std::array<std::int64_t, 7>;
+  static constexpr std::int64_t many_points = -1;
   Key key{};
   PatchSums sums;
   bool counts = true;               ///< of the ranks that have it, on one

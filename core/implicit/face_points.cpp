@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
 #include <variant>
 
 #include "core/communication/gather_records.hpp"
 #include "core/grid/brick_grid.hpp"
+#include "core/implicit/place_boxes.hpp"
 #include "core/particle_range.hpp"
 
 namespace mpm::core {
@@ -36,40 +36,6 @@ std::vector<Sample> samples_of_all(const Model& model, std::span<const int> bodi
   return all;
 }
 
-/// Finds points by place: those in the 27 boxes of edge `size` around one.
-class Boxes {
- public:
-  explicit Boxes(double size) : per_size_(1 / size) {}
-  void add(const Vec3<double>& x, std::size_t number) { of_[key(box(x))].push_back(number); }
-  template <class F>
-  void for_each_around(const Vec3<double>& x, F f) const {
-    const std::array<std::int64_t, 3> at = box(x);
-    for (std::int64_t i = -1; i <= 1; ++i)
-      for (std::int64_t j = -1; j <= 1; ++j)
-        for (std::int64_t k = -1; k <= 1; ++k) {
-          const auto found = of_.find(key({at[0] + i, at[1] + j, at[2] + k}));
-          if (found == of_.end()) continue;
-          for (const std::size_t number : found->second) f(number);
-        }
-  }
-
- private:
-  std::array<std::int64_t, 3> box(const Vec3<double>& x) const {
-    std::array<std::int64_t, 3> at;
-    for (std::size_t a = 0; a < 3; ++a)
-      at[a] = static_cast<std::int64_t>(std::floor(per_size_ * x[static_cast<int>(a)]));
-    return at;
-  }
-  static std::uint64_t key(const std::array<std::int64_t, 3>& at) {
-    constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
-    std::uint64_t all = 0;
-    for (const std::int64_t i : at) all = all << 21 | (static_cast<std::uint64_t>(i) & mask);
-    return all;
-  }
-  double per_size_;
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> of_;
-};
-
 /// The axes of the lattice of a body.
 std::array<Vec3<double>, 3> axes_of(const Scene& scene, const BodyInput& input) {
   if (!input.work_plane) return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -83,7 +49,7 @@ std::vector<FacePoint> ends_of_lattice(std::span<const Sample> of_body,
   const double spacing = std::cbrt(of_body.front().volume);
   constexpr double least = 0.3, most = 1.5,
                    aside = 0.4;  // of the spacing, to the next particle along an axis
-  Boxes boxes(most * spacing);
+  PlaceBoxes boxes(most * spacing);
   const auto place = [&](std::size_t i) {
     return Vec3<double>{of_body[i].x[0], of_body[i].x[1], of_body[i].x[2]};
   };
@@ -129,7 +95,7 @@ bool enclose(std::span<const FacePoint> sides, std::span<const Sample> of_body) 
 std::vector<FacePoint> with_smooth_normals(std::span<const FacePoint> sides) {
   // No two sides of a lattice have this distance, which rounding would decide.
   const double reach = 2.5 * std::sqrt(sides.front().area);
-  Boxes boxes(reach);
+  PlaceBoxes boxes(reach);
   for (std::size_t i = 0; i < sides.size(); ++i) boxes.add(sides[i].place, i);
   std::vector<FacePoint> points;
   for (const FacePoint& side : sides) {

@@ -9,7 +9,13 @@ namespace mpm::core {
 
 namespace {
 
-/// Of the functions whose gradients particles feel.
+/// The functions whose gradients particles feel, along an axis.
+struct Along {
+  int nodes;
+  int first;  ///< number of the first, from the brick's
+  double weight[4];
+};
+
 int nodes_per_axis(ShapeFunction shape) {
   switch (shape) {
     case ShapeFunction::cubic_bspline: return 4;
@@ -19,22 +25,32 @@ int nodes_per_axis(ShapeFunction shape) {
   }
 }
 
-/// Weights of `n` nodes along an axis at x, in cells from the brick's first node. The first node's number.
-int weights_along(int n, double x, double* w) {
+/// At x, in cells from the brick's first node. Gradients of SGMP, of the means over cells, are linear between
+/// the centres of cells: along their own axis those of the quadratic spline, across it means of the linear
+/// functions.
+Along along(ShapeFunction shape, bool normal, double x) {
+  Along at{nodes_per_axis(shape), 0, {}};
+  double* const w = at.weight;
   double slopes[4];
-  if (n == 3) {
-    const double node = std::floor(x + 0.5);
-    QuadraticAlong::evaluate(x + 0.5 - node, w, slopes);
-    return static_cast<int>(node) - 1;
+  if (at.nodes == 3) {
+    const double node = std::floor(x + 0.5), r = x - node;
+    at.first = static_cast<int>(node) - 1;
+    if (shape == ShapeFunction::sgmp && !normal)
+      w[0] = 0.5 * (0.5 - r), w[1] = 0.5, w[2] = 0.5 * (0.5 + r);
+    else
+      QuadraticAlong::evaluate(r + 0.5, w, slopes);
+    return at;
   }
   const double cell = std::floor(x);
-  if (n == 4) {
+  at.first = static_cast<int>(cell);
+  if (at.nodes == 4) {
     CubicAlong::evaluate(x - cell, w, slopes);
-    return static_cast<int>(cell) - 1;
+    --at.first;
+    return at;
   }
   w[1] = x - cell;
   w[0] = 1 - w[1];
-  return static_cast<int>(cell);
+  return at;
 }
 
 /// Least volume around a point over its growth along the normal over a cell: with splines that of a face at a
@@ -59,10 +75,7 @@ std::int64_t nearest_node(const GridGeometry& g, const Vec3<double>& x, int axis
 }
 
 MaterialAtFaces::MaterialAtFaces(const Model& model, const BrickFields& fields, const NodeUnknowns& unknowns)
-    : grid_(*model.grid),
-      fields_(fields),
-      unknowns_(unknowns),
-      nodes_per_axis_(nodes_per_axis(model.scene->grid.shape)) {}
+    : grid_(*model.grid), fields_(fields), unknowns_(unknowns), shape_(model.scene->grid.shape) {}
 
 void MaterialAtFaces::take_sums(std::vector<double>& to) const {
   const auto doubles = static_cast<std::size_t>(node_doubles * unknowns_.nodes());
@@ -76,28 +89,27 @@ std::optional<FaceTouch> MaterialAtFaces::touch(const BrickField& field, const F
   const NodeBlockShape shape = grid_.shape();
   const BrickCoord brick = grid_.brick(field.slot).coord;
   const std::int32_t corner[3] = {brick_cells * brick.x, brick_cells * brick.y, brick_cells * brick.z};
-  double w[3][4];
-  int first[3];
+  const int normal_axis = axis_of(point.normal);
+  Along in[3];
   std::int64_t nearest[3];
   for (int a = 0; a < 3; ++a) {
     const double x = GridGeometry::scaled(place[a], g.origin[a], g.inverse_cell[a]);
-    first[a] = weights_along(nodes_per_axis_, x - corner[a], w[a]);
+    in[a] = along(shape_, a == normal_axis, x - corner[a]);
     nearest[a] = nearest_node(g, place, a) - corner[a];
   }
   const NodeUnknowns::Node* nodes = unknowns_.of(field);
   const std::size_t first_sum = static_cast<std::size_t>(node_doubles * shape.nodes()) * field.index;
   const double *surface = surface_.data() + first_sum, *moduli = moduli_.data() + first_sum;
-  const int normal_axis = axis_of(point.normal);
   FaceTouch found;
   found.held = 7;
   double stiff = 0, of_stiff = 0;           // sums of volumes times moduli, and of volumes
   double active = 0, volume = 0, room = 0;  // room: of cells around the nodes, inside the grid
   Vec3<double> gradient{};
-  for (int k = 0; k < nodes_per_axis_; ++k)
-    for (int j = 0; j < nodes_per_axis_; ++j)
-      for (int i = 0; i < nodes_per_axis_; ++i) {
-        const double weight = w[0][i] * w[1][j] * w[2][k];
-        const int at[3] = {first[0] + i, first[1] + j, first[2] + k};
+  for (int k = 0; k < in[2].nodes; ++k)
+    for (int j = 0; j < in[1].nodes; ++j)
+      for (int i = 0; i < in[0].nodes; ++i) {
+        const double weight = in[0].weight[i] * in[1].weight[j] * in[2].weight[k];
+        const int at[3] = {in[0].first + i, in[1].first + j, in[2].first + k};
         if (weight == 0 ||
             std::ranges::any_of(at, [&](int n) { return n < shape.lowest() || n > shape.highest(); }))
           continue;
@@ -129,7 +141,7 @@ std::optional<FaceTouch> MaterialAtFaces::touch(const BrickField& field, const F
   const double growth = -dot(gradient, point.normal), length = std::sqrt(dot(gradient, gradient));
   double cell_along = 0;
   for (int a = 0; a < 3; ++a) cell_along += std::abs(point.normal[a]) * g.cell[a];
-  const double least = (is_known ? of_known : 1.0) * least_volume(nodes_per_axis_) * cell_along * growth;
+  const double least = (is_known ? of_known : 1.0) * least_volume(in[0].nodes) * cell_along * growth;
   if (growth < least_cosine * length || volume < least) return {};
   for (auto& [node, weight] : found.weights) weight /= active;
   found.modulus = stiff / of_stiff;

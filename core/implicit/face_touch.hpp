@@ -49,7 +49,7 @@ class MaterialAtFaces {
   const BrickGrid& grid_;
   const BrickFields& fields_;
   const NodeUnknowns& unknowns_;
-  int nodes_per_axis_;
+  ShapeFunction shape_;
   std::vector<double> moduli_, surface_;  ///< records of node_doubles of the fields' nodes
 };
 
