@@ -104,10 +104,11 @@ class Run {
     warn_of_long_step(model_, *log_);
     for (const std::string& law : registry.added()) log_->note("law        {}, added by this program", law);
     for (const core::Diagnostic& note : case_.notes) log_->say("{}", to_line(note));
-    if (!case_.restart) say_thermal_pressures(model_, communication_, *log_);
-    if (!case_.restart)
+    if (!case_.restart) {
+      say_thermal_pressures(model_, communication_, *log_);
       for (const std::string& shared : core::shared_places_in_words(model_, communication_.reductions))
         log_->warn("{}", shared);
+    }
     if (case_.restart && !(model_.clock.time < case_.scene->solution.end_time))
       log_->warn("EndTime {:.6g} is not after the time of the restart file, {:.6g}: there is no step to do",
                  case_.scene->solution.end_time, model_.clock.time);

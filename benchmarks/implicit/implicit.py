@@ -8,7 +8,7 @@
 
 For each study OUT/STUDY.csv, and all tables in OUT/implicit.md. Measured rows replace those of the same labels and leave
 the others; a row is written as soon as its run ends, so that an interrupted study keeps what it has measured. --docs: the
-tables of docs/implicit.md are renewed too."""
+tables of docs/implicit_results.md are renewed too."""
 
 import argparse
 import concurrent.futures
@@ -27,7 +27,7 @@ from common import results  # noqa: E402: from benchmarks
 import run_one  # noqa: E402: from this folder
 from studies import STUDIES  # noqa: E402
 
-PAGE = results.ROOT / "docs/implicit.md"
+PAGE = results.ROOT / "docs/implicit_results.md"
 
 
 def machine():
@@ -153,7 +153,7 @@ def arguments(words=None):
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time; above 1 they disturb each other's times a little")
     parser.add_argument("--repeat", type=int, default=1, help="the list of runs so many times over; of each run the median time")
     parser.add_argument("--out", type=pathlib.Path, default=results.ROOT / "build/implicit", help="default: build/implicit")
-    parser.add_argument("--docs", action="store_true", help="renew the tables of docs/implicit.md")
+    parser.add_argument("--docs", action="store_true", help="renew the tables of docs/implicit_results.md")
     return parser.parse_args(words)
 
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -32,15 +33,30 @@ struct Overlap {
 /// Pairs a < b of components, numbered (0, 1), (0, 2), (1, 2), (0, 3) ...
 std::size_t number_of(std::size_t a, std::size_t b) { return b * (b - 1) / 2 + a; }
 
-std::size_t pair_number(std::int32_t a, std::int32_t b) {
-  return number_of(static_cast<std::size_t>(std::min(a, b)), static_cast<std::size_t>(std::max(a, b)));
-}
-
 /// Whether y is within `half` of x along every axis. Lattices may be shifted by just half a spacing.
 bool is_near(const Vec3<double>& x, const Vec3<double>& y, double half) {
   const Vec3<double> d = x - y;
   return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= (1 + 1e-6) * half;
 }
+
+/// The overlaps of one particle after another; each is counted once for each body or component that it meets.
+class OverlapsOfParticles {
+ public:
+  explicit OverlapsOfParticles(std::vector<Overlap>& found) : found_(found) {}
+  void begin_particle() { met_.clear(); }
+  /// Of the particle at x, of `own`, with one of `other` at y.
+  void add(std::size_t own, const Vec3<double>& x, std::size_t other, const Vec3<double>& y, double half) {
+    Overlap& overlap = found_[number_of(std::min(own, other), std::max(own, other))];
+    overlap.add(x, y, half);
+    if (std::ranges::find(met_, other) != met_.end()) return;
+    met_.push_back(other);
+    ++overlap.particles;
+  }
+
+ private:
+  std::vector<Overlap>& found_;
+  std::vector<std::size_t> met_;
+};
 
 /// Adds the particles of a brick that overlap other components.
 void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::vector<Overlap>& found) {
@@ -48,8 +64,9 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
   const GridGeometry& g = grid.geometry();
   const BrickCoord coord = grid.brick(s).coord;
   const std::int64_t brick[3] = {coord.x, coord.y, coord.z};
-  std::vector<std::int32_t> met;  // components, by one particle
+  OverlapsOfParticles overlaps(found);
   for (const ParticleTile& tile : grid.brick(s).tiles) {
+    const auto own = static_cast<std::size_t>(tile.component);
     for (const ConstParticleBlock& block : blocks_of(model, grid.brick(s), tile)) {
       for (const ConstParticle p : block) {
         const Vec3<double> x = p.vector(Column::position_x);
@@ -60,14 +77,10 @@ void add_overlaps(const Model& model, Slot s, const PointsByCell& others, std::v
           lowest[a] = std::max(cell - 1, -PointsByCell::layers);
           highest[a] = std::min(cell + 1, brick_cells + PointsByCell::layers - 1);
         }
-        met.clear();
+        overlaps.begin_particle();
         others.for_each(lowest, highest, [&](const Vec3<double>& y, std::int32_t component) {
-          if (component == tile.component || !is_near(x, y, half)) return;
-          Overlap& overlap = found[pair_number(component, tile.component)];
-          overlap.add(x, y, half);
-          if (std::ranges::find(met, component) != met.end()) return;
-          met.push_back(component);
-          ++overlap.particles;
+          if (component != tile.component && is_near(x, y, half))
+            overlaps.add(own, x, static_cast<std::size_t>(component), y, half);
         });
       }
     }
@@ -79,58 +92,61 @@ bool contact_parts(const Model& model, std::size_t a, std::size_t b) {
   return model.scene->contact.enable && model.bodies[a].component != model.bodies[b].component;
 }
 
+/// The places of a brick's particles, by cell.
+class PlacesInBrick {
+ public:
+  PlacesInBrick(const Model& model, const Brick& brick) : geometry_(model.grid->geometry()) {
+    first_[0] = brick_cells * std::int64_t{brick.coord.x} - below;
+    first_[1] = brick_cells * std::int64_t{brick.coord.y} - below;
+    first_[2] = brick_cells * std::int64_t{brick.coord.z} - below;
+    for (const ConstParticleBlock& block : blocks_of(model, brick))
+      for (const ConstParticle p : block) {
+        const Vec3<double> x = p.vector(Column::position_x);
+        at(cell_of(x, 0), cell_of(x, 1), cell_of(x, 2)).push_back({x, static_cast<std::size_t>(block.body)});
+      }
+  }
+  /// f(place, body) of those in the cells around x.
+  template <class F>
+  void for_each_around(const Vec3<double>& x, F f) {
+    const int c[3] = {cell_of(x, 0), cell_of(x, 1), cell_of(x, 2)};
+    for (int k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, side - 1); ++k)
+      for (int j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, side - 1); ++j)
+        for (int i = std::max(c[0] - 1, 0); i <= std::min(c[0] + 1, side - 1); ++i)
+          for (const auto& [place, body] : at(i, j, k)) f(place, body);
+  }
+
+ private:
+  // A brick that takes particles by node has some in the half cells below.
+  static constexpr int below = 1, side = brick_cells + 2 * below;
+  int cell_of(const Vec3<double>& x, int a) const {
+    return static_cast<int>(std::clamp<std::int64_t>(geometry_.cell_index(x[a], a) - first_[a], 0, side - 1));
+  }
+  std::vector<std::pair<Vec3<double>, std::size_t>>& at(int i, int j, int k) {
+    return cells_[static_cast<std::size_t>(i + side * (j + side * k))];
+  }
+
+  const GridGeometry& geometry_;
+  std::int64_t first_[3];
+  std::vector<std::vector<std::pair<Vec3<double>, std::size_t>>> cells_{side * side * side};
+};
+
 /// Adds the particles of a brick that are in the place of another body's in that brick.
 void add_shared_places(const Model& model, Slot s, std::vector<Overlap>& found) {
-  const BrickGrid& grid = *model.grid;
-  const Brick& brick = grid.brick(s);
+  const Brick& brick = model.grid->brick(s);
   const auto other_body = [&](const ParticleTile& tile) { return tile.body != brick.tiles.front().body; };
   if (brick.tiles.empty() || std::ranges::none_of(brick.tiles, other_body)) return;
-  struct Point {
-    Vec3<double> x;
-    std::size_t body;
-  };
-  // A brick that takes particles by node has some in the half cells below.
-  constexpr int below = 1, side = brick_cells + 2 * below;
-  const std::int64_t first[3] = {brick_cells * std::int64_t{brick.coord.x} - below,
-                                 brick_cells * std::int64_t{brick.coord.y} - below,
-                                 brick_cells * std::int64_t{brick.coord.z} - below};
-  std::vector<std::vector<Point>> cells(static_cast<std::size_t>(side * side * side));
-  const auto cell_of = [&](const Vec3<double>& x, int a) {
-    return static_cast<int>(
-        std::clamp<std::int64_t>(grid.geometry().cell_index(x[a], a) - first[a], 0, side - 1));
-  };
-  const auto at = [&](int i, int j, int k) -> std::vector<Point>& {
-    return cells[static_cast<std::size_t>(i + side * (j + side * k))];
-  };
+  PlacesInBrick places(model, brick);
+  OverlapsOfParticles overlaps(found);
   for (const ConstParticleBlock& block : blocks_of(model, brick)) {
-    for (const ConstParticle p : block) {
-      const Vec3<double> x = p.vector(Column::position_x);
-      at(cell_of(x, 0), cell_of(x, 1), cell_of(x, 2)).push_back({x, static_cast<std::size_t>(block.body)});
-    }
-  }
-  std::vector<std::size_t> met;  // bodies, by one particle
-  for (const ConstParticleBlock& block : blocks_of(model, brick)) {
-    const auto body = static_cast<std::size_t>(block.body);
+    const auto own = static_cast<std::size_t>(block.body);
     for (const ConstParticle p : block) {
       const Vec3<double> x = p.vector(Column::position_x);
       const double half = 0.5 * std::cbrt(p[Column::volume]);
-      met.clear();
-      const int c[3] = {cell_of(x, 0), cell_of(x, 1), cell_of(x, 2)};
-      for (int k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, side - 1); ++k) {
-        for (int j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, side - 1); ++j) {
-          for (int i = std::max(c[0] - 1, 0); i <= std::min(c[0] + 1, side - 1); ++i) {
-            for (const Point& other : at(i, j, k)) {
-              if (other.body == body || contact_parts(model, body, other.body) || !is_near(x, other.x, half))
-                continue;
-              Overlap& overlap = found[number_of(std::min(body, other.body), std::max(body, other.body))];
-              overlap.add(x, other.x, half);
-              if (std::ranges::find(met, other.body) != met.end()) continue;
-              met.push_back(other.body);
-              ++overlap.particles;
-            }
-          }
-        }
-      }
+      overlaps.begin_particle();
+      places.for_each_around(x, [&](const Vec3<double>& y, std::size_t body) {
+        if (body != own && !contact_parts(model, own, body) && is_near(x, y, half))
+          overlaps.add(own, x, body, y, half);
+      });
     }
   }
 }

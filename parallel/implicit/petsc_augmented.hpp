@@ -7,7 +7,7 @@
 //   p_c = -s_c/S_c,   u = M (r - sum_c e_c p_c),   S_c = 1/k_c + e_c . diag(K)^-1 e_c
 // of a right side (r, s), where M is a cycle of multigrid for K (Benzi, Golub and Liesen, Acta Numerica 14
 // (2005) 1, section 10). The second equations are multiplied by k_c |e_c|: the norm that GMRES reduces then
-// bounds the residual of the sum. What it gains: docs/implicit.md, "Linear solver".
+// bounds the residual of the sum. What it gains: docs/implicit.md, "Jacobian and linear solver".
 #pragma once
 
 #include <cstdint>
