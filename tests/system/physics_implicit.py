@@ -7,10 +7,8 @@ import numpy as np
 
 import _cases
 import _mpm
+from _implicit import POISSON, RAM, SOFT, YOUNG, column, implicit, residuals
 
-YOUNG, POISSON = 1000.0, 0.3
-SOFT = _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="{POISSON}"')
-RAM = _mpm.material("ram", 1.0, 'type="Rigid"')
 SHAPES = ("linear", "uGIMP", "cpGIMP", "CPDI", "CPDI2", "QuadraticBSpline", "CubicBSpline", "SGMP", "DDMP")
 # What the laws with a tangent need, and the strain of the whole load under which each shows the order of Newton's method.
 METAL = 'Young="200e3" Poisson="0.3"'
@@ -25,21 +23,6 @@ LAWS = {
     "JohnsonCook": (JOHNSON_COOK + ' m="1.09" melt="1356" roomt="293" SpecHeat="383e6"', 0.01),
     "DruckerPrager": ('Young="70" Poisson="0.3" qfai="0.4" kfai="0.2" qpsi="0.1" ten_f="0.1"', 0.01),
 }
-
-
-def implicit(end, kind="quasistatic", step=None, more="", extra=""):
-    step = f'time_step="{step}"' if step else ""
-    return _mpm.solution(end, attributes='Integration="impl"',
-                         more=f'<Implicit type="{kind}" {step} {more}/>{extra}').replace('<TimeStep factor="0.5"/>', "")
-
-
-def column(shape="linear", travel=1.0, steps=10, material=SOFT, more="", output=""):
-    """A column of 2 x 2 x 8 cells between smooth walls, pressed from above by a rigid body."""
-    bodies = [_mpm.block("column", (0, 0, 0), (2, 2, 8)),
-              _mpm.block("ram", (0, 0, 8), (2, 2, 1), of="ram",
-                         more=f'<PrescribedVelocity vx="0" vy="0" vz="{-travel}"/>')]
-    return _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 10), "222210").replace("<Grid>", f'<Grid shape="{shape}">'),
-                      implicit(1.0, step=1 / steps, more=more), [material, RAM], output)
 
 
 def energy_of(stretch):
@@ -64,12 +47,6 @@ def energy_left(radius, angle, steps):
         now = -(am * a + square * ((1 - af) * ahead + af * u)) / (1 - am + square * (1 - af) * beta)
         u, v, a = ahead + beta * now, v + (1 - gamma) * a + gamma * now, now
     return square * u**2 + v**2
-
-
-def residuals(outcome_folder):
-    """The residuals of every step's first solution, from the log."""
-    text = (outcome_folder / "case.out").read_text()
-    return [[float(word) for word in found.split()] for found in re.findall(r"implicit +step .*residual ([^;|]*)", text)]
 
 
 class Implicit(_mpm.Case):
@@ -355,167 +332,6 @@ class Implicit(_mpm.Case):
                 scene = self.write(column(more=rule).replace("quasistatic", "dynamic"))
                 outcome = _mpm.run([scene, "--output-dir", self.folder, "--dry-run"])
                 self.assertEqual(outcome.out.count("acceleration_lag_x"), columns, outcome)  # the ram's have none
-
-
-class Averaged(_mpm.Case):
-    """Volume changes averaged over cells, against locking."""
-
-    def bend(self, folder, poisson, averaging="cell", shape="linear", ranks=1, threads=1, material=None, load=1e-3):
-        """A plate in plane strain, 2 wide and 8 high, clamped below and bent by a load on its upper eighth: how far that
-        moves, and the residuals of the steps."""
-        plate = _mpm.block("plate", (0, 0, 0), (1, 2, 8),
-                           more=f'<BodyForce bx="0" by="Z&gt;7 ? {load * YOUNG!r}*t : 0" bz="0"/>')
-        material = material or _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="{poisson}"')
-        text = _mpm.scene([plate], _mpm.grid((0, -2, 0), (1, 6, 10), "220010").replace("<Grid>", f'<Grid shape="{shape}">'),
-                          implicit(1.0, step=0.5, more='rtol="1e-9"', extra=f'<Volumetric averaging="{averaging}"/>'),
-                          [material], '<PostProcessing time_interval="1" h5part="1" var="pres"/>')
-        self.run_in(folder, [self.write(text)], ranks=ranks, threads=threads)
-        states = _cases.States(self.folder / folder)
-        moved = states.column("y") - states.column("y", 0)
-        return moved[states.column("z", 0) > 7].mean(), residuals(self.folder / folder)
-
-    def test_bending_does_not_lock(self):
-        """Over what it is at Poisson's ratio 0.3: the modulus of bending in plane strain, E/(1 - nu^2), is 1.21 times as large at
-        0.4999, 1/1.21 = 0.82, and a coarse grid of functions with kinks is stiffer at any ratio."""
-        soft, _ = self.bend("compressible", 0.3)
-        for shape in ("linear", "QuadraticBSpline", "CPDI2"):
-            with self.subTest(shape=shape):
-                self.assertGreater(self.bend("averaged", 0.4999, shape=shape)[0] / soft, 0.75)
-        self.assertLess(self.bend("locked", 0.4999, "none")[0] / soft, 0.3)
-
-    def test_newton_converges_quadratically(self):
-        laws = {"NeoHookean": "", "IsoElastic": "", "ElaPlastic": 'Yield0="16"', "IsoHarden": 'Yield0="14" TangMod="100"'}
-        for law, parameters in laws.items():
-            for shape in ("linear", "QuadraticBSpline", "CPDI2"):
-                with self.subTest(law=law, shape=shape):
-                    material = _mpm.material("soft", 1.0, f'type="{law}" Young="{YOUNG}" Poisson="0.49" {parameters}')
-                    _, found = self.bend(law, 0.49, shape=shape, material=material)
-                    for norms in found:
-                        self.assertLessEqual(len(norms), 9, norms)
-                        small = [n for n in norms if n < 1e-2]
-                        orders = [math.log(b) / math.log(a) for a, b in zip(small, small[1:]) if b > 1e-13]
-                        if orders:
-                            self.assertGreater(max(orders), 1.6, norms)
-
-    def test_ranks_and_threads_agree(self):
-        alone, _ = self.bend("1x1", 0.4999)
-        for ranks, threads in ((1, 2), (2, 1), (3, 1)):
-            with self.subTest(ranks=ranks, threads=threads):
-                again, _ = self.bend(f"{ranks}x{threads}", 0.4999, ranks=ranks, threads=threads)
-                self.assertAlmostEqual(again / alone, 1, delta=1e-5)
-
-    def test_volume_stays(self):
-        """The volume of a nearly incompressible column that is pressed between walls on two sides."""
-        bodies = [_mpm.block("column", (0, 0, 0), (2, 2, 4)),
-                  _mpm.block("ram", (0, 0, 4), (4, 2, 1), of="ram", more='<PrescribedVelocity vx="0" vy="0" vz="-0.2"/>')]
-        material = _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="0.4999"')
-        text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (5, 2, 6), "202210"),
-                          implicit(1.0, step=0.25, extra='<Volumetric averaging="cell"/>'), [material, RAM],
-                          '<PostProcessing time_interval="1" h5part="1" var="density"/>')
-        self.run_in("pressed", [self.write(text)])
-        states = _cases.States(self.folder / "pressed")
-        density = states.column("density")[states.column("z", 0) < 4]
-        self.assertLess(abs((1 / density).mean() - 1), 2e-3)
-
-
-class Far(_mpm.Case):
-    """Steps in which particles travel over several bricks of four cells."""
-
-    def final(self, folder):
-        states = _cases.States(self.folder / folder)
-        return np.array([[states.column(axis, which) for axis in "xyz"] for which in (0, -1)])
-
-    def words(self, folder):
-        return (self.folder / folder / "case.out").read_text()
-
-    def test_a_step_of_several_bricks_on_any_ranks(self):
-        """A column of 24 cells' height that one step compresses to half: uniform strain, while the ram's face is at a node. Its
-        top travels over three bricks, into bricks of any rank; a second step goes on from there."""
-        bodies = [_mpm.block("column", (0, 0, 0), (2, 2, 24)),
-                  _mpm.block("ram", (0, 0, 24), (2, 2, 1), of="ram", more='<PrescribedVelocity vx="0" vy="0" vz="-12"/>')]
-        text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 26), "222210"), implicit(1.25, step=1, more='rtol="1e-10" stabilisation="0"'),
-                          [SOFT, RAM], '<PostProcessing time_interval="1" h5part="1" var="pres"/>')
-        for ranks in (1, 2, 3):
-            with self.subTest(ranks=ranks):
-                folder = f"on{ranks}"
-                self.run_in(folder, [self.write(text)], ranks=ranks)
-                self.assertNotIn("shortened", self.words(folder))
-                states = _cases.States(self.folder / folder)
-                first, halfway, last = (np.array([states.column(axis, which) for axis in "xyz"]) for which in (0, 1, 2))
-                mine = first[2] < 24
-                np.testing.assert_allclose(halfway[2][mine], 0.5 * first[2][mine], atol=1e-6)
-                np.testing.assert_allclose(halfway[2][~mine], first[2][~mine] - 12, atol=1e-9)
-                # The column is no longer in step with the cells: the same to the tolerance on any ranks.
-                if ranks == 1:
-                    alone = last
-                self.assertLess(np.abs(last - alone).max(), 1e-6)
-                self.assertEqual(_mpm.summary(self.folder / folder)["particles"], mine.size)
-
-    def test_flight_over_bricks(self):
-        """Free flight of 10, 5 and 2.5 cells in a step, into bricks that no rank knows yet."""
-        body = _mpm.block("body", (2, 2, 2), (3, 3, 3), (10.0, 5.0, 2.5))
-        text = _mpm.scene([body], _mpm.grid((0, 0, 0), (30, 20, 12)), implicit(2.0, "dynamic", 1.0), [SOFT])
-        for ranks in (1, 2):
-            with self.subTest(ranks=ranks):
-                self.run_in(f"on{ranks}", [self.write(text)], ranks=ranks)
-                found = _mpm.summary(self.folder / f"on{ranks}")
-                self.assertEqual(found["steps"], 2)
-                np.testing.assert_allclose(found["bodies"][0]["velocity"], (10.0, 5.0, 2.5), atol=1e-8)
-                np.testing.assert_allclose(found["bodies"][0]["centre"], (23.5, 13.5, 8.5), atol=1e-7)
-
-    def test_stop_of_a_body_that_leaves_in_one_step(self):
-        body = _mpm.block("body", (2, 2, 2), (3, 3, 3), (10.0, 0, 0))
-        solution = implicit(4.0, "dynamic", 1.0).replace("<Solution ", '<Solution near_boundary_stop="1" ')
-        self.run_in("run", [self.write(_mpm.scene([body], _mpm.grid((0, 0, 0), (8, 8, 8)), solution, [SOFT]))], code=_mpm.STOPPED)
-
-    def test_first_step_of_a_quasistatic_run(self):
-        """EndTime/20 where the input gives none, within its bounds; easy steps grow up to the largest."""
-        for bounds, fewest, most in (("", 20, 20), ('max_step="0.02"', 50, 50), ('min_step="0.25"', 4, 4), ('max_step="0.5"', 5, 12)):
-            with self.subTest(bounds=bounds):
-                self.run_in("run", [self.write(column().replace('time_step="0.1"', bounds))])
-                steps = _mpm.summary(self.folder / "run")["steps"]
-                self.assertTrue(fewest <= steps <= most, steps)
-
-    def test_walls_and_bodies_are_not_passed(self):
-        """A body that flies at a wall two cells away, or at another body, in steps of six cells."""
-        flying = _mpm.block("ball", (1, 1, 4), (2, 2, 2), (0, 0, -6.0))
-        self.run_in("wall", [self.write(_mpm.scene([flying], _mpm.grid((0, 0, 0), (4, 4, 8), "222220"),
-                                                   implicit(1.0, "dynamic", 1.0), [SOFT]))])
-        found = _mpm.summary(self.folder / "wall")
-        self.assertEqual(found["particles"], 64)
-        self.assertGreater(found["bodies"][0]["centre"][2], 0.3)
-        self.assertIn("passes a wall", self.words("wall"))
-        target = _mpm.block("target", (1, 1, 0), (2, 2, 1))
-        self.run_in("body", [self.write(_mpm.scene([flying, target], _mpm.grid((0, 0, 0), (4, 4, 8), "222220"),
-                                                   implicit(0.5, "dynamic", 0.5), [SOFT]))])
-        bodies = _mpm.summary(self.folder / "body")["bodies"]
-        self.assertIn('bodies "ball" and "target" meet', self.words("body"))
-        self.assertGreater(bodies[0]["centre"][2], bodies[1]["centre"][2] + 0.5)
-
-    def test_strain_of_increments(self):
-        """Of a law that adds up increments a step of stretch s has the strain h = 2 (s - 1)/(s + 1), which is ln s less
-        h^3/12; a step with more than a half is refused."""
-        modulus = YOUNG * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON))
-        material = _mpm.material("soft", 1.0, f'type="IsoElastic" Young="{YOUNG}" Poisson="{POISSON}" bq1="0" bq2="0"')
-        for travel in (5, 8):
-            with self.subTest(travel=travel):
-                bodies = [_mpm.block("column", (0, 0, 0), (2, 2, 16)),
-                          _mpm.block("ram", (0, 0, 16), (2, 2, 1), of="ram",
-                                     more=f'<PrescribedVelocity vx="0" vy="0" vz="{-travel}"/>')]
-                text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (2, 2, 18), "222210"), implicit(1.0, step=1, more='stabilisation="0"'),
-                                  [material, RAM], '<PostProcessing time_interval="1" h5part="1" var="SigmaZ"/>')
-                self.run_in(str(travel), [self.write(text)])
-                stretch = 1 - travel / 16
-                strain = 2 * (stretch - 1) / (stretch + 1)
-                refused = re.findall(r"a particle is strained by ([\d.]+)", self.words(str(travel)))
-                if abs(strain) > 0.5:
-                    self.assertAlmostEqual(float(refused[0]), abs(strain), delta=1e-3)
-                    continue
-                self.assertEqual(refused, [])
-                states = _cases.States(self.folder / str(travel))
-                stress = states.column("SigmaZ")[states.column("z", 0) < 16]
-                self.assertLess(np.abs(stress / (modulus * strain) - 1).max(), 1e-4)
-                self.assertLess(abs(strain / math.log(stretch) - 1), 0.25 / 12)
 
 
 class Refused(_mpm.Case):
