@@ -117,8 +117,9 @@ void ImplicitPassesWith<S>::touch_site_nodes(Scratch& at) const {
 }
 
 /// Where the bulk modulus is 300 times the shear modulus (Poisson's ratio 0.4983) or more: 8 times the shear
-/// modulus, with splines twice, by the iterations that were measured (docs/implicit.md, "Jacobian and linear solver").
-/// Below, and with averages around nodes of functions with kinks, solvers do as well with the whole sum.
+/// modulus, with splines twice, by the iterations that were measured (docs/implicit.md, "Jacobian and linear
+/// solver"). Below, and with averages around nodes of functions with kinks, solvers do as well with the whole
+/// sum.
 template <ShapePolicy S>
 double ImplicitPassesWith<S>::softness_of(const ConstitutiveModel& material) {
   constexpr bool spline = std::is_same_v<S, QuadraticBSpline> || std::is_same_v<S, CubicBSpline>;
