@@ -18,6 +18,11 @@ struct AxisBox {
       upper[a] = std::fmax(upper[a], other.upper[a]);
     }
   }
+  bool contains(const Vec3<double>& x) const {
+    bool in = true;
+    for (int a = 0; a < 3; ++a) in &= lower[a] <= x[a] && x[a] <= upper[a];
+    return in;
+  }
   /// By so many cells to each side, and a little more for round-off.
   AxisBox wider(double cells, const Vec3<double>& cell) const {
     const Vec3<double> by = (cells + 1e-6) * cell;

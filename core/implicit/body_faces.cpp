@@ -51,7 +51,6 @@ BodyFaces::BodyFaces(Model& model, Reductions& ranks, const BrickFields& fields,
       contact_(contact),
       points_(std::move(points)),
       material_(model, fields, unknowns),
-      cover_(model, ranks, points_),
       patches_(model, ranks, fields, unknowns),
       first_(model.bodies.size()),
       moved_(model.bodies.size()),
@@ -60,6 +59,7 @@ BodyFaces::BodyFaces(Model& model, Reductions& ranks, const BrickFields& fields,
       deforms_(model.scene->components.size(), false) {
   for (const Body& body : model.bodies)
     if (!body.model->rigid()) deforms_[static_cast<std::size_t>(body.component)] = true;
+  if (contact == nullptr) cover_.emplace(model, ranks, points_);
   for (std::size_t p = points_.size(); p-- > 0;) first_[static_cast<std::size_t>(points_[p].body)] = p;
   take_kept();
 }
@@ -97,16 +97,19 @@ void BodyFaces::find_patches(ImplicitPasses& passes) {
   unknowns_.exchange(mapped::implicit_surface);
   material_.take_surface();
   patches_.clear();
-  const bool tied = contact_ == nullptr;
-  const std::vector<bool> covered = tied ? cover_.find(moved_) : std::vector<bool>{};
+  const std::vector<bool> covered = cover_ ? cover_->find(moved_) : std::vector<bool>{};
+  std::vector<FaceTouch> touches;
   for (std::size_t p = 0; p < points_.size(); ++p)
-    if (!tied || covered[p]) find_touches(p);
+    if (!cover_ || covered[p]) find_touches(p, touches);
+  material_.fit(touches, points_);
+  for (const FaceTouch& touch : touches)
+    patches_.add(key_of(touch.point, touch.component), touch, sums_of(touch));
   patches_.complete();
   for (FacePatch& patch : patches_.all()) prepare(patch);
 }
 
-/// Adds a point to the patches of the components whose material touches it.
-void BodyFaces::find_touches(std::size_t number) {
+/// Adds the touches of a point with all components.
+void BodyFaces::find_touches(std::size_t number, std::vector<FaceTouch>& found) const {
   const BrickGrid& grid = *model_.grid;
   const GridGeometry& g = grid.geometry();
   const FacePoint& point = points_[number];
@@ -133,8 +136,10 @@ void BodyFaces::find_touches(std::size_t number) {
       if (s != at_home && has(at_home, field.component)) continue;
       const Kept* const last = kept(number, field.component);
       const bool is_known = last != nullptr && (contact_ == nullptr || last->pressure > 0);
-      if (const std::optional<FaceTouch> touch = material_.touch(field, point, x, is_known))
-        patches_.add(key_of(number, field.component), number, field, *touch, sums_of(number, *touch, last));
+      if (const std::optional<FaceTouch> touch = material_.touch(field, point, x, is_known)) {
+        found.push_back(*touch);
+        found.back().point = number;
+      }
     }
   }
 }
@@ -151,7 +156,7 @@ FacePatch::Key BodyFaces::key_of(std::size_t number, std::int32_t component) con
     key[2] = static_cast<std::int64_t>(number);
     return key;
   }
-  key[3] = normal;
+  key[3] = 2 * normal + (point.normal[normal] > 0 ? 1 : 0);
   const int nodes = nodes_per_patch(model_.scene->grid.shape);
   for (int a = 0; a < 3; ++a)
     key[static_cast<std::size_t>(4 + a)] =
@@ -159,13 +164,14 @@ FacePatch::Key BodyFaces::key_of(std::size_t number, std::int32_t component) con
   return key;
 }
 
-PatchSums BodyFaces::sums_of(std::size_t number, const FaceTouch& touch, const Kept* last) const {
-  const FacePoint& point = points_[number];
+PatchSums BodyFaces::sums_of(const FaceTouch& touch) const {
+  const FacePoint& point = points_[touch.point];
+  const Kept* const last = kept(touch.point, touch.component);
   const double area = point.area, h = model_.grid->geometry().smallest_cell();
   PatchSums sums;
   sums.area = area;
   sums.stiffness = touch.modulus * area / h;
-  sums.place = area * place(number);
+  sums.place = area * place(touch.point);
   sums.normal = area * point.normal;
   if (last == nullptr) return sums;
   sums.known = area;
@@ -201,8 +207,10 @@ const BodyFaces::Kept* BodyFaces::kept(std::size_t number, std::int32_t componen
   return at != kept_.end() && order(*at) == key ? &*at : nullptr;
 }
 
-/// Points that have parted from a body, and no longer touch it, know how far they are from where it was.
+/// Points in contact that have parted from a body, and no longer touch it, know how far they are from where
+/// it was.
 void BodyFaces::keep_parted(std::span<const Kept> before) {
+  if (contact_ == nullptr) return;
   std::vector<Kept> parted;
   for (Kept k : before) {
     const auto number = static_cast<std::size_t>(k.number);

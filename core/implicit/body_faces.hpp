@@ -21,6 +21,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -81,9 +82,9 @@ class BodyFaces {
   static constexpr std::size_t size_of_kept = sizeof(Kept) / sizeof(double);
 
   void take_kept();
-  void find_touches(std::size_t number);
+  void find_touches(std::size_t number, std::vector<FaceTouch>& found) const;
   FacePatch::Key key_of(std::size_t number, std::int32_t component) const;
-  PatchSums sums_of(std::size_t number, const FaceTouch& touch, const Kept* last) const;
+  PatchSums sums_of(const FaceTouch& touch) const;
   void prepare(FacePatch& patch) const;
   Vec3<double> way_of(const FacePatch& patch) const { return way_[static_cast<std::size_t>(patch.body())]; }
   /// Of the material against the body, by patch. Collective.
@@ -102,7 +103,7 @@ class BodyFaces {
   ImplicitContact* contact_;
   const std::vector<FacePoint> points_;  ///< where they were at the start of the run, or after a restart
   MaterialAtFaces material_;
-  FaceCover cover_;
+  std::optional<FaceCover> cover_;  ///< of tied points
   FacePatches patches_;
   std::vector<std::size_t> first_;         ///< of the points, by body
   std::vector<Vec3<double>> moved_, way_;  ///< by body: since then, and in this step

@@ -11,8 +11,9 @@ namespace mpm::core {
 
 namespace {
 
-/// Of its size, to a point that a particle covers: a quarter more than to its edge.
-constexpr double reach = 0.75;
+/// Of its size, to a point that a particle covers: more than to its edge, as lattices stretch; rounding would
+/// decide on points of half its spacing at 0.75.
+constexpr double reach = 0.7;
 
 double size_of(const ConstParticle& p, double density) {
   return std::cbrt(std::max(p[Column::volume], p[Column::mass] / density));
@@ -30,10 +31,13 @@ FaceCover::FaceCover(const Model& model, Reductions& ranks, std::span<const Face
   }
   // Particles grow little more than by half.
   const double largest = across_ + 1.5 * ranks_.largest(size);
+  const Vec3<double> reach_of_all{largest, largest, largest};
   for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3<double> x = points[i].place;
     if (i == 0 || points[i].body != points[i - 1].body)
-      bodies_.push_back({points[i].body, PlaceBoxes(std::max(largest, std::sqrt(points[i].area)))});
-    bodies_.back().boxes.add(points[i].place, i);
+      bodies_.push_back({points[i].body, {}, PlaceBoxes(std::max(largest, std::sqrt(points[i].area)))});
+    bodies_.back().within.add({x - reach_of_all, x + reach_of_all});
+    bodies_.back().boxes.add(x, i);
   }
 }
 
@@ -46,6 +50,7 @@ std::vector<bool> FaceCover::find(std::span<const Vec3<double>> moved) const {
       const double size = size_of(p, law.reference_density());
       for (const OfBody& of : bodies_) {
         const Vec3<double> x = p.vector(Column::position_x) - moved[static_cast<std::size_t>(of.body)];
+        if (!of.within.contains(x)) continue;
         of.boxes.for_each_around(x, [&](std::size_t i) {
           const FacePoint& point = points_[i];
           const double along = std::max(reach * size, 0.5 * std::sqrt(point.area));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/communication/reductions.hpp"
+#include "core/contact/axis_box.hpp"
 #include "core/implicit/face_points.hpp"
 #include "core/implicit/place_boxes.hpp"
 #include "core/model.hpp"
@@ -25,6 +26,7 @@ class FaceCover {
  private:
   struct OfBody {
     int body;
+    AxisBox within;  ///< where particles may cover its points
     PlaceBoxes boxes;
   };
   const Model& model_;

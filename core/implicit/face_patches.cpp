@@ -25,16 +25,15 @@ void FacePatches::clear() {
   number_.clear();
 }
 
-void FacePatches::add(const FacePatch::Key& key, std::size_t point, const BrickField& field,
-                      const FaceTouch& touch, const PatchSums& sums) {
+void FacePatches::add(const FacePatch::Key& key, const FaceTouch& touch, const PatchSums& sums) {
   const auto [at, is_new] = number_.try_emplace(key, patches_.size());
   if (is_new) patches_.emplace_back().key = key;
   FacePatch& patch = patches_[at->second];
-  patch.points.push_back(point);
+  patch.points.push_back(touch.point);
   patch.sums += sums;
   patch.on_walls &= touch.held;
-  auto part = std::ranges::find(patch.parts, field.index, &FacePatch::Part::field);
-  if (part == patch.parts.end()) part = patch.parts.insert(part, {field.index, {}});
+  auto part = std::ranges::find(patch.parts, touch.field, &FacePatch::Part::field);
+  if (part == patch.parts.end()) part = patch.parts.insert(part, {touch.field, {}});
   for (const auto& [node, weight] : touch.weights) {
     const auto known = std::ranges::find(part->weights, node, &std::pair<std::int32_t, double>::first);
     if (known == part->weights.end())
@@ -46,9 +45,6 @@ void FacePatches::add(const FacePatch::Key& key, std::size_t point, const BrickF
 
 void FacePatches::complete() {
   share_sums();
-  constexpr unsigned all_axes = 7;
-  for (FacePatch& patch : patches_)
-    if (patch.on_walls == all_axes) patch.on_walls = 0;
   find_unknowns();
   share_unknowns();
 }
@@ -59,7 +55,7 @@ bool FacePatches::is_shared(const FacePatch::Key& key) const {
   if (g.site == Site::node || key[2] != FacePatch::many_points) return false;
   bool shared = false;
   for (std::size_t a = 0; a < 3; ++a)
-    shared |= static_cast<std::int64_t>(a) != key[3] && key[4 + a] % brick_cells == 0 && key[4 + a] > 0 &&
+    shared |= static_cast<std::int64_t>(a) != key[3] / 2 && key[4 + a] % brick_cells == 0 && key[4 + a] > 0 &&
               key[4 + a] < g.cells[a];
   return shared;
 }

@@ -46,8 +46,8 @@ struct PatchSums {
 };
 
 struct FacePatch {
-  /// Body, component, and a point alone; or many_points, axis of the normal and, by axis, the node, or the
-  /// cell along the normal.
+  /// Body, component, and a point alone; or many_points, twice the axis of the normal, and 1 if it is along
+  /// it, and, by axis, the node, or the cell along the normal.
   using Key = std::array<std::int64_t, 7>;
   static constexpr std::int64_t many_points = -1;
   Key key{};
@@ -55,7 +55,7 @@ struct FacePatch {
   bool counts = true;               ///< of the ranks that have it, on one
   std::vector<std::size_t> points;  ///< of this rank
   ContactSpring spring;
-  unsigned on_walls = 7;  ///< components that a plane of symmetry holds at its node, as bits: not displaced
+  unsigned on_walls = 7;  ///< components that walls hold at its node, as bits: no springs
   int body() const { return static_cast<int>(key[0]); }
   std::int32_t component() const { return static_cast<std::int32_t>(key[1]); }
   Vec3<double> place() const { return (1 / sums.area) * sums.place; }
@@ -78,9 +78,8 @@ class FacePatches {
       : model_(model), ranks_(ranks), fields_(fields), unknowns_(unknowns) {}
 
   void clear();
-  /// Adds a point that touches the material of a field.
-  void add(const FacePatch::Key& key, std::size_t point, const BrickField& field, const FaceTouch& touch,
-           const PatchSums& sums);
+  /// Adds a point that touches.
+  void add(const FacePatch::Key& key, const FaceTouch& touch, const PatchSums& sums);
   /// Once all points are there. Collective.
   void complete();
   std::span<FacePatch> all() { return patches_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/shape/bspline.hpp"
 
@@ -74,7 +75,7 @@ std::int64_t nearest_node(const GridGeometry& g, const Vec3<double>& x, int axis
   return std::llround(GridGeometry::scaled(x[axis], g.origin[axis], g.inverse_cell[axis]));
 }
 
-MaterialAtFaces::MaterialAtFaces(const Model& model, const BrickFields& fields, const NodeUnknowns& unknowns)
+MaterialAtFaces::MaterialAtFaces(Model& model, const BrickFields& fields, NodeUnknowns& unknowns)
     : grid_(*model.grid), fields_(fields), unknowns_(unknowns), shape_(model.scene->grid.shape) {}
 
 void MaterialAtFaces::take_sums(std::vector<double>& to) const {
@@ -101,7 +102,9 @@ std::optional<FaceTouch> MaterialAtFaces::touch(const BrickField& field, const F
   const std::size_t first_sum = static_cast<std::size_t>(node_doubles * shape.nodes()) * field.index;
   const double *surface = surface_.data() + first_sum, *moduli = moduli_.data() + first_sum;
   FaceTouch found;
-  found.held = 7;
+  constexpr unsigned all_axes = 7;
+  bool is_beside_nodes = false;
+  found.held = all_axes;
   double stiff = 0, of_stiff = 0;           // sums of volumes times moduli, and of volumes
   double active = 0, volume = 0, room = 0;  // room: of cells around the nodes, inside the grid
   Vec3<double> gradient{};
@@ -120,7 +123,7 @@ std::optional<FaceTouch> MaterialAtFaces::touch(const BrickField& field, const F
         if (nodes[node].from != node) continue;
         bool is_nearest = true;  // along the face
         for (int a = 0; a < 3; ++a) is_nearest &= a == normal_axis || at[a] == nearest[a];
-        if (is_nearest) found.held &= nodes[node].held;
+        if (is_nearest) found.held &= nodes[node].held, is_beside_nodes = true;
         const double* sum = surface + node_doubles * node;
         stiff += weight * moduli[node_doubles * node + node_field::modulus.first];
         of_stiff += weight * moduli[node_doubles * node + node_field::volume.first];
@@ -144,8 +147,55 @@ std::optional<FaceTouch> MaterialAtFaces::touch(const BrickField& field, const F
   const double least = (is_known ? of_known : 1.0) * least_volume(in[0].nodes) * cell_along * growth;
   if (growth < least_cosine * length || volume < least) return {};
   for (auto& [node, weight] : found.weights) weight /= active;
+  if (!is_beside_nodes) found.held = 0;
   found.modulus = stiff / of_stiff;
+  found.field = field.index;
+  found.component = field.component;
   return found;
+}
+
+void MaterialAtFaces::fit(std::span<FaceTouch> touches, std::span<const FacePoint> points) {
+  const auto doubles = static_cast<std::size_t>(node_doubles * unknowns_.nodes());
+  for (const BrickField& field : fields_.all())
+    std::fill_n(grid_.contributions(NodeArray::first, field.slot, field.number), doubles, 0.0);
+  for (const FaceTouch& touch : touches) {
+    const BrickField& field = fields_.all()[touch.field];
+    const NodeUnknowns::Node* nodes = unknowns_.of(field);
+    double* to = grid_.contributions(NodeArray::first, field.slot, field.number);
+    const FacePoint& point = points[touch.point];
+    for (const auto& [node, weight] : touch.weights) {
+      double* record = to + node_doubles * nodes[node].from;
+      for (int a = 0; a < 3; ++a) record[a] += nodes[node].sign[a] * weight * point.area * point.normal[a];
+      record[node_field::mass.first] += weight * point.area;
+    }
+  }
+  unknowns_.exchange(mapped::implicit_surface);
+  std::vector<double> faces;
+  take_sums(faces);
+  constexpr double opposite = 0.5, least = 0.25;
+  for (FaceTouch& touch : touches) {
+    const NodeUnknowns::Node* nodes = unknowns_.of(fields_.all()[touch.field]);
+    const FacePoint& point = points[touch.point];
+    std::vector<std::pair<std::int32_t, double>> fitted = touch.weights;
+    double sum = 0;
+    for (auto& [node, weight] : fitted) {
+      const std::size_t at =
+          doubles * touch.field + static_cast<std::size_t>(node_doubles * nodes[node].from);
+      double of_material = 0, of_faces = 0;
+      for (int a = 0; a < 3; ++a) {
+        const double n = nodes[node].sign[a] * point.normal[a];
+        of_material -= n * surface_[at + static_cast<std::size_t>(a)];
+        of_faces += n * faces[at + static_cast<std::size_t>(a)];
+      }
+      // Opposite faces at one node, as of a thin layer, say nothing.
+      if (of_faces > opposite * faces[at + node_field::mass.first])
+        weight *= std::clamp(of_material / of_faces, 0.0, 1.0);
+      sum += weight;
+    }
+    if (!(sum > least)) continue;
+    for (auto& [node, weight] : fitted) weight /= sum;
+    touch.weights = std::move(fitted);
+  }
 }
 
 }  // namespace mpm::core

@@ -2,12 +2,14 @@
 //
 // At the point count the functions whose gradients particles feel, N_i: with them the material around it has
 // the volume V = sum_i N_i V_i, and V grows along the normal by -(sum_i N_i sum_p V_p grad S_ip).n. Material
-// that has its face there, or up to about 0.3 cells away, touches: where V is not much less than its growth
-// over a cell. Across the normal the body may cover any part of the cell.
+// that has its face there, or up to about 0.3 cells away (splines; linear functions and GIMP up to one),
+// touches: where V is not much less than its growth over a cell. Across the normal the body may cover any
+// part of the cell.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,10 +20,13 @@
 namespace mpm::core {
 
 struct FaceTouch {
+  std::size_t point = 0;  ///< of the bodies' points
+  std::size_t field = 0;
+  std::int32_t component = 0;
   /// N_i at the point, by node of the field's brick; those of nodes that are not active count for the others.
   std::vector<std::pair<std::int32_t, double>> weights;
   double modulus = 0;  ///< of the material there
-  unsigned held = 0;   ///< components that walls hold at the node of the face nearest to the point, as bits
+  unsigned held = 0;  ///< components that walls hold at the nodes along the normal next to the point, as bits
 };
 
 /// The axis nearest to a direction.
@@ -31,7 +36,7 @@ std::int64_t nearest_node(const GridGeometry& g, const Vec3<double>& x, int axis
 
 class MaterialAtFaces {
  public:
-  MaterialAtFaces(const Model& model, const BrickFields& fields, const NodeUnknowns& unknowns);
+  MaterialAtFaces(Model& model, const BrickFields& fields, NodeUnknowns& unknowns);
 
   /// Takes the stiffness at the nodes, once mapped::implicit_motion has been exchanged.
   void take_moduli() { take_sums(moduli_); }
@@ -42,13 +47,15 @@ class MaterialAtFaces {
   /// tied; then half the volume is enough.
   std::optional<FaceTouch> touch(const BrickField& field, const FacePoint& point, const Vec3<double>& place,
                                  bool is_known) const;
+  /// Fits the weights of all points that touch to the particles, as above. Collective.
+  void fit(std::span<FaceTouch> touches, std::span<const FacePoint> points);
 
  private:
   void take_sums(std::vector<double>& to) const;
 
-  const BrickGrid& grid_;
+  BrickGrid& grid_;
   const BrickFields& fields_;
-  const NodeUnknowns& unknowns_;
+  NodeUnknowns& unknowns_;
   ShapeFunction shape_;
   std::vector<double> moduli_, surface_;  ///< records of node_doubles of the fields' nodes
 };
