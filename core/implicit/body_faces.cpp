@@ -99,9 +99,12 @@ void BodyFaces::find_patches(ImplicitPasses& passes) {
   patches_.clear();
   const std::vector<bool> covered = cover_ ? cover_->find(moved_) : std::vector<bool>{};
   std::vector<FaceTouch> touches;
-  for (std::size_t p = 0; p < points_.size(); ++p)
+  std::vector<Vec3<double>> places;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    places.push_back(place(p));
     if (!cover_ || covered[p]) find_touches(p, touches);
-  material_.fit(touches, points_);
+  }
+  material_.fit(touches, points_, places);
   for (const FaceTouch& touch : touches)
     patches_.add(key_of(touch.point, touch.component), touch, sums_of(touch));
   patches_.complete();

@@ -154,7 +154,15 @@ std::optional<FaceTouch> MaterialAtFaces::touch(const BrickField& field, const F
   return found;
 }
 
-void MaterialAtFaces::fit(std::span<FaceTouch> touches, std::span<const FacePoint> points) {
+/// Whether a node of a field's brick is on the material's side of a face's point.
+bool MaterialAtFaces::is_inside(const BrickField& field, std::int32_t node, const FacePoint& point,
+                                const Vec3<double>& place) const {
+  return dot(grid_.geometry().node_place(grid_.brick(field.slot).coord, grid_.shape().node(node)) - place,
+             point.normal) > 0;
+}
+
+void MaterialAtFaces::fit(std::span<FaceTouch> touches, std::span<const FacePoint> points,
+                          std::span<const Vec3<double>> places) {
   const auto doubles = static_cast<std::size_t>(node_doubles * unknowns_.nodes());
   for (const BrickField& field : fields_.all())
     std::fill_n(grid_.contributions(NodeArray::first, field.slot, field.number), doubles, 0.0);
@@ -173,12 +181,19 @@ void MaterialAtFaces::fit(std::span<FaceTouch> touches, std::span<const FacePoin
   std::vector<double> faces;
   take_sums(faces);
   constexpr double opposite = 0.5, least = 0.25;
+  // Particles of uGIMP keep their size: compressed ones reach into the body, and inner nodes say too little.
+  const bool keeps_size = shape_ == ShapeFunction::uniform_gimp;
   for (FaceTouch& touch : touches) {
-    const NodeUnknowns::Node* nodes = unknowns_.of(fields_.all()[touch.field]);
+    const BrickField& field = fields_.all()[touch.field];
+    const NodeUnknowns::Node* nodes = unknowns_.of(field);
     const FacePoint& point = points[touch.point];
     std::vector<std::pair<std::int32_t, double>> fitted = touch.weights;
     double sum = 0;
     for (auto& [node, weight] : fitted) {
+      if (keeps_size && is_inside(field, node, point, places[touch.point])) {
+        sum += weight;
+        continue;
+      }
       const std::size_t at =
           doubles * touch.field + static_cast<std::size_t>(node_doubles * nodes[node].from);
       double of_material = 0, of_faces = 0;

@@ -47,11 +47,15 @@ class MaterialAtFaces {
   /// tied; then half the volume is enough.
   std::optional<FaceTouch> touch(const BrickField& field, const FacePoint& point, const Vec3<double>& place,
                                  bool is_known) const;
-  /// Fits the weights of all points that touch to the particles, as above. Collective.
-  void fit(std::span<FaceTouch> touches, std::span<const FacePoint> points);
+  /// Fits the weights of all points that touch to the particles, as above; `places`: of all points.
+  /// Collective.
+  void fit(std::span<FaceTouch> touches, std::span<const FacePoint> points,
+           std::span<const Vec3<double>> places);
 
  private:
   void take_sums(std::vector<double>& to) const;
+  bool is_inside(const BrickField& field, std::int32_t node, const FacePoint& point,
+                 const Vec3<double>& place) const;
 
   BrickGrid& grid_;
   const BrickFields& fields_;
