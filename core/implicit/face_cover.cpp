@@ -57,7 +57,7 @@ std::vector<bool> FaceCover::find(std::span<const Vec3<double>> moved) const {
           const Vec3<double> to = x - point.place;
           const double outward = dot(to, point.normal);
           const Vec3<double> beside = to - outward * point.normal;
-          if (outward < -(size + 2 * across_) || outward > 0.5 * size + across_) return;
+          if (outward < -size || outward > 0.5 * size + across_) return;
           if (std::max({std::abs(beside.x), std::abs(beside.y), std::abs(beside.z)}) <= along) covered[i] = 1;
         });
       }
