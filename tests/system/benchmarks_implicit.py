@@ -169,8 +169,8 @@ class Quick(_mpm.RunOnce):
     def test_platen(self):
         where = {"steps by": "implicit", "shape": "QuadraticBSpline"}
         coarse, fine = (self.one("stress", "platen", **where, cells=n) for n in (8, 16))
-        self.assertLess(coarse, 0.05)  # measured 0.034 and 0.024
-        self.assertLess(fine, 0.8 * coarse)
+        self.assertLess(coarse, 0.03)  # measured 0.0206 and 0.0193, and 0.0125 with 32 cells
+        self.assertLess(fine, coarse)
         self.assertLess(self.one("below", "platen", **where, cells=16), 0.03)
 
     def test_cantilever(self):
@@ -187,9 +187,11 @@ class Quick(_mpm.RunOnce):
         self.assertLess(self.one("inside", "cylinder", body="plastic", shape="QuadraticBSpline"), 0.05)
 
     def test_footing(self):
-        for by, error in (("tied", 0.022), ("contact, rough", 0.025), ("contact, smooth", 0.006)):
-            self.assertLess(abs(self.one("last", "footing", **{"steps by": f"implicit, {by}"}) - error), 0.01, by)
-        self.assertLess(abs(self.one("last", "frictional_footing") + 0.072), 0.01)
+        for by, averaging, error in (("tied", "none", 0.021), ("tied", "cell", -0.036), ("contact, rough", "none", 0.022),
+                                     ("contact, rough", "cell", -0.033), ("contact, smooth", "none", 0.003)):
+            where = {"steps by": f"implicit, {by}", "averaging": averaging}
+            self.assertLess(abs(self.one("last", "footing", **where) - error), 0.01, where)
+        self.assertLess(abs(self.one("last", "frictional_footing") - 0.11), 0.01)
         # Two cells in explicit contact press a wider strip: measured +31 %.
         self.assertLess(abs(self.one("last", "footing", **{"steps by": "explicit 0.001"}) - 0.31), 0.03)
 
