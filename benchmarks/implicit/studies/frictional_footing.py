@@ -29,7 +29,7 @@ end; *growth*: over the last quarter, relative."""
     measured = ("load", "last", "growth")
 
     def runs(self):
-        return [self.one(shape, cells) for shape in ("SGMP", "QuadraticBSpline") for cells in (2.5, 3.5, 4.5, 6.5)]
+        return [self.one(shape, cells) for cells in (2.5, 3.5, 4.5, 6.5) for shape in ("SGMP", "QuadraticBSpline")]
 
     @staticmethod
     def one(shape, cells):
