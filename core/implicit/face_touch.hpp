@@ -5,6 +5,11 @@
 // that has its face there, or up to about 0.3 cells away (splines; linear functions and GIMP up to one),
 // touches: where V is not much less than its growth over a cell. Across the normal the body may cover any
 // part of the cell.
+//
+// A uniform pressure exerts G_i = -sum_p V_p grad S_ip.n on the nodes by particles, and D_i = sum_s A_s
+// N_i(x_s) by the points x_s of the faces, with their areas A_s. Where D_i is larger, as at a node that
+// particles hardly reach yet, which would fly off with the difference, the weight is N_i G_i/D_i, and those
+// of the other nodes are larger.
 #pragma once
 
 #include <cstdint>

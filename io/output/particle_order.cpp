@@ -1,9 +1,10 @@
 #include "io/output/particle_order.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <string>
 #include <tuple>
 
+#include "core/communication/gather_records.hpp"
 #include "core/threads.hpp"
 #include "io/output/hash.hpp"
 
@@ -55,14 +56,7 @@ void add_hashes(const core::Model& model, const std::vector<TilePlace>& places,
 }
 
 std::vector<TileRecord> all_records(const std::vector<TileRecord>& mine, core::Reductions& ranks) {
-  std::string bytes(mine.size() * sizeof(TileRecord), '\0');
-  if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
-  std::vector<TileRecord> all;
-  for (const std::string& part : ranks.gather(bytes)) {
-    const std::size_t old = all.size();
-    all.resize(old + part.size() / sizeof(TileRecord));
-    if (!part.empty()) std::memcpy(all.data() + old, part.data(), part.size());
-  }
+  std::vector<TileRecord> all = core::gather_records(std::span(mine), ranks);
   std::stable_sort(all.begin(), all.end(), before);
   return all;
 }
