@@ -43,7 +43,8 @@ void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool s
     check_petsc(PetscOptionsHasName(nullptr, nullptr, "-pc_factor_mat_solver_type", &named));
     if (named == PETSC_FALSE)
       check_petsc(PCFactorSetMatSolverType(pc, slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
-    if (slender) check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+    // Packages have their own, and MUMPS has refused this one.
+    if (slender && named == PETSC_FALSE) check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
   } else {
     check_petsc(KSPSetType(ksp, KSPGMRES));
     check_petsc(KSPGMRESSetRestart(ksp, 60));
