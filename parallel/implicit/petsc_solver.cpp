@@ -294,6 +294,8 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
                           report.jacobian_seconds - report.setup_seconds;
   if (given_ && !looked_) refuse_unused_options();
   looked_ = true;
+  // An error leaves solvers in the middle of something, and each later solution would fail.
+  if (code != 0) of_ = nullptr;
   return report;
 }
 
