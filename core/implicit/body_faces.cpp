@@ -189,9 +189,12 @@ PatchSums BodyFaces::sums_of(const FaceTouch& touch) const {
 
 /// Its spring, from where the last step has left it.
 void BodyFaces::prepare(FacePatch& patch) const {
-  const PatchSums& sums = patch.sums;
+  PatchSums& sums = patch.sums;
   ContactSpring& spring = patch.spring;
-  spring.normal = (1 / std::sqrt(dot(sums.normal, sums.normal))) * sums.normal;
+  for (int a = 0; a < 3; ++a)
+    if ((patch.on_walls >> a & 1) != 0) sums.normal[a] = sums.force[a] = 0;
+  const double length = std::sqrt(dot(sums.normal, sums.normal));
+  if (length > 0) spring.normal = (1 / length) * sums.normal;
   spring.cell_stiffness = sums.stiffness;
   spring.k = rigidity * sums.stiffness;
   spring.tied = contact_ == nullptr;
