@@ -21,12 +21,11 @@ using testing::three_bricks;
 
 namespace {
 
-/// Of this build, without those whose particles need domains.
+/// Of this build, without those whose particles have a size or a domain.
 std::vector<ShapeFunction> shapes() {
   std::vector<ShapeFunction> all;
-  for (const ShapeFunction shape :
-       {ShapeFunction::linear, ShapeFunction::ddmp, ShapeFunction::uniform_gimp, ShapeFunction::sgmp,
-        ShapeFunction::quadratic_bspline, ShapeFunction::cubic_bspline})
+  for (const ShapeFunction shape : {ShapeFunction::linear, ShapeFunction::ddmp, ShapeFunction::sgmp,
+                                    ShapeFunction::quadratic_bspline, ShapeFunction::cubic_bspline})
     if (with_known_shape(shape, []<class S>(std::type_identity<S>) { return is_built<S>; }))
       all.push_back(shape);
   return all;
