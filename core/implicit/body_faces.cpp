@@ -99,14 +99,10 @@ void BodyFaces::find_patches(ImplicitPasses& passes) {
   patches_.clear();
   const std::vector<bool> covered = cover_ ? cover_->find(moved_) : std::vector<bool>{};
   std::vector<FaceTouch> touches;
-  std::vector<Vec3<double>> places;
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    places.push_back(place(p));
+  for (std::size_t p = 0; p < points_.size(); ++p)
     if (!cover_ || covered[p]) find_touches(p, touches);
-  }
-  material_.fit(touches, points_, places);
-  for (const FaceTouch& touch : touches)
-    patches_.add(key_of(touch.point, touch.component), touch, sums_of(touch));
+  material_.fit(touches, points_);
+  for (const FaceTouch& touch : touches) patches_.add(key_of(touch), touch, sums_of(touch));
   patches_.complete();
   for (FacePatch& patch : patches_.all()) prepare(patch);
 }
@@ -149,14 +145,14 @@ void BodyFaces::find_touches(std::size_t number, std::vector<FaceTouch>& found) 
 
 /// Of the patch of a point. What is tied has patches; in contact, which bears no tension, a point is one, and
 /// material presses as far as it reaches, and no farther.
-FacePatch::Key BodyFaces::key_of(std::size_t number, std::int32_t component) const {
+FacePatch::Key BodyFaces::key_of(const FaceTouch& touch) const {
   const GridGeometry& g = model_.grid->geometry();
-  const FacePoint& point = points_[number];
-  const Vec3<double> x = place(number);
+  const FacePoint& point = points_[touch.point];
+  const Vec3<double> x = touch.place;
   const int normal = axis_of(point.normal);
-  FacePatch::Key key{point.body, component, FacePatch::many_points};
+  FacePatch::Key key{point.body, component_of(touch), FacePatch::many_points};
   if (contact_ != nullptr) {
-    key[2] = static_cast<std::int64_t>(number);
+    key[2] = static_cast<std::int64_t>(touch.point);
     return key;
   }
   key[3] = 2 * normal + (point.normal[normal] > 0 ? 1 : 0);
@@ -169,12 +165,12 @@ FacePatch::Key BodyFaces::key_of(std::size_t number, std::int32_t component) con
 
 PatchSums BodyFaces::sums_of(const FaceTouch& touch) const {
   const FacePoint& point = points_[touch.point];
-  const Kept* const last = kept(touch.point, touch.component);
+  const Kept* const last = kept(touch.point, component_of(touch));
   const double area = point.area, h = model_.grid->geometry().smallest_cell();
   PatchSums sums;
   sums.area = area;
   sums.stiffness = touch.modulus * area / h;
-  sums.place = area * place(touch.point);
+  sums.place = area * touch.place;
   sums.normal = area * point.normal;
   if (last == nullptr) return sums;
   sums.known = area;

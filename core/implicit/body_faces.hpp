@@ -83,7 +83,8 @@ class BodyFaces {
 
   void take_kept();
   void find_touches(std::size_t number, std::vector<FaceTouch>& found) const;
-  FacePatch::Key key_of(std::size_t number, std::int32_t component) const;
+  std::int32_t component_of(const FaceTouch& touch) const { return fields_.all()[touch.field].component; }
+  FacePatch::Key key_of(const FaceTouch& touch) const;
   PatchSums sums_of(const FaceTouch& touch) const;
   void prepare(FacePatch& patch) const;
   Vec3<double> way_of(const FacePatch& patch) const { return way_[static_cast<std::size_t>(patch.body())]; }

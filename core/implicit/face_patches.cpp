@@ -46,7 +46,7 @@ void FacePatches::add(const FacePatch::Key& key, const FaceTouch& touch, const P
 void FacePatches::complete() {
   share_sums();
   find_unknowns();
-  share_unknowns();
+  if (are_shared_) share_unknowns();
 }
 
 /// Whether bricks may share a patch: where they take particles by cell, those on both sides of its node.
@@ -77,6 +77,7 @@ void FacePatches::share_sums() {
     at->second.sums += record.sums;
     at->second.on_walls &= record.on_walls;
   }
+  are_shared_ = !all.empty();
   for (FacePatch& patch : patches_) {
     const auto whole = all.find(patch.key);
     if (whole == all.end()) continue;
@@ -150,8 +151,9 @@ std::vector<Vec3<double>> FacePatches::displacements(const AlignedDoubles& of_no
         for (int a = 0; a < 3; ++a) sum[a] += weight * records[node_doubles * node + a];
     }
     found.push_back((1 / patch.sums.area) * sum);
-    if (is_shared(patch.key)) mine.push_back({patch.key, sum});
+    if (are_shared_ && is_shared(patch.key)) mine.push_back({patch.key, sum});
   }
+  if (!are_shared_) return found;
   std::map<FacePatch::Key, Vec3<double>> all;
   for (const Record& record : gather_records(std::span<const Record>(mine), ranks_)) {
     Vec3<double>& sum = all[record.key];

@@ -102,6 +102,7 @@ class FacePatches {
   const NodeUnknowns& unknowns_;
   std::vector<FacePatch> patches_;
   std::map<FacePatch::Key, std::size_t> number_;
+  bool are_shared_ = false;  ///< whether any are, the same on all ranks
 };
 
 }  // namespace mpm::core

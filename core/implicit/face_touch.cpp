@@ -150,19 +150,17 @@ std::optional<FaceTouch> MaterialAtFaces::touch(const BrickField& field, const F
   if (!is_beside_nodes) found.held = 0;
   found.modulus = stiff / of_stiff;
   found.field = field.index;
-  found.component = field.component;
+  found.place = place;
   return found;
 }
 
-/// Whether a node of a field's brick is on the material's side of a face's point.
-bool MaterialAtFaces::is_inside(const BrickField& field, std::int32_t node, const FacePoint& point,
-                                const Vec3<double>& place) const {
-  return dot(grid_.geometry().node_place(grid_.brick(field.slot).coord, grid_.shape().node(node)) - place,
-             point.normal) > 0;
+/// Whether a node of the field's brick is on the material's side of the point.
+bool MaterialAtFaces::is_inside(const FaceTouch& touch, std::int32_t node, const Vec3<double>& normal) const {
+  const BrickCoord brick = grid_.brick(fields_.all()[touch.field].slot).coord;
+  return dot(grid_.geometry().node_place(brick, grid_.shape().node(node)) - touch.place, normal) > 0;
 }
 
-void MaterialAtFaces::fit(std::span<FaceTouch> touches, std::span<const FacePoint> points,
-                          std::span<const Vec3<double>> places) {
+void MaterialAtFaces::fit(std::span<FaceTouch> touches, std::span<const FacePoint> points) {
   const auto doubles = static_cast<std::size_t>(node_doubles * unknowns_.nodes());
   for (const BrickField& field : fields_.all())
     std::fill_n(grid_.contributions(NodeArray::first, field.slot, field.number), doubles, 0.0);
@@ -184,13 +182,12 @@ void MaterialAtFaces::fit(std::span<FaceTouch> touches, std::span<const FacePoin
   // Particles of uGIMP keep their size: compressed ones reach into the body, and inner nodes say too little.
   const bool keeps_size = shape_ == ShapeFunction::uniform_gimp;
   for (FaceTouch& touch : touches) {
-    const BrickField& field = fields_.all()[touch.field];
-    const NodeUnknowns::Node* nodes = unknowns_.of(field);
+    const NodeUnknowns::Node* nodes = unknowns_.of(fields_.all()[touch.field]);
     const FacePoint& point = points[touch.point];
     std::vector<std::pair<std::int32_t, double>> fitted = touch.weights;
     double sum = 0;
     for (auto& [node, weight] : fitted) {
-      if (keeps_size && is_inside(field, node, point, places[touch.point])) {
+      if (keeps_size && is_inside(touch, node, point.normal)) {
         sum += weight;
         continue;
       }

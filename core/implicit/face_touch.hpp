@@ -27,7 +27,7 @@ namespace mpm::core {
 struct FaceTouch {
   std::size_t point = 0;  ///< of the bodies' points
   std::size_t field = 0;
-  std::int32_t component = 0;
+  Vec3<double> place{};
   /// N_i at the point, by node of the field's brick; those of nodes that are not active count for the others.
   std::vector<std::pair<std::int32_t, double>> weights;
   double modulus = 0;  ///< of the material there
@@ -52,15 +52,12 @@ class MaterialAtFaces {
   /// tied; then half the volume is enough.
   std::optional<FaceTouch> touch(const BrickField& field, const FacePoint& point, const Vec3<double>& place,
                                  bool is_known) const;
-  /// Fits the weights of all points that touch to the particles, as above; `places`: of all points.
-  /// Collective.
-  void fit(std::span<FaceTouch> touches, std::span<const FacePoint> points,
-           std::span<const Vec3<double>> places);
+  /// Fits the weights of all points that touch to the particles, as above. Collective.
+  void fit(std::span<FaceTouch> touches, std::span<const FacePoint> points);
 
  private:
   void take_sums(std::vector<double>& to) const;
-  bool is_inside(const BrickField& field, std::int32_t node, const FacePoint& point,
-                 const Vec3<double>& place) const;
+  bool is_inside(const FaceTouch& touch, std::int32_t node, const Vec3<double>& normal) const;
 
   BrickGrid& grid_;
   const BrickFields& fields_;

@@ -41,10 +41,11 @@ void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool s
     // A package that the user has named is not changed: in a later solution PETSc refuses that.
     PetscBool named = PETSC_FALSE;
     check_petsc(PetscOptionsHasName(nullptr, nullptr, "-pc_factor_mat_solver_type", &named));
-    if (named == PETSC_FALSE)
+    // It orders the matrix itself, too: MUMPS has refused PETSc's ordering.
+    if (named == PETSC_FALSE) {
       check_petsc(PCFactorSetMatSolverType(pc, slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
-    // Packages have their own, and MUMPS has refused this one.
-    if (slender && named == PETSC_FALSE) check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+      if (slender) check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
+    }
   } else {
     check_petsc(KSPSetType(ksp, KSPGMRES));
     check_petsc(KSPGMRESSetRestart(ksp, 60));

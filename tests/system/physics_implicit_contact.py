@@ -4,10 +4,8 @@ import numpy as np
 
 import _cases
 import _mpm
+from _implicit import RAM, SOFT, YOUNG
 
-YOUNG, POISSON = 1000.0, 0.3
-SOFT = _mpm.material("soft", 1.0, f'type="NeoHookean" Young="{YOUNG}" Poisson="{POISSON}"')
-RAM = _mpm.material("ram", 1.0, 'type="Rigid"')
 SIDE = 3.0  # of the block; a quarter of the whole, with symmetry planes
 # Most error of the force of a uniform stress. Once a face has left a node, stresses of linear functions act on that node alone.
 ERRORS = {"linear": 1.5e-2, "CPDI2": 1e-3, "QuadraticBSpline": 5e-3, "DDMP": 5e-3}
@@ -81,7 +79,8 @@ class ImplicitContact(_mpm.Case):
                     text = scene(((3, 3, 0), (width, width, 4)), ((2, 2, 4), (4, 4, 2)), (0, 0, -0.04), shape, faces="000020", grid=((0, 0, 0), (9, 9, 8)))
                     folder = f"narrow{width}{shape}"
                     self.run_in(folder, [self.write(text)])
-                    self.assertAlmostEqual(self.forces(folder)[-1][2] / (1.007813 * width**2 * YOUNG * 0.01), 1, delta=0.015)
+                    self.assertAlmostEqual(self.forces(folder)[-1][2] / (1.007813 * width**2 * YOUNG * 0.01), 1,
+                                           delta=0.015 if shape == "linear" else 0.01)
 
     def test_sliding_friction_is_coulombs(self):
         """A plate that presses and drags, along a direction off the axes: friction is mu times the pressure, along the

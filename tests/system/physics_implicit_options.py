@@ -5,7 +5,7 @@ import numpy as np
 
 import _cases
 import _mpm
-from physics_implicit import SOFT, column
+from _implicit import SOFT, column
 
 # Each with words of its message.
 REFUSED = [

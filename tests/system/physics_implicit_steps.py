@@ -3,7 +3,8 @@
 import re
 
 import _mpm
-from physics_implicit import METAL, RAM, alpha, column, implicit
+from _implicit import RAM, column, implicit
+from physics_implicit import METAL, alpha
 
 
 class Steps(_mpm.Case):

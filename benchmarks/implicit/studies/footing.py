@@ -15,9 +15,9 @@ FRICTION = 1.0  # of a rough footing
 AVERAGED = 5  # rows of explicit runs
 EXPLICIT_SPEEDS = (1e-3, 1e-4)  # of the footing, over that of waves
 WIDER = "27, 17 and 12"  # measured once
-# Von Mises with the cohesion as shear strength, which is Tresca's criterion in plane strain.
 AVERAGES = '<Volumetric averaging="cell"/>'
 AVERAGING = ("linear", "uGIMP", "QuadraticBSpline", "CPDI2")  # shapes
+# Von Mises with the cohesion as shear strength, which is Tresca's criterion in plane strain.
 LAWS = {"DruckerPrager": f'type="DruckerPrager" qfai="0" kfai="{COHESION}" qpsi="0" ten_f="1e6"',
         "ElaPlastic": f'type="ElaPlastic" Yield0="{3**0.5 * COHESION!r}" bq1="0" bq2="0"'}
 

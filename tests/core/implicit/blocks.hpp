@@ -18,7 +18,7 @@
 
 namespace mpm::core::testing {
 
-/// Of bodies whose stress nobody asks for.
+/// A law without a stress, as tests of faces need none.
 class Stressless final : public ConstitutiveModel {
  public:
   static constexpr double sound_speed = 3;
@@ -44,6 +44,25 @@ inline GridGeometry three_bricks() {
   return g;
 }
 
+/// Gives the model the active bodies of a scene and their particles, all on one rank of this grid.
+inline void make_bodies(Model& model, const Scene& scene, GridGeometry g, SoloCommunication& solo) {
+  model.scene = std::make_shared<Scene>(scene);
+  g.site = site_of(scene);
+  model.grid = std::make_unique<BrickGrid>(g, node_block_of(scene), node_arrays_of(scene, false));
+  std::vector<std::size_t> all;
+  for (const BodyInput* input : active_bodies(scene)) {
+    all.push_back(model.bodies.size());
+    Body& made = model.bodies.emplace_back();
+    made.name = input->name;
+    made.pool = std::make_shared<BlockPool>(ColumnLayout(ColumnSet::mechanics()));
+  }
+  const std::vector<BodySeeds> seeds = seeds_of(model, all);
+  const SeedCount count = count_seeds(g, seeds, solo.reductions);
+  REQUIRE(count.outside == 0);
+  solo.bricks.partition(*model.grid, count.in_bricks(), {});
+  create_particles(model, seeds, solo);
+}
+
 struct Block {
   bool rigid;
   BlockGeometry geometry;
@@ -56,26 +75,13 @@ struct Blocks {
   Model model;
 
   explicit Blocks(std::span<const Block> blocks, ShapeFunction shape = ShapeFunction::linear,
-                  GridGeometry g = three_bricks()) {
+                  const GridGeometry& g = three_bricks()) {
     Scene scene;
     scene.grid.shape = shape;
     scene.components.resize(1);
-    std::vector<std::size_t> all;
-    for (const Block& block : blocks) {
-      scene.components[0].bodies.push_back(body(block.geometry));
-      all.push_back(all.size());
-      Body& made = model.bodies.emplace_back();
-      made.model = block.rigid ? &rigid : &soft;
-      made.pool = std::make_shared<BlockPool>(ColumnLayout(ColumnSet::mechanics()));
-    }
-    model.scene = std::make_shared<Scene>(scene);
-    g.site = site_of(scene);
-    model.grid = std::make_unique<BrickGrid>(g, node_block_of(scene), node_arrays_of(scene, false));
-    const std::vector<BodySeeds> seeds = seeds_of(model, all);
-    const SeedCount count = count_seeds(g, seeds, solo.reductions);
-    REQUIRE(count.outside == 0);
-    solo.bricks.partition(*model.grid, count.in_bricks(), {});
-    create_particles(model, seeds, solo);
+    for (const Block& block : blocks) scene.components[0].bodies.push_back(body(block.geometry));
+    make_bodies(model, scene, g, solo);
+    for (std::size_t b = 0; b < blocks.size(); ++b) model.bodies[b].model = blocks[b].rigid ? &rigid : &soft;
   }
 };
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -12,11 +11,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/communication/solo.hpp"
 #include "core/discretise/frame.hpp"
-#include "core/setup/particle_creation.hpp"
-#include "core/step/passes.hpp"
-#include "tests/core/discretise/support.hpp"
+#include "tests/core/implicit/blocks.hpp"
 
 using namespace mpm::core;
 using testing::ball;
@@ -29,27 +25,13 @@ constexpr double rounding = 1e-12;  // of places a few units from the origin
 
 /// Of these bodies of the scene's active ones, in a grid of several bricks around the origin.
 std::vector<FacePoint> points_of(const Scene& scene, std::vector<int> bodies) {
-  SoloCommunication solo;
-  Model model;
-  model.scene = std::make_shared<Scene>(scene);
   GridGeometry g;
   g.origin = {-8, -8, -8};
   g.cell = g.inverse_cell = {1, 1, 1};
   g.cells = {16, 16, 16};
-  g.site = site_of(scene);
-  model.grid = std::make_unique<BrickGrid>(g, node_block_of(scene), node_arrays_of(scene, false));
-  std::vector<std::size_t> all;
-  for (const BodyInput* input : active_bodies(scene)) {
-    all.push_back(model.bodies.size());
-    Body& made = model.bodies.emplace_back();
-    made.name = input->name;
-    made.pool = std::make_shared<BlockPool>(ColumnLayout(ColumnSet::mechanics()));
-  }
-  const std::vector<BodySeeds> seeds = seeds_of(model, all);
-  const SeedCount count = count_seeds(g, seeds, solo.reductions);
-  REQUIRE(count.outside == 0);
-  solo.bricks.partition(*model.grid, count.in_bricks(), {});
-  create_particles(model, seeds, solo);
+  SoloCommunication solo;
+  Model model;
+  testing::make_bodies(model, scene, g, solo);
   return find_face_points(model, bodies, solo.reductions);
 }
 
