@@ -47,6 +47,7 @@ struct Clock {
   /// Largest stable step for the current state, factor not included; 0 before the first estimate.
   double critical_dt = 0;
   double first_critical_dt = 0;  ///< for TimeStep const="1"
+  double strain_lag = 0;         ///< USAVG: of strains and stresses behind `time`
   double heat_lead = 0;          ///< by which heat conduction is ahead of `time`
   double next_dt = 0;            ///< of implicit steps: length of the next one; 0: not known
 };

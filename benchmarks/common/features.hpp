@@ -40,7 +40,7 @@ inline std::vector<Feature> features() {
   at_rest.velocity.clear();
 
   add("none", "the same scene twice", "itself", bar, bar);
-  for (const char* scheme : {"USF", "USL"}) add("scheme", scheme, "MUSL", bar, {.scheme = scheme});
+  for (const char* scheme : {"USAVG", "USF", "USL"}) add("scheme", scheme, "MUSL", bar, {.scheme = scheme});
 
   const std::string cold = iso_harden_and(""), still = iso_harden_and(R"(bq1="0" bq2="0")");
   add("material", "heating (SpecHeat)", "none", {.strength = cold},

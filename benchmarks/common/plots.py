@@ -5,7 +5,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-COLOURS = {"MUSL": "#1f5fa8", "USF": "#c8502d", "USL": "#3a8f4d"}
+COLOURS = {"MUSL": "#1f5fa8", "USF": "#c8502d", "USL": "#3a8f4d", "USAVG": "#7b4fa3"}
 GREY = "0.45"
 plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
                      "axes.axisbelow": True, "grid.color": "0.92", "legend.frameon": False, "savefig.dpi": 150,

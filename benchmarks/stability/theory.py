@@ -106,11 +106,12 @@ class Bar:
         v, s = np.eye(n, size), np.eye(n, size, n)
         c = np.eye(n, size, 2 * n)
         to_grid, to_particles, gradient = self.map_velocity(), self.values.T, self.gradients.T
+        part = 0.5 if scheme == "USAVG" else 1.0  # of the step, in an update of the stresses
         momentum = to_grid @ v
         if affine:
             momentum = momentum + (to_grid * self.arms()) @ c
-        if scheme == "USF":
-            s = s + dt * gradient @ momentum
+        if scheme in ("USF", "USAVG"):
+            s = s + part * dt * gradient @ momentum
         increment = dt * self.stress_to_acceleration @ s
         end = momentum + increment
         if transfer == "FLIP":
@@ -125,11 +126,11 @@ class Bar:
             v = to_particles @ end
         if affine:
             c = self.affine_gradient("TPIC" if transfer == "TPIC" else "APIC") @ end
-        if scheme == "MUSL":
+        if scheme in ("MUSL", "USAVG"):
             again = to_grid @ v
             if affine:
                 again = again + (to_grid * self.arms()) @ c
-            s = s + dt * gradient @ again
+            s = s + part * dt * gradient @ again
         elif scheme == "USL":
             omitted = np.maximum(0, 1 - self.mass / USL_MASS_FLOOR)
             s = s + dt * gradient @ (end - omitted[:, None] * increment)

@@ -30,9 +30,11 @@ FOLDER = pathlib.Path(__file__).with_name("inputs")
 PAGE, TABLE = results.ROOT / "docs/stability.md", results.ROOT / "docs/stability/user_inputs.csv"
 KEYS = ("input", "shape", "scheme")
 ROWS = [("bounce", "linear", "MUSL", 1), ("histories", "linear", "MUSL", 1), ("sand_column", "linear", "MUSL", 1),
-        ("sand_column", "linear", "USL", 0.08), ("sand_column", "linear", "USF", 0.08), ("dam_break", "linear", "MUSL", 1),
-        *(("sphere_on_plate", *method, 1) for method in (("linear", "MUSL"), ("linear", "USF"), ("linear", "USL"), ("SGMP", "MUSL"))),
-        *(("rigid_ram", shape, "MUSL", 1) for shape in ("linear", "SGMP", "QuadraticBSpline", "uGIMP", "CPDI"))]
+        ("sand_column", "linear", "USL", 0.08), ("sand_column", "linear", "USF", 0.08), ("sand_column", "linear", "USAVG", 0.08),
+        *(("dam_break", "linear", scheme, 1) for scheme in ("MUSL", "USAVG")),
+        *(("sphere_on_plate", "linear", scheme, 1) for scheme in ("MUSL", "USAVG", "USF", "USL")), ("sphere_on_plate", "SGMP", "MUSL", 1),
+        *(("rigid_ram", "linear", scheme, 1) for scheme in ("MUSL", "USAVG")),
+        *(("rigid_ram", shape, "MUSL", 1) for shape in ("SGMP", "QuadraticBSpline", "uGIMP", "CPDI"))]
 
 
 def scene(name, shape, scheme, share):

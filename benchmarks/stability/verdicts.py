@@ -251,8 +251,8 @@ def course(shape, scheme, dp, folder, factor=0.9):
 
 
 COURSE_SHAPES = ("linear", "SGMP", "QuadraticBSpline", "CubicBSpline")
-COURSES = [*((shape, scheme, 0.5) for scheme in ("MUSL", "USF", "USL") for shape in COURSE_SHAPES),
-           *(("linear", scheme, 1.0) for scheme in ("MUSL", "USF", "USL"))]
+COURSES = [*((shape, scheme, 0.5) for scheme in ("MUSL", "USAVG", "USF", "USL") for shape in COURSE_SHAPES),
+           *(("linear", scheme, 1.0) for scheme in ("MUSL", "USAVG", "USF", "USL"))]
 EIGHTHS = [f"{i}/8" for i in range(1, 9)]
 COURSE_COLUMNS = {"shape": (lambda r: f"`{r['shape']}`", ""), "scheme": (lambda r: r["scheme"], ""),
                   "particles in a cell": (lambda r: r["particles"], "g"), "steps": (lambda r: r["steps"], ".0f"),

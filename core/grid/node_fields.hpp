@@ -1,8 +1,9 @@
 // Nodal fields of the background grid, by name.
 //
-// Every brick stores its contributions to its nodes in one to five arrays of records. A field names
+// Every brick stores its contributions to its nodes in one to six arrays of records. A field names
 // consecutive components of an array's record; kernels, sums and the halo exchange use fields. A scheme maps
-// to the grid at most twice per step and needs the first sums again after the second map: hence two arrays.
+// to the grid twice per step and needs the first sums again after the second map: hence two arrays. USAVG
+// maps three times: the sixth.
 // Corrections of the velocities (core/transfer/corrected.hpp) are mapped between the two, and products with
 // the consistent mass matrix (core/transfer/consistent.hpp): the third array. Contact needs the surfaces of
 // the bodies at both: the fourth, and how far they reach: the fifth. Fields of different phases may share
@@ -17,9 +18,9 @@
 
 namespace mpm::core {
 
-enum class NodeArray : int { first, second, third, fourth, fifth };
-inline constexpr std::array node_arrays{NodeArray::first, NodeArray::second, NodeArray::third,
-                                        NodeArray::fourth, NodeArray::fifth};
+enum class NodeArray : int { first, second, third, fourth, fifth, sixth };
+inline constexpr std::array node_arrays{NodeArray::first,  NodeArray::second, NodeArray::third,
+                                        NodeArray::fourth, NodeArray::fifth,  NodeArray::sixth};
 /// Doubles per record of summed nodes, and per record of the first array.
 inline constexpr int node_doubles = 8;
 constexpr int record_doubles(NodeArray of) {
@@ -52,6 +53,9 @@ inline constexpr NodeFields mass{NodeArray::first, 3, 1};
 inline constexpr NodeFields force{NodeArray::first, 4, 3};
 inline constexpr NodeFields second_momentum{NodeArray::second, 0, 3};
 inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
+// The same at the start of a step of USAVG.
+inline constexpr NodeFields start_momentum{NodeArray::sixth, 0, 3};
+inline constexpr NodeFields start_mass{NodeArray::sixth, 3, 1};
 // Cells in use (core/step/cells_in_use.hpp), where no other field is.
 inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
 // Implicit steps: sum of S + h |grad S|, positive where a node is active; volumes, those of bodies of
@@ -84,6 +88,8 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"force", node_field::force},
     NamedNodeFields{"second momentum", node_field::second_momentum},
     NamedNodeFields{"second mass", node_field::second_mass},
+    NamedNodeFields{"start momentum", node_field::start_momentum},
+    NamedNodeFields{"start mass", node_field::start_mass},
     NamedNodeFields{"cells in use", node_field::cells_in_use},
     NamedNodeFields{"support", node_field::support},
     NamedNodeFields{"moved volume", node_field::moved_volume},
@@ -115,6 +121,7 @@ inline constexpr NodeFields implicit_surface = node_field::momentum | node_field
 /// Of generalised alpha: mass times the lag of the acceleration, in the place of the momentum.
 inline constexpr NodeFields implicit_lag = node_field::momentum;
 inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_field::second_mass;
+inline constexpr NodeFields start = node_field::start_momentum | node_field::start_mass;
 inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
 inline constexpr NodeFields correction = node_field::correction;
 inline constexpr NodeFields cells_in_use = node_field::cells_in_use;
@@ -126,10 +133,11 @@ inline constexpr NodeFields heat_flow = node_field::heat_flow | node_field::unre
 
 constexpr bool maps_momentum(NodeFields f) {
   return f.includes(node_field::momentum) || f.includes(node_field::second_momentum) ||
-         f.includes(node_field::correction);
+         f.includes(node_field::start_momentum) || f.includes(node_field::correction);
 }
 constexpr bool maps_mass(NodeFields f) {
-  return f.includes(node_field::mass) || f.includes(node_field::second_mass);
+  return f.includes(node_field::mass) || f.includes(node_field::second_mass) ||
+         f.includes(node_field::start_mass);
 }
 constexpr bool maps_force(NodeFields f) { return f.includes(node_field::force); }
 

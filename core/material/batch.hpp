@@ -51,6 +51,9 @@ struct Batch {
   double* block[batch_blocks] = {};  ///< start of each block
   double time = 0;                   ///< at the end of the step
   double dt = 0;
+  /// What the artificial viscosity before the update and the new one count in the mean that does the work of
+  /// the step, twice.
+  double old_viscosity = 1, new_viscosity = 1;
   double cell_size = 0;                ///< characteristic length of the artificial viscosity
   const GridGeometry* grid = nullptr;  ///< for `initialise`; null: a point without a grid, all is one cell
   /// Velocity gradient, row i column j = d v_i / d x_j, in the order of Mat3.

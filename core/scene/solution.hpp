@@ -9,8 +9,12 @@
 
 namespace mpm::core {
 
-/// When the stress is updated: first, last, or last with the nodal velocity re-mapped from the particles.
-enum class Scheme { usf, usl, musl };
+/// When a step updates the stress: first, last, last with the nodal velocity re-mapped from the particles, or
+/// half first and half last with that velocity.
+enum class Scheme { usf, usl, musl, usavg };
+/// Whether a step begins with an update of the stresses; whether it maps the new velocities to the grid.
+constexpr bool strains_first(Scheme s) { return s == Scheme::usf || s == Scheme::usavg; }
+constexpr bool maps_back(Scheme s) { return s == Scheme::musl || s == Scheme::usavg; }
 
 enum class Integration { explicit_dynamics, implicit };
 

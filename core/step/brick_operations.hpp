@@ -17,8 +17,8 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
   const NodeMask* some = reached(s);
   double* nodes = at.nodes.data();
   sum<NodeArray::first>(moving_shared_, s, component, at, nodes, some);
-  // USF's first array has the forces only; momentum and mass are zero there, the second holds them.
-  if (scheme_ == Scheme::usf) sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
+  // With USF and USAVG the first array has the forces only; momentum and mass are zero there.
+  if (strains_first(scheme_)) sum_start(s, component, at, nodes, some);
   update_nodes(forces_, velocity_dt, grid.geometry().mass_cutoff, faces(s), moving_shared_.summed(some),
                nodes);
 }
@@ -229,7 +229,7 @@ template <ShapePolicy S, TransferPolicy T>
                                                                        const Place& place, int b,
                                                                        Scratch& at) {
   if (updates_volume_by_cell())
-    S::cell_divergence(frame, place, at.field, dt, at.batch.cell_volumetric_strain, block_lanes * b);
+    S::cell_divergence(frame, place, at.field, strain_.dt, at.batch.cell_volumetric_strain, block_lanes * b);
 }
 
 /// For outputs only; no law reads it.
@@ -266,7 +266,7 @@ template <bool moves>
     const double* block = pool.block(tile.blocks[b]);
     const Place place(frame, pool.layout(), block, tile.used_lanes(b));
     S::gradient(frame, place, at.field, at.batch.gradient, 0);
-    if constexpr (!moves) refer_gradient_to_old_positions(at.batch, 0, dt, false);
+    if constexpr (!moves) refer_gradient_to_old_positions(at.batch, 0, strain_.dt, false);
     at.averages.add_volume_changes(sites_of(place), block + pool.layout().offset(Column::volume),
                                    at.batch.gradient, 0, tile.used_lanes(b));
     if (model_.scene->solution.pressure_relaxation > 0)
@@ -278,7 +278,7 @@ template <ShapePolicy S, TransferPolicy T>
 typename PassesWith<S, T>::PressureRelaxation PassesWith<S, T>::relaxation_of(const Body& body) const {
   const double share = model_.scene->solution.pressure_relaxation, c = body.model->initial_sound_speed();
   if (share == 0 || c <= 0) return {};
-  return {std::min(share * c / model_.grid->geometry().smallest_cell(), 1 / dt),
+  return {std::min(share * c / model_.grid->geometry().smallest_cell(), 1 / strain_.dt),
           body.model->reference_density() * c * c};
 }
 
@@ -286,8 +286,7 @@ typename PassesWith<S, T>::PressureRelaxation PassesWith<S, T>::relaxation_of(co
 /// called once per block.
 template <ShapePolicy S, TransferPolicy T>
 template <bool moves, class F>
-[[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, std::int32_t component,
-                                                         Velocities velocities, Scratch& at,
+[[gnu::noinline]] void PassesWith<S, T>::stress_of_brick(Slot s, std::int32_t component, Scratch& at,
                                                          F prefetch_nodes) {
   const BrickFrame frame = this->frame(s, component);
   Batch& batch = at.batch;
@@ -313,11 +312,11 @@ template <bool moves, class F>
     } else {
       S::gradient(frame, at.places[b], at.field, batch.gradient, block_lanes * b);
       if constexpr (Traits::traps) {
-        if (!averages)
+        if (scheme_ == Scheme::usf && !averages)
           release_from_faces(frame, at.places[b], at.field.nodes, dt, *batch.layout, batch.block[b], used,
                              batch.gradient, block_lanes * b);
       }
-      refer_gradient_to_old_positions(batch, block_lanes * b, dt, updates_volume_by_cell());
+      refer_gradient_to_old_positions(batch, block_lanes * b, strain_.dt, updates_volume_by_cell());
     }
     if (!averages) return;
     const int* sites = sites_of(at.places[b]);
@@ -326,9 +325,12 @@ template <bool moves, class F>
       at.averages.relax_pressures(sites, *batch.layout, batch.block[b], relaxation.rate, relaxation.modulus,
                                   batch.gradient, block_lanes * b);
   };
+  const bool halves = moves && scheme_ == Scheme::usavg;
   const auto stress = [&]([[maybe_unused]] std::size_t c, std::size_t first, const ParticleTile& tile) {
+    if (halves) at.gain_of_work -= work_of_present_stress(batch);
     update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
-    if (velocities == Velocities::of_next_step)
+    if (halves) at.gain_of_work += work_of_present_stress(batch);
+    if constexpr (moves)
       at.statistics.fastest = fastest_particle(batch, wave_weight_, at.statistics.fastest);
     else
       fastest = std::max(fastest, fastest_wave(batch));
@@ -341,10 +343,9 @@ template <bool moves, class F>
   };
   for_each_batch(s, component, frame, at, average, kinematics, stress);
   at.add_work_of_brick();
-  // USF's velocities are yet to follow these stresses.
-  at.statistics.internal_lead.add((moves ? lag_ : -lag_) / dt * at.work_of_stress);
-  at.work_of_stress = 0;
-  if (velocities != Velocities::of_last_step) return;
+  at.statistics.internal_lead.add(strain_.lead * at.work_of_stress + 0.5 * at.gain_of_work);
+  at.work_of_stress = at.gain_of_work = 0;
+  if (moves) return;
   double& critical = critical_[static_cast<std::size_t>(s)];
   critical = std::max(critical, wave_weight_ * fastest);
 }

@@ -58,8 +58,10 @@ template <class E, class F, class G>
                                                                     E tile_work, F block_work, G batch_work) {
   const Brick& brick = model_.grid->brick(s);
   Batch& batch = at.batch;
-  batch.time = model_.clock.time + dt;
-  batch.dt = dt;
+  batch.time = strain_.end;
+  batch.dt = strain_.dt;
+  batch.old_viscosity = 2 - strain_.new_viscosity;
+  batch.new_viscosity = strain_.new_viscosity;
   batch.cell_size = model_.grid->geometry().smallest_cell();
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];

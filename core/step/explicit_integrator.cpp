@@ -99,6 +99,22 @@ std::vector<Phase> ExplicitIntegrator::phases() {
       solve("increments", Passes::MassSystem::increment);
       then("velocities and motion", [&] { pass.update_velocities_and_move(); });
       break;
+    case Scheme::usavg:
+      then("particles to grid", [&] { pass.map_momentum_mass(); });
+      then("exchange", [&] { pass.finish_exchange(); });
+      limit();
+      solve("velocities", Passes::MassSystem::velocity_at_start);
+      then("stress, second half, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
+      then("exchange forces", [&] { pass.finish_exchange(); });
+      find_rigid_motion();
+      correct_velocities();
+      if (pass.loads().any()) solve("velocities at end", Passes::MassSystem::velocity_at_end);
+      solve("increments", Passes::MassSystem::increment);
+      then("velocities, and back to grid", [&] { pass.update_velocities_and_map_back(); });
+      then("exchange again", [&] { pass.finish_exchange(); });
+      solve("new velocities", Passes::MassSystem::new_velocity);
+      then("stress, first half, and motion", [&] { pass.update_stress_and_move(); });
+      break;
     case Scheme::usl:
       if (solves) throw std::logic_error("USL with the consistent mass matrix");
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
@@ -124,6 +140,7 @@ ExplicitIntegrator::ExplicitIntegrator(Model& model, Communication& communicatio
 void ExplicitIntegrator::begin_step(double dt) {
   Clock& clock = model_.clock;
   lag_before_ = clock.lag;
+  strain_lag_before_ = clock.strain_lag;
   heat_dt_ = std::max(dt - clock.heat_lead, 0.0);
   clock.heat_lead = std::max(clock.heat_lead - dt, 0.0);
   passes_->begin_step(set_length(dt));
@@ -136,10 +153,14 @@ StepLength ExplicitIntegrator::set_length(double dt) {
   // too.
   if (model_.scene->solution.scheme == Scheme::usf) {
     clock.lag = clock.first_lag = 0.5 * dt;
-    return {.dt = dt, .velocity_dt = dt, .lag = 0.5 * dt};
+    return {.dt = dt, .velocity_dt = dt, .lag = clock.lag};
   }
   const bool last = clock.time + dt >= model_.scene->solution.end_time;
-  const StepLength length = step_length(dt, lag_before_, clock.first_lag, last);
+  StepLength length = step_length(dt, lag_before_, clock.first_lag, last);
+  if (model_.scene->solution.scheme == Scheme::usavg) {
+    length.strain_lag = strain_lag_before_;
+    clock.strain_lag = strain_lag_after(dt);
+  }
   clock.lag = length.lag;
   return length;
 }

@@ -34,8 +34,8 @@ class ExplicitIntegrator final : public Integrator {
   std::unique_ptr<Conduction> heat_;
   std::unique_ptr<RigidBodies> rigid_;  ///< null without any in contact
   std::unique_ptr<Passes> passes_;
-  double heat_dt_ = 0;     ///< over which this step conducts heat
-  double lag_before_ = 0;  ///< Clock::lag at the start of the step
+  double heat_dt_ = 0;                             ///< over which this step conducts heat
+  double lag_before_ = 0, strain_lag_before_ = 0;  ///< Clock::lag and strain_lag at the start of the step
 };
 
 }  // namespace mpm::core

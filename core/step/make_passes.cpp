@@ -56,6 +56,7 @@ NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
     arrays.add(NodeArray::third);
   if (scene.contact.enable) arrays.add(NodeArray::fourth);
   if (scene.contact.measures_gaps()) arrays.add(NodeArray::fifth);
+  if (scene.solution.scheme == Scheme::usavg) arrays.add(NodeArray::sixth);
   return arrays;
 }
 

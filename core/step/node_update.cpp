@@ -57,9 +57,10 @@ int axis_of(NodeFields what, int c) {
 
 bool is_mechanics(NodeFields what) { return maps_momentum(what) || maps_force(what); }
 
-/// Both arrays hold the mass in the same component.
+/// All arrays hold the mass in the same component.
 bool is_mass(NodeFields what, int c) {
-  static_assert(node_field::mass.first == node_field::second_mass.first);
+  static_assert(node_field::mass.first == node_field::second_mass.first &&
+                node_field::mass.first == node_field::start_mass.first);
   return maps_mass(what) && c == node_field::mass.first;
 }
 

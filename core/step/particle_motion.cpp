@@ -125,27 +125,53 @@ void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_
   store(batch.cell_volumetric_strain + at, select(left > R(least), e / max(left, R(least)), e));
 }
 
-double work_of_stress(const Batch& batch) {
-  const ColumnLayout& layout = *batch.layout;
-  const int volume = layout.offset(Column::volume), deviator = layout.offset(Column::s_xx),
-            pressure = layout.offset(Column::pressure), viscous = layout.offset(Column::viscous_pressure);
+namespace {
+
+/// s : L of lane `i` of a block whose deviator is at `s`.
+double deviatoric_power(const Batch& batch, const double* s, int b, int i) {
   constexpr int y = block_lanes, z = 2 * block_lanes;
+  const auto l = [&](int k) { return batch.gradient[k][block_lanes * b + i]; };
+  return s[i] * l(0) + s[i + y] * l(4) + s[i + z] * l(8) + s[i + 3 * y] * (l(1) + l(3)) +
+         s[i + 4 * y] * (l(5) + l(7)) + s[i + 5 * y] * (l(2) + l(6));
+}
+
+/// Sum over the particles of a batch of work(block, lane), which the compiler evaluates in lanes.
+template <class F>
+double sum_of_lanes(const Batch& batch, F work_of) {
   double sum = 0;
   for (int b = 0; b < batch.blocks; ++b) {
-    const double *block = batch.block[b], *v = block + volume, *s = block + deviator, *p = block + pressure,
-                 *q = block + viscous, *old = batch.old_volume + block_lanes * b;
-    const auto l = [&](int k, int i) { return batch.gradient[k][block_lanes * b + i]; };
     alignas(64) double work[block_lanes];
-    for (int i = 0; i < block_lanes; ++i) {
-      const double power = s[i] * l(0, i) + s[i + y] * l(4, i) + s[i + z] * l(8, i) +
-                           s[i + 3 * y] * (l(1, i) + l(3, i)) + s[i + 4 * y] * (l(5, i) + l(7, i)) +
-                           s[i + 5 * y] * (l(2, i) + l(6, i));
-      work[i] = 0.5 * batch.dt * (v[i] + old[i]) * power - (v[i] - old[i]) * (p[i] + q[i]);
-    }
+    for (int i = 0; i < block_lanes; ++i) work[i] = work_of(b, i);
     const int used = std::min(block_lanes, batch.particles - block_lanes * b);
     for (int i = 0; i < used; ++i) sum += work[i];
   }
   return sum;
+}
+
+}  // namespace
+
+double work_of_stress(const Batch& batch) {
+  const ColumnLayout& layout = *batch.layout;
+  const int volume = layout.offset(Column::volume), deviator = layout.offset(Column::s_xx),
+            pressure = layout.offset(Column::pressure), viscous = layout.offset(Column::viscous_pressure);
+  return sum_of_lanes(batch, [&](int b, int i) {
+    const double *block = batch.block[b], *old = batch.old_volume + block_lanes * b;
+    const double v = block[volume + i];
+    return 0.5 * batch.dt * (v + old[i]) * deviatoric_power(batch, block + deviator, b, i) -
+           (v - old[i]) * (block[pressure + i] + block[viscous + i]);
+  });
+}
+
+double work_of_present_stress(const Batch& batch) {
+  const ColumnLayout& layout = *batch.layout;
+  const int volume = layout.offset(Column::volume), deviator = layout.offset(Column::s_xx),
+            pressure = layout.offset(Column::pressure);
+  return sum_of_lanes(batch, [&](int b, int i) {
+    const double* block = batch.block[b];
+    const auto l = [&](int k) { return batch.gradient[k][block_lanes * b + i]; };
+    return batch.dt * block[volume + i] *
+           (deviatoric_power(batch, block + deviator, b, i) - block[pressure + i] * (l(0) + l(4) + l(8)));
+  });
 }
 
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch,

@@ -17,6 +17,7 @@ struct alignas(128) ThreadScratch {
   StepStatistics statistics;
   double work = 0;                          ///< external work of the current brick
   double work_of_stress = 0;                ///< the work of its stresses
+  double gain_of_work = 0;                  ///< USAVG: what the last half step has added to it
   alignas(64) double old[3 * block_lanes];  ///< a block's velocities or positions before an update
   AlignedDoubles nodes, sums;  ///< of the current brick: records of node_doubles, one cache line each
   void add_work_of_brick() {
@@ -73,7 +74,16 @@ void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_
 ///   (U^{n+1} - U^n)/dt         =  (P^n(v^{n+1/2}) + P^{n+1}(v^{n+1/2}))/2
 /// so that K^{n+1/2} + U^{n+1} - dt P^{n+1}(v^{n+1/2})/2 is conserved: the state after a step of MUSL or USL.
 /// A step of USF ends with v^{n+1/2} and U^n, and dt P^n(v^{n-1/2})/2 is added, to first order.
+///
+/// A step of USAVG ends with v^{n+1/2} and, after half of its strain, with U^{n+1/2}:
+///   U^{n+1/2} - U^{n-1/2} = dt (P^{n-1/2}(v^{n-1/2}) + P^n(v^{n-1/2}) + P^n(v^{n+1/2}) +
+///   P^{n+1/2}(v^{n+1/2}))/4
+/// so that, to the third order, K^{n+1/2} + U^{n+1/2} - dt (P^{n+1/2} - P^n)(v^{n+1/2})/4 is conserved. The
+/// artificial viscosity is not part of that term: the one that acts in step n does the work of both halves
+/// (Batch::old_viscosity).
 double work_of_stress(const Batch& batch);
+/// The work of a batch's stresses as they are, without artificial viscosity, over the step's strain.
+double work_of_present_stress(const Batch& batch);
 
 /// Records the particles of vanishing volume or negative energy, where the scene checks for them.
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch, StepStatistics& statistics);

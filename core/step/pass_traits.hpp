@@ -53,19 +53,19 @@ struct PassTraits {
       !solves && requires(typename S::Field field, const BrickFrame& frame) {
     field.take_strain(frame, 0.0, static_cast<const double*>(nullptr));
   };
-  /// What MUSL maps back to the grid. Where the motion of all nodes is not found (moving_block) or kept, the
-  /// strain velocities need the masses once more.
+  /// What MUSL and USAVG map back to the grid. Where the motion of all nodes is not found (moving_block) or
+  /// kept, the strain velocities need the masses once more.
   static constexpr NodeFields mapped_back =
       momentum_block<S> == S::node_block && !can_keep_field ? mapped::momentum : mapped::momentum_mass;
-  /// The nodes of a brick whose motion is found: with MUSL those that its particles take it from, unless
-  /// contact, a correction, a solution, the work of a surface load or a rigid wall (node_update.hpp) needs
-  /// all of them.
+  /// The nodes of a brick whose motion is found: with MUSL and USAVG those that its particles take it from,
+  /// unless contact, a correction, a solution, the work of a surface load or a rigid wall (node_update.hpp)
+  /// needs all of them.
   static NodeBlockShape moving_block(const Model& model) {
     return moves_all_nodes(model) ? S::node_block : momentum_block<S>;
   }
   static bool moves_all_nodes(const Model& model) {
     const SolutionInput& solution = model.scene->solution;
-    return corrects || solves || solution.scheme != Scheme::musl || model.scene->contact.enable ||
+    return corrects || solves || !maps_back(solution.scheme) || model.scene->contact.enable ||
            has_surface_loads(*model.scene) ||
            std::ranges::count(model.grid->geometry().boundary, Boundary::rigid_wall) > 0;
   }

@@ -60,12 +60,13 @@ class Passes {
   enum class MassSystem { velocity_at_start, velocity_at_end, increment, new_velocity };
   virtual void solve_mass(MassSystem system) = 0;
 
-  /// MUSL: nodal equation of motion, v += dv, and the new momentum back to the nodes.
+  /// MUSL, USAVG: nodal equation of motion, v += dv, and the new momentum back to the nodes.
   virtual void update_velocities_and_map_back() = 0;
-  /// MUSL: strain with the re-mapped velocity, stress, then move.
+  /// MUSL, USAVG: strain with the re-mapped velocity, USAVG over half of the step, stress, then move.
   virtual void update_stress_and_move() = 0;
 
-  /// USF: strain with the velocity at the start of the step, stress, and its forces to the nodes.
+  /// USF, USAVG: strain with the velocity at the start of the step, USAVG over the last step's other half,
+  /// stress, and its forces to the nodes.
   virtual void update_stress_and_map_forces() = 0;
   /// USF: nodal equation of motion with the new stress, v += dv, then move.
   virtual void update_velocities_and_move() = 0;

@@ -72,7 +72,12 @@ class PassesWith final : public Passes {
   void correct_rigid_motion() override;
   void move_rigid_bodies() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
-  void map_momentum_mass() override { map_to_grid<mapped::momentum_mass>(); }
+  void map_momentum_mass() override {
+    if (scheme_ == Scheme::usavg)
+      map_to_grid<mapped::start>();
+    else
+      map_to_grid<mapped::momentum_mass>();
+  }
   void finish_exchange() override { halo_.end(*model_.grid); }
   void correct_velocities(int order) override;
   void finish_correction() override {
@@ -92,6 +97,12 @@ class PassesWith final : public Passes {
   using Place = typename S::Place;
   using Traits = PassTraits<S, T>;
   struct Nothing {};
+  /// Of an update of the stresses: its length and end, and the time over its length by which the internal
+  /// energy is then ahead of the kinetic one.
+  struct StrainInterval {
+    double dt = 0, end = 0, lead = 0;
+    double new_viscosity = 1;  ///< Batch::new_viscosity
+  };
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
     typename S::Field field;
@@ -104,7 +115,8 @@ class PassesWith final : public Passes {
     std::vector<RigidNode> rigid_nodes;
     SiteAverages averages;   ///< of the current tile; empty where volume changes are not averaged
     double strain_rate = 0;  ///< largest of the thread's bricks
-    std::tuple<CarriedSums<NodeArray::first>, CarriedSums<NodeArray::second>, CarriedSums<NodeArray::third>>
+    std::tuple<CarriedSums<NodeArray::first>, CarriedSums<NodeArray::second>, CarriedSums<NodeArray::third>,
+               CarriedSums<NodeArray::sixth>>
         carried;  ///< of this pass
     [[no_unique_address]] std::conditional_t<Traits::corrects || Traits::solves, typename S::Field, Nothing>
         corrected;
@@ -118,9 +130,21 @@ class PassesWith final : public Passes {
   void set_step(const StepLength& length) {
     dt = length.dt;
     velocity_dt = length.velocity_dt;
+    strain_lag_ = length.strain_lag;
     lag_ = length.lag;
     transfer_step_ = {dt / (wave_weight_ * model_.clock.critical_dt)};
     loads_.begin_step(model_.clock.time, dt, length.load_part);
+  }
+
+  /// USAVG's update at the start of a step completes that of the step before, with the velocities of then.
+  StrainInterval interval_at_start() const {
+    const double time = model_.clock.time;
+    if (scheme_ == Scheme::usavg) return {strain_lag_, time, 0, 2};
+    return {dt, time + dt, -lag_ / dt};  // the velocities are yet to follow these stresses
+  }
+  StrainInterval interval_at_end() const {
+    const double left = scheme_ == Scheme::usavg ? strain_lag_after(dt) : 0.0, done = dt - left;
+    return {done, model_.clock.time + done, (lag_ - left) / done, scheme_ == Scheme::usavg ? 0.0 : 1.0};
   }
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
@@ -186,6 +210,13 @@ class PassesWith final : public Passes {
     else
       sum_contributions<of>(*model_.grid, shared, s, component, sums);
   }
+  /// Momentum and mass at the start of the step, where a scheme maps them before the forces.
+  void sum_start(Slot s, std::int32_t component, Scratch& at, double* sums, const NodeMask* some = nullptr) {
+    if (scheme_ == Scheme::usavg)
+      sum<NodeArray::sixth>(momentum_shared_, s, component, at, sums, some);
+    else
+      sum<NodeArray::second>(momentum_shared_, s, component, at, sums, some);
+  }
   template <NodeFields what, class F>
   void map_bricks(F work);
 
@@ -240,10 +271,8 @@ class PassesWith final : public Passes {
   void find_departing(Slot s, std::size_t c, std::size_t b, const BrickFrame& frame,
                       const ColumnLayout& layout, const double* block, Scratch& at);
   void keep_own_cells(Slot s, Scratch& at);
-  /// Whether the particles' velocities are already those at the start of the next step.
-  enum class Velocities { of_last_step, of_next_step };
   template <bool moves, class F>
-  void stress_of_brick(Slot s, std::int32_t component, Velocities velocities, Scratch& at, F prefetch_nodes);
+  void stress_of_brick(Slot s, std::int32_t component, Scratch& at, F prefetch_nodes);
 
   // Corrections of the velocities (correct_velocities.hpp).
   void begin_corrections();
@@ -298,10 +327,10 @@ class PassesWith final : public Passes {
     if constexpr (Traits::corrects) return correcting_ && transfer_.of_end;
     return false;
   }
-  /// The same as a field. MUSL moves particles in a later pass, by the motion kept for it.
+  /// The same as a field. MUSL and USAVG move particles in a later pass, by the motion kept for it.
   const typename S::Field& moving_field(const Scratch& at) const {
     if constexpr (Traits::corrects) {
-      if (moves_corrected() && scheme_ != Scheme::musl) return at.corrected;
+      if (moves_corrected() && !maps_back(scheme_)) return at.corrected;
     }
     return at.field;
   }
@@ -392,12 +421,13 @@ class PassesWith final : public Passes {
   bool correcting_ = false;    ///< in this step
   bool follows_grid_ = false;  ///< follow_grid() in this step
   TransferStep transfer_step_;
-  double dt = 0, velocity_dt = 0, lag_ = 0;                ///< of the current step: StepLength
-  double velocity_limit_;                                  ///< infinite without LimitVelocity
-  double erosion_volume_;                                  ///< of deformable bodies
-  double wave_weight_;                                     ///< of wave speeds in the critical step
-  std::vector<Scratch> scratch_;                           ///< by thread
-  std::vector<std::vector<DepartingParticle>> departing_;  ///< by slot
+  double dt = 0, velocity_dt = 0, strain_lag_ = 0, lag_ = 0;  ///< of the current step: StepLength
+  StrainInterval strain_;                                     ///< of this pass
+  double velocity_limit_;                                     ///< infinite without LimitVelocity
+  double erosion_volume_;                                     ///< of deformable bodies
+  double wave_weight_;                                        ///< of wave speeds in the critical step
+  std::vector<Scratch> scratch_;                              ///< by thread
+  std::vector<std::vector<DepartingParticle>> departing_;     ///< by slot
   /// By slot; MUSL: nodal motion, kept between the passes that update the nodes and move the particles.
   AlignedDoubles motion_;
   AlignedDoubles corrected_;    ///< XPIC, FMPM: corrected_nodes()

@@ -32,7 +32,9 @@ double PassesWith<S, T>::largest_strain_rate(double above) {
       ContributionPrefetch<of>(grid, shared<of>(), s + 1, 1).next();
       sum_fields<of>(s, at);
     };
-    if (scheme_ == Scheme::usf)
+    if (scheme_ == Scheme::usavg)
+      sum.template operator()<NodeArray::sixth>();
+    else if (scheme_ == Scheme::usf)
       sum.template operator()<NodeArray::second>();
     else
       sum.template operator()<NodeArray::first>();
@@ -77,6 +79,7 @@ template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_stress_and_move() {
   const BrickGrid& grid = *model_.grid;
   departing_.resize(static_cast<std::size_t>(grid.owned()));
+  strain_ = interval_at_end();
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t k) {
       const NodeMask* some = reached(s);
@@ -100,7 +103,7 @@ void PassesWith<S, T>::update_stress_and_move() {
                      take_strain(s, component, at.sums.data(), at);
                      auto nodes = prefetch_nodes<NodeArray::second>(s);
                      SpreadPrefetch room = prefetch_motion(s);
-                     stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] {
+                     stress_of_brick<true>(s, component, at, [&] {
                        nodes.next();
                        room.next();
                      });
@@ -113,11 +116,16 @@ template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_stress_and_map_forces() {
   const BrickGrid& grid = *model_.grid;
   critical_.assign(static_cast<std::size_t>(grid.owned()), 0.0);
+  strain_ = interval_at_start();
   map_bricks<mapped::force>([&](Slot s, Scratch& at) {
+    const auto map_forces = [&](std::int32_t component) {
+      map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});
+    };
+    if (strain_.dt == 0) return for_each_own_field(s, map_forces);
     const auto update = [&](std::int32_t component, [[maybe_unused]] std::size_t k) {
       const NodeMask* some = reached(s);
       double* const nodes = at.nodes.data();
-      sum<NodeArray::second>(momentum_shared_, s, component, at, nodes, some);
+      sum_start(s, component, at, nodes, some);
       if (takes_momenta(s)) return;
       second_velocities(grid.geometry().mass_cutoff, nodes, nodes, faces(s), shared_.summed(some), nodes);
       if constexpr (Traits::solves) take_solved_strain(s, k, at);
@@ -125,8 +133,8 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
       take_strain(s, component, at.nodes.data(), at);
       auto nodes = prefetch_nodes<NodeArray::second>(s);
-      stress_of_brick<false>(s, component, Velocities::of_last_step, at, [&] { nodes.next(); });
-      map_brick<mapped::force>(s, component, at, [](int, const Place&, double*, int) {});
+      stress_of_brick<false>(s, component, at, [&] { nodes.next(); });
+      map_forces(component);
     });
   });
 }
@@ -153,6 +161,7 @@ template <ShapePolicy S, TransferPolicy T>
 void PassesWith<S, T>::update_all() {
   const BrickGrid& grid = *model_.grid;
   departing_.resize(static_cast<std::size_t>(grid.owned()));
+  strain_ = interval_at_end();
   for_bricks(0, grid.owned(), [&](Slot s, Scratch& at) {
     const auto update = [&](std::int32_t component, std::size_t) { sum_and_update_nodes(s, component, at); };
     for_each_field(s, at, Contact::Velocity::of_end, update, [&](std::int32_t component, std::size_t k) {
@@ -162,7 +171,7 @@ void PassesWith<S, T>::update_all() {
                              shared_.nodes(), at.nodes.data());
       at.field.take_strain(frame(s, component), at.nodes.data(), reached(s));
       auto nodes = prefetch_nodes<NodeArray::first>(s);
-      stress_of_brick<true>(s, component, Velocities::of_next_step, at, [&] { nodes.next(); });
+      stress_of_brick<true>(s, component, at, [&] { nodes.next(); });
     });
     keep_own_cells(s, at);
   });

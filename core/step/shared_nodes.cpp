@@ -220,6 +220,7 @@ MPM_INSTANTIATE(NodeArray::first)
 MPM_INSTANTIATE(NodeArray::second)
 MPM_INSTANTIATE(NodeArray::third)
 MPM_INSTANTIATE(NodeArray::fourth)
+MPM_INSTANTIATE(NodeArray::sixth)
 #undef MPM_INSTANTIATE
 
 }  // namespace mpm::core

@@ -89,7 +89,7 @@ class CarriedSums {
 };
 
 /// sums = contributions of the brick and its 26 neighbours; components first .. first + 3 of records of
-/// node_doubles for the second and third array, all components for the first. A brick that does not exist
+/// node_doubles for arrays of half a line, all components for the first. A brick that does not exist
 /// contributes zeros, so every copy of a node adds the same numbers. Records of nodes that are not wanted
 /// stay as they are.
 template <NodeArray of>

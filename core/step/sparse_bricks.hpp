@@ -64,9 +64,10 @@ class SparseBricks {
     bool all = true;
     NodeMask some;
   };
-  std::uint64_t revision_ = 0;                 ///< of the grid
-  std::vector<Nodes> reached_;                 ///< by slot
-  std::array<std::vector<Nodes>, 2> written_;  ///< by array and slot: where contributions may not be zero
+  std::uint64_t revision_ = 0;  ///< of the grid
+  std::vector<Nodes> reached_;  ///< by slot
+  std::array<std::vector<Nodes>, node_arrays.size()>
+      written_;  ///< by array and slot: where contributions may not be zero
 };
 
 }  // namespace mpm::core

@@ -18,27 +18,40 @@ namespace mpm::core {
 /// and shock); these are 2 to 5 % below, and linear functions with MUSL keep the thesis' 1. Over 100,000
 /// steps (long_runs.py: an elastic block with the default viscosity) USL and USF need shorter ones, as a
 /// particle that has crept to the edge of a cell is unstable there; their limits are the largest that held.
+/// With USAVG `linear` has the step at which one particle in a cell does not gain energy, either.
 ///
-///                 MUSL                USF                 USL
-///   linear        0.95 0.99 1.3       1.2  1.2  1.3       0.67 0.64 0.73      block, fluid, bar
-///   SGMP          1.5  1.3  2.2       1.3  1.1  2.3       1.0  0.80 1.2
-///   DDMP          1.5  1.0  1.7       0.64 0.95 1.7       0.99 0.77 1.1
-///   uGIMP         1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.73 0.77
-///   cpGIMP        1.5  1.0  1.5       0.77 1.2  1.7       0.80 0.77 0.77
-///   CPDI, CPDI2   1.6  1.0  1.6       0.80 1.2  1.7       0.80 0.77 0.77
-///   quadratic     1.6  1.2  1.8       1.0  1.1  1.9       1.0  0.73 1.1
-///   cubic         1.5  1.3  2.0       1.4  1.1  2.1       1.3  1.0  1.4
+///                 MUSL            USAVG           USF             USL
+///                 block fluid bar, each
+///   linear        0.95 0.99 1.3   1.2  1.0  1.3   1.2  1.2  1.3   0.67 0.64 0.73
+///   SGMP          1.5  1.3  2.2   1.7  1.4  2.2   1.3  1.1  2.3   1.0  0.80 1.2
+///   DDMP          1.5  1.0  1.7   1.4  1.1  1.7   0.64 0.95 1.7   0.99 0.77 1.1
+///   uGIMP         1.5  1.0  1.5   1.5  1.3  1.6   0.77 1.2  1.7   0.80 0.73 0.77
+///   cpGIMP        1.5  1.0  1.5   1.5  1.3  1.6   0.77 1.2  1.7   0.80 0.77 0.77
+///   CPDI, CPDI2   1.6  1.0  1.6   1.6  1.3  1.7   0.80 1.2  1.7   0.80 0.77 0.77
+///   quadratic     1.6  1.2  1.8   1.7  1.3  1.8   1.0  1.1  1.9   1.0  0.73 1.1
+///   cubic         1.5  1.3  2.0   1.7  1.4  2.1   1.4  1.1  2.1   1.3  1.0  1.4
 /// Over 100,000 steps USF: cpGIMP 0.6 (not 0.68); linear has a remedy of its own (face_traps.hpp); USL:
 /// linear 0.24 (not 0.3), DDMP 0.58 (not 0.66), uGIMP and cpGIMP 0.56 (not 0.63). XPIC and FMPM allow longer
-/// steps than FLIP (not linear with FMPM: fluid 0.87, stable at factor 1 by the weight of tension, below),
-/// affine transfers shorter ones; fluid, the smaller of APIC and TPIC | AFLIP:
+/// steps than FLIP (not linear with FMPM: fluid 0.87, stable at factor 1 by the weight of tension, below;
+/// with USAVG FMPM has MUSL's limits: 1.1 in the fluid with GIMP and CPDI), affine transfers shorter ones,
+/// with USAVG as with MUSL; fluid, the smaller of APIC and TPIC | AFLIP:
 ///   uGIMP, cpGIMP 0.73 | 0.64         0.64 | 0.67         0.23 | 0.2
 ///   quadratic     0.87 | 0.59         0.87 | 0.59         0.42 | below 0.2
 ///   cubic         1.1  | 0.77         1.1  | 0.80         0.44 | below 0.2
 inline double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) {
   const auto by_scheme = [scheme](double musl, double usf, double usl) {
-    return scheme == Scheme::musl ? musl : scheme == Scheme::usf ? usf : usl;
+    return scheme == Scheme::usf ? usf : scheme == Scheme::usl ? usl : musl;
   };
+  if (scheme == Scheme::usavg && !is_affine(transfer) && transfer != Transfer::fmpm) {
+    switch (shape) {
+      case ShapeFunction::sgmp:
+      case ShapeFunction::cubic_bspline: return 1.3;
+      case ShapeFunction::quadratic_bspline: return 1.25;
+      case ShapeFunction::ddmp: return 1.05;
+      case ShapeFunction::linear: return 0.85;
+      default: return 1.2;
+    }
+  }
   if (is_affine(transfer)) {
     const bool aflip = transfer == Transfer::aflip;
     switch (shape) {

@@ -4,7 +4,7 @@
 //
 // With one length for both, a step that is shorter than the last one gains (dt_before - dt)/2 times the power
 // of the stresses: 4 % of the energy of a block that vibrates while its step changes by 6 %. USF has one
-// length for both (explicit_integrator.cpp).
+// length for both (explicit_integrator.cpp). USAVG's strains and stresses end in the middle of the step.
 //
 // The velocities of the input are those of half a step before time zero, so that after a time t they hold the
 // impulses of a time t + first_lag - lag. The last step, which EndTime may shorten to any length, advances
@@ -19,9 +19,13 @@ namespace mpm::core {
 struct StepLength {
   double dt = 0;           ///< of positions and stresses
   double velocity_dt = 0;  ///< of velocities
+  double strain_lag = 0;   ///< USAVG: of strains and stresses behind the positions at the start of the step
   double lag = 0;          ///< of the velocities behind the stresses at the end of the step
   double load_part = 0.5;  ///< of dt, after which loads are evaluated: the middle of their impulses' time
 };
+
+/// USAVG: time by which strains and stresses are behind the positions at the end of a step of this length.
+constexpr double strain_lag_after(double dt) { return 0.5 * dt; }
 
 inline constexpr double least_impulse = 1.0 / 64;  ///< time of the last step's impulses, over its length
 

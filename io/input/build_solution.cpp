@@ -44,6 +44,7 @@ namespace {
 core::Scheme scheme(std::string_view word) {
   if (word == "USF") return core::Scheme::usf;
   if (word == "USL") return core::Scheme::usl;
+  if (word == "USAVG") return core::Scheme::usavg;
   return core::Scheme::musl;
 }
 

@@ -196,7 +196,7 @@ void note_pairs(const Node& root, const core::Scene& scene, std::vector<core::Di
 /// Measured in tests/system/physics_contact.py: USF strains before it knows the step's impulses.
 void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   const std::optional<Node> contact = root.child("Contact"), solution = root.child("Solution");
-  if (!contact || !solution || scene.solution.scheme == core::Scheme::musl) return;
+  if (!contact || !solution || core::maps_back(scene.solution.scheme)) return;
   notes.push_back({scene.provenance.path, solution->line(), "Solution", "algorithm",
                    solution->word("algorithm"),
                    "with Contact, bodies that rebound gain energy, as their strains do not follow the "

@@ -31,6 +31,7 @@ std::string_view word(core::Scheme scheme) {
     case core::Scheme::usf: return "USF";
     case core::Scheme::usl: return "USL";
     case core::Scheme::musl: return "MUSL";
+    case core::Scheme::usavg: return "USAVG";
   }
   return {};
 }

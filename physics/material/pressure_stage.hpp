@@ -215,7 +215,9 @@ template <class T, class Eos>
     const T q = (length * now.density * acting_rate) * (rules.bq1 * length * rate + rules.bq2 * c_before);
 
     const T work = 0.5 * (volume + old_volume) * per_v0 * core::load<T>(batch.deviatoric_work + row);
-    const T energy_star = old_energy - h * (old_p + core::load<T>(block + q_at) + q) + work;
+    const T old_q = core::load<T>(block + q_at);
+    const T energy_star =
+        old_energy - h * (old_p + batch.old_viscosity * old_q + batch.new_viscosity * q) + work;
     const T stated = (acting.a + acting.b * energy_star) * response;
     T p = stated, sentence = 0.0;
     if (can_fail && rules.tension.limited) {

@@ -93,7 +93,7 @@ TEST_CASE("Failed particles form a component with the same bits on any ranks and
   parallel::MpiCommunication exchange(world());
   core::SoloCommunication solo;
   const int threads = omp_get_max_threads();
-  for (const char* algorithm : {"MUSL", "USF", "USL"}) {
+  for (const char* algorithm : {"MUSL", "USF", "USL", "USAVG"}) {
     INFO(algorithm);
     const auto scene = collision(registry, algorithm, true);
     omp_set_num_threads(1);

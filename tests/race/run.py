@@ -19,7 +19,7 @@ class Race(_mpm.Case):
         self.assertEqual(_mpm.summary(self.folder / "out")["threads"], 4)
 
     def test_collision(self):
-        for scheme in ("MUSL", "USF", "USL"):
+        for scheme in ("MUSL", "USF", "USL", "USAVG"):
             with self.subTest(scheme):
                 self.check(bits_collision.collision("", scheme, bits_collision.EVERYTHING, bits_collision.END / 3))
 

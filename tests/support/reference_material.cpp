@@ -71,7 +71,7 @@ double wave_speed(const ReferenceMaterial& material, const ReferenceParticle& pa
 }
 
 void update_stress(const ReferenceMaterial& material, double length, double dt, const Matrix& L,
-                   ReferenceParticle& particle) {
+                   ReferenceParticle& particle, double new_viscosity) {
   const double G = material.shear();
   const Matrix Lt = transposed(L);
   Matrix de{}, dw{};
@@ -115,7 +115,8 @@ void update_stress(const ReferenceMaterial& material, double length, double dt, 
   double work = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) work += 0.5 * (s_old[i][j] + s[i][j]) * de[i][j];
-  const double e_star = particle.E * V0 - 0.5 * dV * particle.p - 0.5 * dV * (q_old + q) + V_mid * work;
+  const double acting_q = 0.5 * ((2 - new_viscosity) * q_old + new_viscosity * q);
+  const double e_star = particle.E * V0 - 0.5 * dV * particle.p - dV * acting_q + V_mid * work;
   double p = 0;
   if (material.gruneisen) {
     const Pressure eos = gruneisen(material, rho / material.density - 1);

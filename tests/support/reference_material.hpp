@@ -41,9 +41,10 @@ struct ReferenceParticle {
 };
 
 /// One stress update over dt at velocity gradient L: s, p, q, E, epef, V, c and D, thesis 2.4.
-/// `length` is the grid's smallest cell edge, l_e of the viscosity.
+/// `length` is the grid's smallest cell edge, l_e of the viscosity; `new_viscosity` what the new q counts in
+/// the mean stress that does the work, twice, and 2 less it what the old one does.
 void update_stress(const ReferenceMaterial& material, double length, double dt, const Matrix& L,
-                   ReferenceParticle& particle);
+                   ReferenceParticle& particle, double new_viscosity = 1);
 
 /// Wave speed 2-57 of the particle's present state.
 double wave_speed(const ReferenceMaterial& material, const ReferenceParticle& particle);

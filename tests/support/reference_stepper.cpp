@@ -79,31 +79,34 @@ void ReferenceStepper::step_with() {
   const bool one_length = case_.scheme == ReferenceScheme::usf || steps_ == 0;
   const double velocity_dt = one_length ? dt : 0.5 * (last_dt_ + dt);
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
-  const bool usf = case_.scheme == ReferenceScheme::usf;
   if (case_.shape == ReferenceShape::ddmp) find_cells_in_use();
   find_supports<Support>();
   particles_to_grid<Support>();
-  if (usf) {
+  const bool averages = case_.scheme == ReferenceScheme::usavg;
+  if (strains_first() && !(averages && steps_ == 0)) {
     initial_velocities();
     if (case_.consistent) {
       solve_mass<Support>(&Node::w, &Node::w);
       stop_at_walls(&Node::w);
       for (Node& node : grid_) node.u = node.w;
     }
-    update_stresses<Support>(dt);
+    update_stresses<Support>(averages ? 0.5 * last_dt_ : dt, true);
   }
+  if (strains_first()) add_forces<Support>();
   integrate_momentum(velocity_dt);
   if (corrects()) add_orders<Support>();
   if (case_.consistent) solve_motion<Support>(velocity_dt);
   grid_to_particles<Support>(dt, velocity_dt);
-  if (!usf) {
+  if (case_.scheme != ReferenceScheme::usf) {
     final_velocities();
     if (moves_last()) {
       solve_mass<Support>(&Node::w, &Node::w);
       stop_at_walls(&Node::w);
       move_particles<Support>(dt);
     }
-    update_stresses<Support>(dt);
+    update_stresses<Support>(averages ? 0.5 * dt : dt, false);
+    for (std::size_t p = 0; p < case_.particles.size(); ++p)
+      deform_domain(case_.shape, dt, gradients_[p], case_.particles[p]);
   }
   for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].x = next_x_[n];
   if (case_.shape == ReferenceShape::cpdi2)
@@ -179,7 +182,7 @@ ReferenceStepper::Stop ReferenceStepper::stop(const Index& node, std::size_t axi
   return result;
 }
 
-/// 2-31, 2-32; the forces at once unless USF has yet to update the stress.
+/// 2-31, 2-32; the forces at once unless the stress is yet to be updated.
 template <class Support>
 void ReferenceStepper::particles_to_grid() {
   std::fill(grid_.begin(), grid_.end(), Node{});
@@ -192,7 +195,7 @@ void ReferenceStepper::particles_to_grid() {
       node.m += particle.m * at.mass(n);
       for (std::size_t a = 0; a < 3; ++a) node.p[a] += particle.m * particle.v[a] * at.value(n, a);
     }
-    if (case_.scheme != ReferenceScheme::usf) add_force(particle, pressures[p], at);
+    if (!strains_first()) add_force(particle, pressures[p], at);
   }
   const double cutoff = case_.mass_cutoff * node_mass_unit_;
   for (Node& node : grid_) node.active = node.m > cutoff;
@@ -250,7 +253,7 @@ void ReferenceStepper::integrate_momentum(double dt) {
       }
       node.v[a] = node.p[a] / node.m;
       node.a[a] = node.f[a] / node.m;
-      if (case_.scheme == ReferenceScheme::musl) node.w[a] = 0;  // a sum to come
+      if (maps_back()) node.w[a] = 0;  // a sum to come
     }
   });
 }
@@ -290,20 +293,20 @@ void ReferenceStepper::grid_to_particles(double dt, double velocity_dt) {
             if (grid_[at.node[n]].active) L[a][b] += moving(grid_[at.node[n]])[a] * at.slope(n, a)[b];
       deform_domain(case_.shape, dt, L, particle);
     }
-    if (case_.scheme != ReferenceScheme::musl) continue;
+    if (!maps_back()) continue;
     for (std::size_t n = 0; n < at.count; ++n)
       for (std::size_t a = 0; a < 3; ++a)
         grid_[at.node[n]].w[a] += particle.m * particle.v[a] * at.value(n, a);
   }
 }
 
-/// The rest of 2-45 for MUSL, and the boundary conditions on the velocity of the strain rate.
+/// The rest of 2-45, and the boundary conditions on the velocity of the strain rate.
 void ReferenceStepper::final_velocities() {
   for_active_nodes([&](const Index& index, Node& node) {
     for (std::size_t a = 0; a < 3; ++a) {
-      if (case_.scheme == ReferenceScheme::musl) node.w[a] /= node.m;
-      // MUSL's stress update knows the nodes by the velocity with which they move.
-      const bool by_motion = case_.scheme == ReferenceScheme::musl && !case_.consistent;
+      if (maps_back()) node.w[a] /= node.m;
+      // This stress update knows the nodes by the velocity with which they move.
+      const bool by_motion = maps_back() && !case_.consistent;
       const Vector& known = by_motion ? moving(node) : node.v;
       const bool held = case_.wall_reaction && known[a] == 0 &&
                         (stop(index, a, 1) == Stop::wall || stop(index, a, -1) == Stop::wall);
@@ -313,8 +316,9 @@ void ReferenceStepper::final_velocities() {
 }
 
 template <class Support>
-void ReferenceStepper::update_stresses(double dt) {
-  std::vector<Matrix> gradients;
+void ReferenceStepper::update_stresses(double dt, bool at_start) {
+  std::vector<Matrix>& gradients = gradients_;
+  gradients.clear();
   for (const auto& particle : case_.particles) {
     const Support& at = support<Support>(particle);
     Matrix L{};
@@ -332,7 +336,7 @@ void ReferenceStepper::update_stresses(double dt) {
       }
       add_own_kick(particle, nodes, case_.cell, dt, L);
     }
-    if (case_.scheme == ReferenceScheme::usf) L = relative_to_old_positions(L, dt);
+    if (at_start) L = relative_to_old_positions(L, dt);
     gradients.push_back(L);
   }
   const auto trace = [](const Matrix& L) { return L[0][0] + L[1][1] + L[2][2]; };
@@ -344,11 +348,14 @@ void ReferenceStepper::update_stresses(double dt) {
     ReferenceParticle& particle = case_.particles[p];
     Matrix L = gradients[p];
     for (std::size_t a = 0; a < 3; ++a) L[a][a] += (changes[p] - trace(gradients[p])) / 3;
-    update_stress(case_.material, length_, dt, L, particle);
+    const double new_viscosity = case_.scheme != ReferenceScheme::usavg ? 1 : at_start ? 2 : 0;
+    update_stress(case_.material, length_, dt, L, particle, new_viscosity);
     if (!(particle.V > 0)) throw std::runtime_error("a particle's volume is " + std::to_string(particle.V));
-    if (case_.scheme != ReferenceScheme::usf) deform_domain(case_.shape, dt, gradients[p], particle);
   }
-  if (case_.scheme != ReferenceScheme::usf) return;
+}
+
+template <class Support>
+void ReferenceStepper::add_forces() {
   const std::vector<double> pressures = acting_pressures();
   for (std::size_t p = 0; p < case_.particles.size(); ++p)
     add_force(case_.particles[p], pressures[p], support<Support>(case_.particles[p]));

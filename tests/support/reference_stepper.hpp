@@ -20,7 +20,7 @@
 
 namespace mpm::tests {
 
-enum class ReferenceScheme { usf, usl, musl };
+enum class ReferenceScheme { usf, usl, musl, usavg };
 enum class ReferenceTransfer { flip, xpic, fmpm };
 
 struct ReferenceCase {
@@ -153,6 +153,14 @@ class ReferenceStepper {
   void add_force(const ReferenceParticle& particle, double pressure, const Support& at);
   /// p + q of every particle, or its mean over the particle's site.
   std::vector<double> acting_pressures() const;
+  /// Whether stresses are updated at the start of the step, and forces follow; whether the new velocities are
+  /// mapped to the grid, for an update at the end.
+  bool strains_first() const {
+    return case_.scheme == ReferenceScheme::usf || case_.scheme == ReferenceScheme::usavg;
+  }
+  bool maps_back() const {
+    return case_.scheme == ReferenceScheme::musl || case_.scheme == ReferenceScheme::usavg;
+  }
   void initial_velocities();
   void integrate_momentum(double dt);
   /// Whether this step is one of XPIC or FMPM.
@@ -174,26 +182,30 @@ class ReferenceStepper {
   void solve_motion(double dt);
   /// The velocity with which particles move.
   const Vector& moving(const Node& node) const {
-    if (case_.consistent) return case_.scheme == ReferenceScheme::musl ? node.w : node.u;
+    if (case_.consistent) return maps_back() ? node.w : node.u;
     return corrects() && case_.transfer == ReferenceTransfer::fmpm ? node.u : node.v;
   }
   template <class Support>
   void grid_to_particles(double dt, double velocity_dt);
   template <class Support>
   void move_particles(double dt);
-  bool moves_last() const { return case_.consistent && case_.scheme == ReferenceScheme::musl; }
+  bool moves_last() const { return case_.consistent && maps_back(); }
   void move_corners(std::size_t index, double dt);
   void final_velocities();
   template <class Support>
-  void update_stresses(double dt);
+  void add_forces();
+  /// `at_start`: with the velocity gradient at the places to which the velocities led.
+  template <class Support>
+  void update_stresses(double dt, bool at_start);
   /// Replaces values of the particles by their means over sites, weighted by volume.
   void average(std::vector<double>& values) const;
   /// Adds to the particles' rates of volume change what lets pressures inside a site become equal.
   void relax_pressures(double dt, std::vector<double>& changes) const;
 
   ReferenceCase case_;
-  Index nodes_{};          ///< along each axis
-  std::size_t layer_ = 0;  ///< layers of nodes outside the grid
+  std::vector<Matrix> gradients_;  ///< of the velocity, by particle, of the last update of stresses
+  Index nodes_{};                  ///< along each axis
+  std::size_t layer_ = 0;          ///< layers of nodes outside the grid
   ReferenceGrid geometry_;
   Vector inverse_cell_{};
   double length_ = 0;          ///< smallest cell edge

@@ -12,7 +12,7 @@ import numpy as np
 # core/step/passes_with.hpp. A full node has the mass of a cell, on the wall half of it.
 USL_MASS_FLOOR = 0.2
 # wave_limit of core/step/speeds.hpp for linear functions.
-WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.24}
+WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.24, "USAVG": 0.85}
 
 
 # shock_width of physics/material/viscosity_limiter.hpp, in cells.
@@ -45,11 +45,12 @@ class Line:
             # whole time; with USF over the step.
             last = time + dt >= end
             own = end - impulses if last else 0.5 * ((before or dt) + dt)
-            self.step(dt, dt if self.algorithm == "USF" else own)
+            self.step(dt, dt if self.algorithm == "USF" else own, before)
             time, impulses, before = time + dt, impulses + own, dt
             self.steps += 1
 
-    def step(self, dt, velocity_dt):
+    def step(self, dt, velocity_dt, before):
+        """`before`: the length of the step before."""
         lower = np.floor(self.x / self.cell).astype(int)
         s = self.x / self.cell - lower
         node, share, slope = np.stack([lower, lower + 1]), np.stack([1 - s, s]), np.array([[-1], [1]]) / self.cell
@@ -72,6 +73,9 @@ class Line:
             start = velocity_of(momentum)
             at_new_places = rate(start) + self.released(s, (share * start[node]).sum(axis=0), dt)
             wave = self.stress(at_new_places / (1 - dt * at_new_places), dt)
+        if self.algorithm == "USAVG" and before:  # with the viscosity that the forces have
+            at_new_places = rate(velocity_of(momentum))
+            self.stress(at_new_places / (1 - before / 2 * at_new_places), before / 2, new_viscosity=2)
         dv = velocity_dt * velocity_of(to_nodes(slope * self.volume * (self.p + self.q)))
         velocity = at_wall(velocity_of(momentum) + dv)
         self.v += (share * dv[node]).sum(axis=0)
@@ -82,6 +86,9 @@ class Line:
             wave = self.stress(rate(at_wall(velocity - left_out * dv)), dt)
         if self.algorithm == "MUSL":
             wave = self.stress(rate(velocity_of(to_nodes(share * self.mass * self.v))), dt)
+        if self.algorithm == "USAVG":
+            again = rate(velocity_of(to_nodes(share * self.mass * self.v)))
+            wave = self.stress(again, dt / 2, new_viscosity=0)
         signal = wave + np.abs(self.v)
         if self.algorithm == "USF":  # wave speeds and velocities are of two passes: each brick's largest of both
             bricks = [lower // 4 == brick for brick in range(lower.max() // 4 + 1)]
@@ -100,8 +107,9 @@ class Line:
         part = 2 - np.divide(away, kick, out=np.ones_like(kick), where=kick > 0)
         return np.where(trapped, away * np.minimum(1, part) / self.cell, 0)
 
-    def stress(self, rate, dt):
-        """Pressure, viscosity and energy after a step at this rate of strain; the speed for the next time step."""
+    def stress(self, rate, dt, new_viscosity=1):
+        """Pressure, viscosity and energy after a step at this rate of strain; the speed for the next time step. `new_viscosity`:
+        what the new viscosity counts in the mean that does the work, twice."""
         volume = self.volume * (1 + rate * dt)
         rho = self.mass / volume
         mu = rho / self.density - 1
@@ -116,7 +124,7 @@ class Line:
         q = rho * self.cell * squeeze * (self.bq1 * self.cell * squeeze + self.bq2 * c)
         if self.limited:
             q *= self.limit(rate, c, dt)
-        star = self.energy - h * (self.p + self.q + q)
+        star = self.energy - h * (self.p + (2 - new_viscosity) * self.q + new_viscosity * q)
         self.p = (a + self.gamma0 * star) / (1 + self.gamma0 * h)
         self.energy = star - h * self.p
         self.q, self.volume = q, volume

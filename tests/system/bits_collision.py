@@ -81,7 +81,7 @@ class Collision(Case):
                     self.assertEqual(found[key], totals[key], key)
 
     def test_usf_and_usl(self):
-        for algorithm, ranks, threads in [("USF", 4, 2), ("USL", 3, 1)]:
+        for algorithm, ranks, threads in [("USF", 4, 2), ("USL", 3, 1), ("USAVG", 2, 2)]:
             with self.subTest(algorithm):
                 expected = self.state(collision("", algorithm), "alone")
                 text = collision(uniform(ranks), algorithm)
@@ -89,7 +89,7 @@ class Collision(Case):
 
     def test_where_the_strain_limits_the_steps(self):
         """At 10 km/s (core/step/strain_limit.hpp)."""
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             with self.subTest(algorithm):
                 output = PRINT + f'<Restart time_interval="{END / 12}"/>'
                 text = collision("", algorithm, output, END / 4, faster=6)

@@ -26,7 +26,7 @@ def collision(apart=1, threshold=0.6, algorithm="MUSL", output=""):
 
 class FailedComponent(Case):
     def test_any_ranks_and_threads(self):
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             text = collision(algorithm=algorithm)
             expected = self.state(text, "alone")
             for body in _mpm.summary(self.folder / "alone")["bodies"]:

@@ -22,7 +22,7 @@ def scene(limiter='limiter="shock"', algorithm="MUSL", more="", restart=END / 2)
 
 class LimitedViscosity(Case):
     def test_any_ranks_threads_and_partition(self):
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             alone = self.state(scene(algorithm=algorithm), f"alone {algorithm}")
             self.assertNotEqual(alone, self.state(scene("", algorithm), "full"), "the limiter does nothing")
             for ranks, threads, how in [(1, 2, ""), (2, 1, 'dimension0="2" dimension1="1" dimension2="1"'),

@@ -8,7 +8,7 @@ import _mpm
 class ElasticBar(_mpm.Case):
     def test_period_and_energy(self):
         cells = (8, 16, 32)
-        for algorithm in ("MUSL", "USF"):
+        for algorithm in ("MUSL", "USF", "USAVG"):
             with self.subTest(algorithm=algorithm):
                 errors = []
                 for count in cells:

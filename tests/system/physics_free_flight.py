@@ -65,7 +65,7 @@ class FreeFlight(_mpm.Case):
         return outcome.state
 
     def test_one_rank(self):
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             with self.subTest(algorithm=algorithm):
                 self.check(algorithm, 1)
 

@@ -49,7 +49,7 @@ class Heat(_mpm.Case):
 
     def test_half_slabs(self):
         end = 2.0  # 12 is 3.5 times 2 sqrt(a t): the ends know nothing of it
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             with self.subTest(algorithm=algorithm):
                 errors = []
                 for cells in (24, 48, 96):

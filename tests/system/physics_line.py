@@ -29,13 +29,13 @@ def bar(axis, algorithm, limiter):
 
 class OnALine(_mpm.Case):
     def test_every_axis_and_scheme(self):
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             for axis in range(3):
                 self.compare(axis, algorithm, "none")
 
     def test_limited_viscosity(self):
-        for axis, algorithm in enumerate(("MUSL", "USF", "USL")):
-            self.compare(axis, algorithm, "shock")
+        for n, algorithm in enumerate(("MUSL", "USF", "USL", "USAVG")):
+            self.compare(n % 3, algorithm, "shock")
 
     def compare(self, axis, algorithm, limiter):
         line = solved(algorithm, limiter)

@@ -38,7 +38,7 @@ class Loads(_mpm.Case):
         table = "".join(f'<Coefficient time="{t}" cx="{c}" cy="0" cz="0" crx="0" cry="0" crz="0"/>'
                         for t, c in ((0, 0), (0.5, 1), (1, 0)))
         load = f'<PrescribedAcceleration ax="4" ay="0" az="0" arx="0" ary="0" arz="0">{table}</PrescribedAcceleration>'
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             with self.subTest(algorithm=algorithm):
                 found = self.block_under(load, 1.5, algorithm, algorithm)
                 # Values at the middle of a step make a velocity exact but for the step with the kink.
@@ -86,7 +86,7 @@ class Loads(_mpm.Case):
     def test_work_of_damping(self):
         """A body that falls with damping: dv/dt = g - c v by explicit steps, and books that close to round-off. USL, which scales
         increments down at light nodes, those by damping too, strains the body a little: measured 9e-5."""
-        for algorithm, drift in (("MUSL", 1e-12), ("USF", 1e-12), ("USL", 1e-12)):
+        for algorithm, drift in (("MUSL", 1e-12), ("USF", 1e-12), ("USL", 1e-12), ("USAVG", 1e-12)):
             with self.subTest(algorithm=algorithm):
                 body = _mpm.block("body", (2, 2, 2), (2, 2, 2), (1, 0, 0))
                 loads = '<Gravity ax="1" ay="0" az="0"/><DynamicRelax damping="3"/>'
@@ -103,7 +103,7 @@ class Loads(_mpm.Case):
         soft = _mpm.material(strength='type="IsoElastic" Young="1e-9" Poisson="0" bq1="0" bq2="0"')
         body = _mpm.block("body", (2, 2, 2), (4, 2, 2), ("1e-3*sin(2*pi*x)", 0, 0))
         left = (1 - damping * dt) ** round(end / dt)
-        for shape, algorithm, solution in (("linear", "MUSL", ""), ("linear", "USF", ""), ("linear", "USL", ""),
+        for shape, algorithm, solution in (("linear", "MUSL", ""), ("linear", "USF", ""), ("linear", "USL", ""), ("linear", "USAVG", ""),
                                            ("SGMP", "MUSL", ""), ("QuadraticBSpline", "MUSL", 'transfer="FLIP"'),
                                            ("CPDI2", "MUSL", ""), ("QuadraticBSpline", "MUSL", 'mass="consistent"')):
             with self.subTest(shape=shape, algorithm=algorithm, solution=solution):
@@ -118,7 +118,7 @@ class Loads(_mpm.Case):
 
     def test_uniform_force_strains_nothing(self):
         """A uniform force per mass acts as gravity does, also on the strain of light nodes (USL)."""
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             for shape in ("linear", "QuadraticBSpline"):
                 with self.subTest(algorithm=algorithm, shape=shape):
                     body = _mpm.block("body", (2.2, 2.2, 2.2), (4, 4, 4), more='<BodyForce bx="20"/>')

@@ -76,7 +76,7 @@ class Reactions(_mpm.Case):
 
     def test_momentum(self):
         """What the drive gives is all that the momentum of the scene gains, from row to row."""
-        for algorithm in ("MUSL", "USF", "USL"):
+        for algorithm in ("MUSL", "USF", "USL", "USAVG"):
             with self.subTest(algorithm=algorithm):
                 _, status = self.go(hit(algorithm), algorithm)
                 momentum = np.array([status[f"p{axis}"] for axis in AXES])

@@ -20,7 +20,7 @@ class Symmetry(_mpm.Case):
     def test_quarter(self):
         # Not USL: what it holds back at light nodes goes by the mass that a node has, and on a symmetry plane half of it
         # is missing.
-        for algorithm in ("MUSL", "USF"):
+        for algorithm in ("MUSL", "USF", "USAVG"):
             with self.subTest(algorithm=algorithm):
                 found = {}
                 for quarter in (False, True):

@@ -9,7 +9,8 @@ using namespace mpm::tests;
 
 namespace {
 
-constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl};
+constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl,
+                                       ReferenceScheme::usavg};
 
 /// Two elastic blocks of 4 x 4 x 4 cells with a gap along x between them; the second is `behind` the first.
 ReferenceCase two_blocks(const ReferenceCase& method, double gap, const Vector& approach) {

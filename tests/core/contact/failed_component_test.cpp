@@ -13,7 +13,8 @@ using namespace mpm::core;
 
 namespace {
 
-constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl};
+constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl,
+                                       ReferenceScheme::usavg};
 constexpr ReferenceShape shapes[] = {ReferenceShape::linear, ReferenceShape::ugimp, ReferenceShape::cpdi,
                                      ReferenceShape::cubic_bspline};
 constexpr double middle = 9.1;

@@ -17,7 +17,8 @@ using mpm::tests::Vector;
 
 namespace {
 
-constexpr std::array schemes = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl};
+constexpr std::array schemes = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl,
+                                ReferenceScheme::usavg};
 
 /// Fills cells [first, last) of the grid with two particles per cell and direction.
 void fill(ReferenceCase& setup, const std::array<int, 3>& first, const std::array<int, 3>& last) {

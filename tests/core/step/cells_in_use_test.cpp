@@ -74,7 +74,8 @@ TEST_CASE("A brick knows the cells in use in it and around it, and their images 
 }
 
 TEST_CASE("The pass that moves the particles of a brick finds the cells that a later count finds") {
-  for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl}) {
+  for (const ReferenceScheme scheme :
+       {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl, ReferenceScheme::usavg}) {
     ReferenceCase c = tumbling_block();
     c.shape = ReferenceShape::ddmp;
     c.scheme = scheme;
@@ -133,7 +134,8 @@ TEST_CASE("Only shape functions that need cells in use have phases for them") {
 TEST_CASE("Half a body at a symmetry face moves as half of the whole") {
   for (const ReferenceShape shape :
        {ReferenceShape::ddmp, ReferenceShape::quadratic_bspline, ReferenceShape::linear}) {
-    for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl}) {
+    for (const ReferenceScheme scheme :
+         {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl, ReferenceScheme::usavg}) {
       CAPTURE(static_cast<int>(shape), static_cast<int>(scheme));
       ReferenceCase half;
       half.shape = shape;

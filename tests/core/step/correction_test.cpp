@@ -68,15 +68,19 @@ Change change_of(const ReferenceCase& c, double depth) {
 
 TEST_CASE("XPIC and FMPM of order 1 are PIC, to the last bit") {
   for (const ReferenceShape shape : reference_shapes) {
-    for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl}) {
+    for (const ReferenceScheme scheme :
+         {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl, ReferenceScheme::usavg}) {
       ReferenceCase c = in_free_flight(shape, ReferenceTransfer::flip, 1);
       c.scheme = scheme;
       SmallRun pic(c);
       pic.scene->solution.transfer = core::Transfer::pic;
+      const double dt = 0.5 * pic.model.clock.critical_dt;  // USAVG's limit depends on the transfer
+      pic.scene->solution.time_step.specified = dt;
       pic.step(10);
       for (const ReferenceTransfer transfer : corrected) {
         c.transfer = transfer;
         SmallRun run(c);
+        run.scene->solution.time_step.specified = dt;
         run.step(10);
         CHECK(run.columns() == pic.columns());
       }

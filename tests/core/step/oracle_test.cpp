@@ -14,7 +14,8 @@ using namespace mpm::tests;
 
 namespace {
 
-constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl};
+constexpr ReferenceScheme schemes[] = {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl,
+                                       ReferenceScheme::usavg};
 constexpr double usl_floor = 0.2;  // of core/step/passes.cpp
 
 template <class Container>
@@ -187,10 +188,11 @@ TEST_CASE("A block tumbles through bricks as the naive stepper moves it", "[orac
   for (const ReferenceScheme scheme : schemes) tumble(scheme, 0);
 }
 
-TEST_CASE("USF and MUSL: a block hits walls as the naive stepper lets it", "[oracle][walls]") {
+TEST_CASE("USF, MUSL and USAVG: a block hits walls as the naive stepper lets it", "[oracle][walls]") {
   for (const int boundary : {1, 2, 4}) {
     tumble(ReferenceScheme::usf, boundary);
     tumble(ReferenceScheme::musl, boundary);
+    tumble(ReferenceScheme::usavg, boundary);
   }
 }
 
@@ -231,7 +233,8 @@ TEST_CASE("Consistent mass: a small block flies, hits walls and leaves them as t
           "[oracle]") {
   for (const ReferenceShape shape : reference_shapes) {
     if (!mpm::core::consistent_mass_goes_with(shape_function_of(shape))) continue;
-    for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::musl}) {
+    for (const ReferenceScheme scheme :
+         {ReferenceScheme::usf, ReferenceScheme::musl, ReferenceScheme::usavg}) {
       for (const int boundary : {0, 1, 2, 4}) {
         INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme) << ", boundary "
                       << boundary);

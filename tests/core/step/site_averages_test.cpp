@@ -163,7 +163,8 @@ TEST_CASE("Mean pressures do the work that particles with mean volume changes st
 
 TEST_CASE("In a step the particles of a body in a site change their volume alike") {
   for (const ReferenceShape shape : reference_shapes) {
-    for (const ReferenceScheme scheme : {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl}) {
+    for (const ReferenceScheme scheme :
+         {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl, ReferenceScheme::usavg}) {
       INFO("shape " << static_cast<int>(shape) << ", scheme " << static_cast<int>(scheme));
       ReferenceCase c = tumbling_block();
       c.shape = shape;
