@@ -43,6 +43,10 @@ struct GridGeometry;
 /// The work of all stages of a material's update on a block is divided into this many parts.
 inline constexpr int parts_of_update = 16;
 
+/// The part of a step's strain that an update makes: all of it or, with USAVG, the half at the end of the
+/// step or the half that is left to the start of the next one.
+enum class StrainPart { all, first_half, second_half };
+
 struct Batch {
   // --- set by the caller ---
   const ColumnLayout* layout = nullptr;
@@ -51,9 +55,7 @@ struct Batch {
   double* block[batch_blocks] = {};  ///< start of each block
   double time = 0;                   ///< at the end of the step
   double dt = 0;
-  /// What the artificial viscosity before the update and the new one count in the mean that does the work of
-  /// the step, twice.
-  double old_viscosity = 1, new_viscosity = 1;
+  StrainPart part = StrainPart::all;
   double cell_size = 0;                ///< characteristic length of the artificial viscosity
   const GridGeometry* grid = nullptr;  ///< for `initialise`; null: a point without a grid, all is one cell
   /// Velocity gradient, row i column j = d v_i / d x_j, in the order of Mat3.
@@ -83,6 +85,12 @@ struct Batch {
   /// Lanes counted in events.negative_volume and events.negative_energy, one bit each.
   std::uint64_t vanishing = 0, negative = 0;
 
+  /// What the new artificial viscosity counts, twice, in the mean that does the work; 2 less it, the old one.
+  /// The one that acts in a step of USAVG, the new one of the second half, does the work of the halves
+  /// around.
+  double new_viscosity() const {
+    return part == StrainPart::all ? 1 : part == StrainPart::first_half ? 0 : 2;
+  }
   double* column(Column c, int b) { return block[b] + layout->offset(c); }
 };
 

@@ -247,11 +247,16 @@ template <ShapePolicy S, TransferPolicy T>
   batch.events = {};
   batch.vanishing = batch.negative = 0;
   body.model->update(batch, model_.options);
-  at.statistics.events += batch.events;
   at.work_of_stress += work_of_stress(batch);
+  store_sound_speed(batch);
+  // Of the halves of a step's strain the first one counts what both find in their particles.
+  if (batch.part == StrainPart::second_half) {
+    at.statistics.events += {.failed = batch.events.failed, .not_finite = batch.events.not_finite};
+    return;
+  }
+  at.statistics.events += batch.events;
   if ((batch.vanishing | batch.negative) != 0)
     name_unphysical(model_.scene->solution.warn, body, batch, at.statistics);
-  store_sound_speed(batch);
 }
 
 /// Sums a tile's volume changes in its sites. The gradients are formed once more with the stress:
@@ -266,7 +271,7 @@ template <bool moves>
     const double* block = pool.block(tile.blocks[b]);
     const Place place(frame, pool.layout(), block, tile.used_lanes(b));
     S::gradient(frame, place, at.field, at.batch.gradient, 0);
-    if constexpr (!moves) refer_gradient_to_old_positions(at.batch, 0, strain_.dt, false);
+    if constexpr (!moves) refer_gradient_to_old_positions(at.batch, 0, strain_.dt, referred_trace(), false);
     at.averages.add_volume_changes(sites_of(place), block + pool.layout().offset(Column::volume),
                                    at.batch.gradient, 0, tile.used_lanes(b));
     if (model_.scene->solution.pressure_relaxation > 0)
@@ -316,7 +321,8 @@ template <bool moves, class F>
           release_from_faces(frame, at.places[b], at.field.nodes, dt, *batch.layout, batch.block[b], used,
                              batch.gradient, block_lanes * b);
       }
-      refer_gradient_to_old_positions(batch, block_lanes * b, strain_.dt, updates_volume_by_cell());
+      refer_gradient_to_old_positions(batch, block_lanes * b, strain_.dt, referred_trace(),
+                                      updates_volume_by_cell());
     }
     if (!averages) return;
     const int* sites = sites_of(at.places[b]);
@@ -327,9 +333,9 @@ template <bool moves, class F>
   };
   const bool halves = moves && scheme_ == Scheme::usavg;
   const auto stress = [&]([[maybe_unused]] std::size_t c, std::size_t first, const ParticleTile& tile) {
-    if (halves) at.gain_of_work -= work_of_present_stress(batch);
+    if (halves) at.gain_of_work -= work_of_present_stress(batch, false);
     update_material(model_.bodies[static_cast<std::size_t>(tile.body)], at);
-    if (halves) at.gain_of_work += work_of_present_stress(batch);
+    if (halves) at.gain_of_work += work_of_present_stress(batch, true);
     if constexpr (moves)
       at.statistics.fastest = fastest_particle(batch, wave_weight_, at.statistics.fastest);
     else

@@ -60,8 +60,7 @@ template <class E, class F, class G>
   Batch& batch = at.batch;
   batch.time = strain_.end;
   batch.dt = strain_.dt;
-  batch.old_viscosity = 2 - strain_.new_viscosity;
-  batch.new_viscosity = strain_.new_viscosity;
+  batch.part = strain_.part;
   batch.cell_size = model_.grid->geometry().smallest_cell();
   for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
     const ParticleTile& tile = brick.tiles[c];

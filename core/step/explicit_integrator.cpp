@@ -157,10 +157,9 @@ StepLength ExplicitIntegrator::set_length(double dt) {
   }
   const bool last = clock.time + dt >= model_.scene->solution.end_time;
   StepLength length = step_length(dt, lag_before_, clock.first_lag, last);
-  if (model_.scene->solution.scheme == Scheme::usavg) {
-    length.strain_lag = strain_lag_before_;
-    clock.strain_lag = strain_lag_after(dt);
-  }
+  const bool halves = model_.scene->solution.scheme == Scheme::usavg;
+  length.strain_lag = halves ? strain_lag_before_ : 0.0;
+  clock.strain_lag = halves ? strain_lag_after(dt) : 0.0;
   clock.lag = length.lag;
   return length;
 }

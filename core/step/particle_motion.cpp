@@ -106,7 +106,8 @@ void add_work_of_motion(const Vec3<double>& weight, const ColumnLayout& layout, 
       at.work += m[i] * weight[a] * (x[block_lanes * a + i] - at.old[block_lanes * a + i]);
 }
 
-void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_strain) {
+void refer_gradient_to_old_positions(Batch& batch, int at, double dt, ReferredTrace trace_of,
+                                     bool cell_strain) {
   using R = Lanes<block_lanes>;
   constexpr double least = 0.1;
   const auto row = [&](int i) { return load<R>(batch.gradient[i] + at); };
@@ -116,7 +117,13 @@ void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_
                      k * l.yz,       k * l.zx, k * l.zy, one + k * l.zz};
   const R determinant_back = determinant(back);
   const auto invertible = determinant_back > R(least);
-  const Mat3<R> referred = (one / select(invertible, determinant_back, one)) * (adjugate(back) * l);
+  Mat3<R> referred = (one / select(invertible, determinant_back, one)) * (adjugate(back) * l);
+  if (trace_of != ReferredTrace::of_gradient) {
+    const R rate = l.xx + l.yy + l.zz, left = one + k * rate;
+    const R wanted = trace_of == ReferredTrace::unchanged ? rate : rate / max(left, R(least));
+    const R more = (wanted - (referred.xx + referred.yy + referred.zz)) * R(1.0 / 3);
+    referred.xx += more, referred.yy += more, referred.zz += more;
+  }
   const R values[9] = {referred.xx, referred.xy, referred.xz, referred.yx, referred.yy,
                        referred.yz, referred.zx, referred.zy, referred.zz};
   for (int i = 0; i < 9; ++i) store(batch.gradient[i] + at, select(invertible, values[i], row(i)));
@@ -162,14 +169,15 @@ double work_of_stress(const Batch& batch) {
   });
 }
 
-double work_of_present_stress(const Batch& batch) {
+double work_of_present_stress(const Batch& batch, bool updated) {
   const ColumnLayout& layout = *batch.layout;
   const int volume = layout.offset(Column::volume), deviator = layout.offset(Column::s_xx),
             pressure = layout.offset(Column::pressure);
   return sum_of_lanes(batch, [&](int b, int i) {
     const double* block = batch.block[b];
     const auto l = [&](int k) { return batch.gradient[k][block_lanes * b + i]; };
-    return batch.dt * block[volume + i] *
+    const double v = updated ? batch.old_volume[block_lanes * b + i] : block[volume + i];
+    return batch.dt * v *
            (deviatoric_power(batch, block + deviator, b, i) - block[pressure + i] * (l(0) + l(4) + l(8)));
   });
 }

@@ -60,9 +60,13 @@ void add_work_of_motion(const Vec3<double>& weight, const ColumnLayout& layout, 
 /// is
 ///   dv/dx_old = L dx/dx_old = (I - dt L)^-1 L
 /// With L itself, compression would be overestimated by |dt L|/2 of itself: a shock of 1500 m/s in copper
-/// gains 20 % of energy at a factor of 0.6. For the batch's particles at .. at + 7; gradients with which the
-/// step would stretch the old positions more than tenfold are left alone.
-void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_strain);
+/// gains 20 % of energy at a factor of 0.6. Its trace gives the change of volume to the first order. USAVG
+/// needs it as the forces do their work: dt tr L of the new volume, which V (1 + dt tr) has with
+/// `of_new_volume`, and V exp(dt tr) together with the half before it, with `unchanged`. For the batch's
+/// particles at .. at + 7; gradients with which the step would stretch the old positions more than tenfold
+/// are left alone.
+enum class ReferredTrace { of_gradient, of_new_volume, unchanged };
+void refer_gradient_to_old_positions(Batch& batch, int at, double dt, ReferredTrace trace, bool cell_strain);
 
 /// Work of a batch's updated stresses, artificial viscosity included, over the step's strain, as the internal
 /// energy counts it.
@@ -80,10 +84,11 @@ void refer_gradient_to_old_positions(Batch& batch, int at, double dt, bool cell_
 ///   P^{n+1/2}(v^{n+1/2}))/4
 /// so that, to the third order, K^{n+1/2} + U^{n+1/2} - dt (P^{n+1/2} - P^n)(v^{n+1/2})/4 is conserved. The
 /// artificial viscosity is not part of that term: the one that acts in step n does the work of both halves
-/// (Batch::old_viscosity).
+/// (Batch::new_viscosity). All powers of a step's forces and halves are those with the gradients at x^n.
 double work_of_stress(const Batch& batch);
-/// The work of a batch's stresses as they are, without artificial viscosity, over the step's strain.
-double work_of_present_stress(const Batch& batch);
+/// The work of a batch's stresses as they are, without artificial viscosity, over the strain of its update
+/// and the volume before it; called before the update and after it (`updated`).
+double work_of_present_stress(const Batch& batch, bool updated);
 
 /// Records the particles of vanishing volume or negative energy, where the scene checks for them.
 void name_unphysical(const WarnInput& warn, const Body& body, const Batch& batch, StepStatistics& statistics);

@@ -101,7 +101,7 @@ class PassesWith final : public Passes {
   /// energy is then ahead of the kinetic one.
   struct StrainInterval {
     double dt = 0, end = 0, lead = 0;
-    double new_viscosity = 1;  ///< Batch::new_viscosity
+    StrainPart part = StrainPart::all;
   };
   struct Scratch : ThreadScratch {
     Place places[batch_blocks];
@@ -139,12 +139,14 @@ class PassesWith final : public Passes {
   /// USAVG's update at the start of a step completes that of the step before, with the velocities of then.
   StrainInterval interval_at_start() const {
     const double time = model_.clock.time;
-    if (scheme_ == Scheme::usavg) return {strain_lag_, time, 0, 2};
+    if (scheme_ == Scheme::usavg) return {strain_lag_, time, 0, StrainPart::second_half};
     return {dt, time + dt, -lag_ / dt};  // the velocities are yet to follow these stresses
   }
   StrainInterval interval_at_end() const {
-    const double left = scheme_ == Scheme::usavg ? strain_lag_after(dt) : 0.0, done = dt - left;
-    return {done, model_.clock.time + done, (lag_ - left) / done, scheme_ == Scheme::usavg ? 0.0 : 1.0};
+    const bool halves = scheme_ == Scheme::usavg;
+    const double left = halves ? strain_lag_after(dt) : 0.0, done = dt - left;
+    return {done, model_.clock.time + done, (lag_ - left) / done,
+            halves ? StrainPart::first_half : StrainPart::all};
   }
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
@@ -360,6 +362,16 @@ class PassesWith final : public Passes {
   void volumetric_strain(const BrickFrame& frame, const Place& place, int b, Scratch& at);
   void update_material(const Body& body, Scratch& at);
 
+  /// Of USAVG's strain at the start of a step, by how volumes are updated from it.
+  ReferredTrace referred_trace() const {
+    if (scheme_ != Scheme::usavg) return ReferredTrace::of_gradient;
+    switch (static_cast<VolumeUpdate>(model_.options.volume_update)) {
+      case VolumeUpdate::rate: return ReferredTrace::of_new_volume;
+      case VolumeUpdate::exponential:
+      case VolumeUpdate::accumulated_strain: return ReferredTrace::unchanged;
+      default: return ReferredTrace::of_gradient;
+    }
+  }
   bool updates_volume_by_cell() const {
     return model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
   }

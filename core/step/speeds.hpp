@@ -74,7 +74,7 @@ inline double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) 
     default: return by_scheme(1, 0.5, 0.24);
   }
 }
-/// With the consistent mass matrix, which does not smooth the nodes' forces; MUSL and USF. The least of the
+/// With the consistent mass matrix, which does not smooth the nodes' forces. The least of the
 /// measured, block and fluid: linear 0.3 (not 0.45), DDMP 0.37, GIMP 0.52, quadratic 0.57, cubic 0.65, SGMP
 /// 0.77.
 inline double consistent_wave_limit(ShapeFunction shape) {

@@ -164,7 +164,7 @@ void check_mass(const Node& node, const core::Scene& scene, const BuildContext& 
   if (solution.scheme == core::Scheme::usl)
     refuse(
         "is not available with algorithm USL, whose strains would gain energy at light nodes: expected "
-        "lumped, or algorithm MUSL or USF");
+        "lumped, or algorithm MUSL, USAVG or USF");
   if (solution.integration == core::Integration::implicit)
     refuse("is not available with implicit steps, which have lumped masses: expected lumped");
 }

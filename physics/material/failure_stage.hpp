@@ -58,7 +58,7 @@ template <class T>
     const T per_v0 = reference_density / core::load<T>(block + mass_at);
     const T work =
         0.25 * (volume + old_volume) * contract(lost * s, strength_point<T>(batch, block, row).strain) -
-        0.5 * (volume - old_volume) * (p - allowed + lost * q);
+        0.5 * (volume - old_volume) * (p - allowed + batch.new_viscosity() * lost * q);
     core::store(block + energy_at, core::load<T>(block + energy_at) - per_v0 * work);
     store_deviator(block, layout, kept * s);
     core::store(block + pressure_at, allowed);

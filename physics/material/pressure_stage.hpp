@@ -173,6 +173,7 @@ template <class T, class Eos>
   const int divergence_at = layout.offset(Column::velocity_divergence);
   const bool limited = rules.limited && batch.cell_size > 0;
   const double length = batch.cell_size, inverse_dt = 1 / batch.dt, rho0 = rules.reference_density;
+  const double new_q = batch.new_viscosity(), old_q = 2 - new_q;  // in the mean that does work, twice
   const double negligible = -1e-12 * rules.initial_modulus;
 
   for_each_vector<T, parts_of_pressure>(batch, [&](double* block, int row) {
@@ -215,9 +216,7 @@ template <class T, class Eos>
     const T q = (length * now.density * acting_rate) * (rules.bq1 * length * rate + rules.bq2 * c_before);
 
     const T work = 0.5 * (volume + old_volume) * per_v0 * core::load<T>(batch.deviatoric_work + row);
-    const T old_q = core::load<T>(block + q_at);
-    const T energy_star =
-        old_energy - h * (old_p + batch.old_viscosity * old_q + batch.new_viscosity * q) + work;
+    const T energy_star = old_energy - h * (old_p + old_q * core::load<T>(block + q_at) + new_q * q) + work;
     const T stated = (acting.a + acting.b * energy_star) * response;
     T p = stated, sentence = 0.0;
     if (can_fail && rules.tension.limited) {

@@ -31,20 +31,25 @@ T limit_viscosity(const core::Batch& batch, int row, double* factor, double* div
   using core::max;
   using core::min;
   constexpr double lowest = std::numeric_limits<double>::min(), in_compression = 2 * 16;  // b at R = -1
+  // The velocity changes once in a step, before the half of the strain at its end.
+  const bool changed = batch.part != core::StrainPart::second_half;
+  const double between = batch.part == core::StrainPart::first_half ? 2 * batch.dt : batch.dt;
   const double h = batch.cell_size, dt = batch.dt, width = shock_width * h, decay = 2 * 0.05 * dt;
   const T d = (1 / dt) * volumetric_strain, compression = max(-d, 0.0);
   const T alpha = core::load<T>(factor), before = core::load<T>(divergence);
   const core::Sym3<T> s = deviator(strain_increment(load_gradient<T>(batch, row), 1.0));
   // In the first step that of motion without forces along one axis, dD/dt = -D^2.
-  const T growth = core::select(alpha < 0.0, compression * compression, max((1 / dt) * (before - d), 0.0));
+  const T growth =
+      core::select(alpha < 0.0, compression * compression, max((1 / between) * (before - d), 0.0));
   const T signal = sound_speed + h * compression;
   const T weight = (in_compression * compression) * (in_compression * compression);
   const T source = (width * width) * growth * weight;
-  const T local = min(source / max(signal * signal * (weight + contract(s, s)), lowest), 1.0);
+  const T local =
+      changed ? min(source / max(signal * signal * (weight + contract(s, s)), lowest), 1.0) : T(0.0);
   const T kept = h / (h + decay * signal);  // backward Euler
   const T now = max(local, local + kept * (max(alpha, 0.0) - local));
   core::store(factor, now);
-  core::store(divergence, d);
+  if (changed) core::store(divergence, d);
   return now;
 }
 

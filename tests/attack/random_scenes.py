@@ -51,6 +51,8 @@ def scene(number, seed):
     if "consistent" in transfer:
         scheme = "USF" if scheme == "USL" else scheme
         shape = "CubicBSpline" if "CPDI" in shape else shape
+    if number % 4 == 3:
+        scheme = "USAVG"
     faces = "".join(rng.choice("01234") if rng.random() < 0.5 else rng.choice("02") for _ in range(6))
     more = "".join(text for text in ('<Gravity ax="0" ay="0" az="-9.81"/>', f'<Volume update_type="{rng.randrange(5)}"/>',
                                      '<LimitVelocity max="8000"/>') if rng.random() < 0.3)

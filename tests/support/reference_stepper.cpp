@@ -336,7 +336,13 @@ void ReferenceStepper::update_stresses(double dt, bool at_start) {
       }
       add_own_kick(particle, nodes, case_.cell, dt, L);
     }
+    const double rate = L[0][0] + L[1][1] + L[2][2];
     if (at_start) L = relative_to_old_positions(L, dt);
+    if (at_start && case_.scheme == ReferenceScheme::usavg) {
+      // V (1 + dt tr L) has to grow by dt times the rate of the new volume.
+      const double more = (rate / (1 - dt * rate) - (L[0][0] + L[1][1] + L[2][2])) / 3;
+      for (std::size_t a = 0; a < 3; ++a) L[a][a] += more;
+    }
     gradients.push_back(L);
   }
   const auto trace = [](const Matrix& L) { return L[0][0] + L[1][1] + L[2][2]; };

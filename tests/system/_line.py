@@ -75,7 +75,7 @@ class Line:
             wave = self.stress(at_new_places / (1 - dt * at_new_places), dt)
         if self.algorithm == "USAVG" and before:  # with the viscosity that the forces have
             at_new_places = rate(velocity_of(momentum))
-            self.stress(at_new_places / (1 - before / 2 * at_new_places), before / 2, new_viscosity=2)
+            self.stress(at_new_places / (1 - before / 2 * at_new_places), before / 2, half=2)
         dv = velocity_dt * velocity_of(to_nodes(slope * self.volume * (self.p + self.q)))
         velocity = at_wall(velocity_of(momentum) + dv)
         self.v += (share * dv[node]).sum(axis=0)
@@ -88,7 +88,7 @@ class Line:
             wave = self.stress(rate(velocity_of(to_nodes(share * self.mass * self.v))), dt)
         if self.algorithm == "USAVG":
             again = rate(velocity_of(to_nodes(share * self.mass * self.v)))
-            wave = self.stress(again, dt / 2, new_viscosity=0)
+            wave = self.stress(again, dt / 2, half=1)
         signal = wave + np.abs(self.v)
         if self.algorithm == "USF":  # wave speeds and velocities are of two passes: each brick's largest of both
             bricks = [lower // 4 == brick for brick in range(lower.max() // 4 + 1)]
@@ -107,9 +107,10 @@ class Line:
         part = 2 - np.divide(away, kick, out=np.ones_like(kick), where=kick > 0)
         return np.where(trapped, away * np.minimum(1, part) / self.cell, 0)
 
-    def stress(self, rate, dt, new_viscosity=1):
-        """Pressure, viscosity and energy after a step at this rate of strain; the speed for the next time step. `new_viscosity`:
-        what the new viscosity counts in the mean that does the work, twice."""
+    def stress(self, rate, dt, half=0):
+        """Pressure, viscosity and energy after a step at this rate of strain; the speed for the next time step. `half`: of USAVG's
+        strain, 1 at the end of a step, 2 at the start of the next; the viscosity that acts in a step does the work around it."""
+        new_viscosity = (1, 0, 2)[half]
         volume = self.volume * (1 + rate * dt)
         rho = self.mass / volume
         mu = rho / self.density - 1
@@ -123,7 +124,7 @@ class Line:
         c = sound(self.p)
         q = rho * self.cell * squeeze * (self.bq1 * self.cell * squeeze + self.bq2 * c)
         if self.limited:
-            q *= self.limit(rate, c, dt)
+            q *= self.limit(rate, c, dt, half)
         star = self.energy - h * (self.p + (2 - new_viscosity) * self.q + new_viscosity * q)
         self.p = (a + self.gamma0 * star) / (1 + self.gamma0 * h)
         self.energy = star - h * self.p
@@ -131,11 +132,15 @@ class Line:
         damping = np.where(squeeze > 0, self.bq2 * c + self.bq1 * self.cell * squeeze, 0)
         return (damping + np.sqrt(damping**2 + sound(self.p) ** 2)) / self.wave_limit
 
-    def limit(self, rate, c, dt):
-        """The factor alpha of the viscosity: that of the switch where it is larger, else on its way down to it."""
+    def limit(self, rate, c, dt, half):
+        """The factor alpha of the viscosity: that of the switch where it is larger, else on its way down to it. The velocity
+        changes once in a step: the half at its start finds no growth."""
         squeeze = np.maximum(-rate, 0)
-        grows = squeeze**2 if self.rate_before is None else np.maximum(self.rate_before - rate, 0) / dt
-        self.rate_before = rate
+        grows = squeeze**2 if self.rate_before is None else np.maximum(self.rate_before - rate, 0) / (2 * dt if half else dt)
+        if half == 2:
+            grows = np.zeros_like(rate)
+        else:
+            self.rate_before = rate
         own = (32 * squeeze) ** 2  # 2 (1 - R)^4 D with R = -1; the deviator of uniaxial strain has S : S = 2/3 D^2
         shock = np.divide(own, own + 2 / 3 * rate**2, out=np.zeros_like(rate), where=own > 0)
         signal = c + self.cell * squeeze

@@ -22,7 +22,7 @@ def scene(shape, algorithm, more=""):
 class Debris(Case):
     def test_same_bits(self):
         for n, (shape, algorithm) in enumerate([*((shape, "MUSL") for shape in SHAPES), ("linear", "USF"), ("SGMP", "USF"),
-                                                ("linear", "USL"), ("SGMP", "USL")]):
+                                                ("linear", "USL"), ("SGMP", "USL"), ("linear", "USAVG"), ("SGMP", "USAVG")]):
             with self.subTest(shape=shape, algorithm=algorithm):
                 path = self.write(scene(shape, algorithm))
                 alone = self.run_in(f"alone{n}", [path]).state

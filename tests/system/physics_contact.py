@@ -215,7 +215,7 @@ class Contact(_contact.Case):
         14 % of the energy here: particles take means of velocities that end at the surface."""
         for shape, (kind, algorithm), walls, rigid in itertools.chain(
                 itertools.product(SHAPES, ((1, "MUSL"),), (False, True), (False, True)),
-                itertools.product(("linear",), ((0, "MUSL"), (2, "MUSL"), (1, "USF"), (1, "USL")), (False,), (False, True))):
+                itertools.product(("linear",), ((0, "MUSL"), (2, "MUSL"), (1, "USF"), (1, "USL"), (0, "USAVG"), (1, "USAVG")), (False,), (False, True))):
             with self.subTest(shape=shape, kind=kind, algorithm=algorithm, walls=walls, rigid=rigid):
                 _, summary, _ = self.go(dust(shape, kind, algorithm, walls, rigid))
                 energy = summary["energy"]

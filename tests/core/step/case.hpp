@@ -76,7 +76,7 @@ class OracleLaw final : public core::ConstitutiveModel {
         for (int b = 0; b < 3; ++b)
           l[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] = batch.gradient[3 * a + b][i];
       }
-      update_stress(material_, batch.cell_size, batch.dt, l, p, batch.new_viscosity);
+      update_stress(material_, batch.cell_size, batch.dt, l, p, batch.new_viscosity());
       if (!std::isfinite(p.E)) ++batch.events.not_finite;
       if (fails_ && fails_(p, batch.time))
         batch.column(core::Column::failed, i / core::block_lanes)[i % core::block_lanes] = 1;

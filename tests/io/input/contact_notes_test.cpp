@@ -69,6 +69,18 @@ TEST_CASE("normals of contact: weights that tie, and weights that nothing uses")
   CHECK(notes("contact_normal='mass_gradient'", "normal_vector_weight='1'", 2).empty());
   CHECK(notes("contact_normal='mass_gradient'", "", 2) == std::vector{tied});
   CHECK(notes("contact_normal='regression'", "", 2).empty());
+  const auto averaged = [&](const std::string& type) {
+    return notes_of(replaced(two_bodies(bar, 4.5, true), "<Solution>",
+                             "<Contact enable='1' contact_normal='regression' contact_type='" + type +
+                                 "'/><Solution algorithm='USAVG'>"),
+                    true);
+  };
+  CHECK(averaged("0").empty());
+  CHECK(averaged("1") ==
+        std::vector<std::string>{
+            "line 25: <Solution algorithm=\"USAVG\">: with Contact, bodies that rebound gain "
+            "energy, as their strains do not follow the impulses of contact. Use MUSL, or "
+            "contact_type 0"});
   for (const std::string scheme : {"USF", "USL"}) {
     const std::string text =
         replaced(two_bodies(bar, 4.5, true), "<Solution>",
