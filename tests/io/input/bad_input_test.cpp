@@ -141,7 +141,8 @@ TEST_CASE("values") {
        {"line 25: <Solution near_boundary_stop=\"yes\">: expected 0 or 1"}},
       {"<Solution>",
        "<Solution algorithm=\"musl\">",
-       {"line 25: <Solution algorithm=\"musl\">: expected one of MUSL, USL, USF; did you mean 'MUSL'?"}},
+       {"line 25: <Solution algorithm=\"musl\">: expected one of MUSL, USL, USF, USAVG; did you mean "
+        "'MUSL'?"}},
       {"<EndTime",
        "<TimeStep factor=\"1.1\"/><EndTime",
        {"line 25: <TimeStep factor=\"1.1\">: expected a number in (0, 1]"}},
