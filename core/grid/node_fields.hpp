@@ -2,8 +2,8 @@
 //
 // Every brick stores its contributions to its nodes in one to six arrays of records. A field names
 // consecutive components of an array's record; kernels, sums and the halo exchange use fields. A scheme maps
-// to the grid twice per step and needs the first sums again after the second map: hence two arrays. USAVG
-// maps three times: the sixth.
+// to the grid twice per step and needs the first sums again after the second map: hence two arrays, and a
+// sixth for momentum and mass where a scheme maps them before the forces.
 // Corrections of the velocities (core/transfer/corrected.hpp) are mapped between the two, and products with
 // the consistent mass matrix (core/transfer/consistent.hpp): the third array. Contact needs the surfaces of
 // the bodies at both: the fourth, and how far they reach: the fifth. Fields of different phases may share
@@ -47,13 +47,12 @@ struct NodeFields {
 
 namespace node_field {
 // Mechanics. `second_...`: MUSL maps the momentum a second time, the mass with it for shape functions whose
-// forces reach farther than their momentum; USF maps momentum and mass there together.
+// forces reach farther than their momentum. `start_...`: USF and USAVG, at the start of a step.
 inline constexpr NodeFields momentum{NodeArray::first, 0, 3};
 inline constexpr NodeFields mass{NodeArray::first, 3, 1};
 inline constexpr NodeFields force{NodeArray::first, 4, 3};
 inline constexpr NodeFields second_momentum{NodeArray::second, 0, 3};
 inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
-// The same at the start of a step of USAVG.
 inline constexpr NodeFields start_momentum{NodeArray::sixth, 0, 3};
 inline constexpr NodeFields start_mass{NodeArray::sixth, 3, 1};
 // Cells in use (core/step/cells_in_use.hpp), where no other field is.

@@ -165,7 +165,7 @@ template <ShapePolicy S, TransferPolicy T>
                                                                           Scratch& at) {
   const BrickFrame frame = this->frame(s, component);
   auto first = prefetch_nodes<NodeArray::first>(s);
-  auto second = prefetch_nodes<NodeArray::second>(s);
+  auto start = prefetch_nodes<NodeArray::sixth>(s);
   double fastest_square = 0;
   // The forces of this step were mapped with the domains of its start; those follow now, by the gradient of
   // the velocity that moves the particles.
@@ -183,7 +183,7 @@ template <ShapePolicy S, TransferPolicy T>
       s, component, columns_to_mass,
       [&](std::size_t c, std::size_t b, int body, const ColumnLayout& layout, double* block, int used) {
         first.next();
-        second.next();
+        start.next();
         const Place place(frame, layout, block, used);
         update_velocities(s, frame, body, place, block, used, at);
         const MotionOfBlock<S> motion{place, *moving};

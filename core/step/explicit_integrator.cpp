@@ -159,7 +159,7 @@ StepLength ExplicitIntegrator::set_length(double dt) {
   StepLength length = step_length(dt, lag_before_, clock.first_lag, last);
   const bool halves = model_.scene->solution.scheme == Scheme::usavg;
   length.strain_lag = halves ? strain_lag_before_ : 0.0;
-  clock.strain_lag = halves ? strain_lag_after(dt) : 0.0;
+  clock.strain_lag = halves ? 0.5 * dt : 0.0;
   clock.lag = length.lag;
   return length;
 }

@@ -51,12 +51,12 @@ int product_doubles_of(const Scene& scene) {
 
 NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
   NodeArraySet arrays{NodeArray::first};
-  if (conducts || scene.solution.scheme != Scheme::usl) arrays.add(NodeArray::second);
+  if (conducts || maps_back(scene.solution.scheme)) arrays.add(NodeArray::second);
   if (orders_of(scene.solution) > 1 || scene.solution.mass == MassMatrix::consistent)
     arrays.add(NodeArray::third);
   if (scene.contact.enable) arrays.add(NodeArray::fourth);
   if (scene.contact.measures_gaps()) arrays.add(NodeArray::fifth);
-  if (scene.solution.scheme == Scheme::usavg) arrays.add(NodeArray::sixth);
+  if (strains_first(scene.solution.scheme)) arrays.add(NodeArray::sixth);
   return arrays;
 }
 

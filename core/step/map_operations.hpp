@@ -87,7 +87,7 @@ void PassesWith<S, T>::map_brick(Slot s, std::int32_t component, Scratch& at, F 
       can_replace && some == nullptr && !(maps_force(what) && std::ranges::any_of(brick.tiles, loaded));
   // Of the nodes that it does not reach, the map of the new momentum needs no sums, but at walls, which fold
   // them.
-  const bool back = what.array == NodeArray::second && maps_back(scheme_);
+  constexpr bool back = what.array == NodeArray::second;
   const bool all = !back || momentum_block<S> == S::node_block || !faces(s).none();
   const NodeSelection written{grid.shape(), all ? S::node_block : momentum_block<S>};
   if (selects_)
@@ -133,9 +133,7 @@ template <ShapePolicy S, TransferPolicy T>
 template <NodeFields what>
 void PassesWith<S, T>::add_weight(Slot s, int field, const Vec3<double>& acceleration,
                                   double* contributions) {
-  const NodeArray array = maps_mass(what)            ? what.array
-                          : scheme_ == Scheme::usavg ? NodeArray::sixth
-                                                     : NodeArray::second;
+  constexpr NodeArray array = maps_mass(what) ? what.array : NodeArray::sixth;
   constexpr bool folds = S::node_block != NodeBlockShape{};
   const bool accelerates = acceleration != Vec3<double>{};
   if (!accelerates && !folds) return;

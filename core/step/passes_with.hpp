@@ -72,12 +72,7 @@ class PassesWith final : public Passes {
   void correct_rigid_motion() override;
   void move_rigid_bodies() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
-  void map_momentum_mass() override {
-    if (scheme_ == Scheme::usavg)
-      map_to_grid<mapped::start>();
-    else
-      map_to_grid<mapped::momentum_mass>();
-  }
+  void map_momentum_mass() override { map_to_grid<mapped::start>(); }
   void finish_exchange() override { halo_.end(*model_.grid); }
   void correct_velocities(int order) override;
   void finish_correction() override {
@@ -143,10 +138,9 @@ class PassesWith final : public Passes {
     return {dt, time + dt, -lag_ / dt};  // the velocities are yet to follow these stresses
   }
   StrainInterval interval_at_end() const {
-    const bool halves = scheme_ == Scheme::usavg;
-    const double left = halves ? strain_lag_after(dt) : 0.0, done = dt - left;
+    const double left = model_.clock.strain_lag, done = dt - left;
     return {done, model_.clock.time + done, (lag_ - left) / done,
-            halves ? StrainPart::first_half : StrainPart::all};
+            scheme_ == Scheme::usavg ? StrainPart::first_half : StrainPart::all};
   }
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
@@ -214,10 +208,7 @@ class PassesWith final : public Passes {
   }
   /// Momentum and mass at the start of the step, where a scheme maps them before the forces.
   void sum_start(Slot s, std::int32_t component, Scratch& at, double* sums, const NodeMask* some = nullptr) {
-    if (scheme_ == Scheme::usavg)
-      sum<NodeArray::sixth>(momentum_shared_, s, component, at, sums, some);
-    else
-      sum<NodeArray::second>(momentum_shared_, s, component, at, sums, some);
+    sum<NodeArray::sixth>(momentum_shared_, s, component, at, sums, some);
   }
   template <NodeFields what, class F>
   void map_bricks(F work);

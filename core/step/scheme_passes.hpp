@@ -32,10 +32,8 @@ double PassesWith<S, T>::largest_strain_rate(double above) {
       ContributionPrefetch<of>(grid, shared<of>(), s + 1, 1).next();
       sum_fields<of>(s, at);
     };
-    if (scheme_ == Scheme::usavg)
+    if (strains_first(scheme_))
       sum.template operator()<NodeArray::sixth>();
-    else if (scheme_ == Scheme::usf)
-      sum.template operator()<NodeArray::second>();
     else
       sum.template operator()<NodeArray::first>();
     double* nodes = at.nodes.data();
@@ -132,7 +130,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
     };
     for_each_field(s, at, Contact::Velocity::of_strain, update, [&](std::int32_t component, std::size_t) {
       take_strain(s, component, at.nodes.data(), at);
-      auto nodes = prefetch_nodes<NodeArray::second>(s);
+      auto nodes = prefetch_nodes<NodeArray::sixth>(s);
       stress_of_brick<false>(s, component, at, [&] { nodes.next(); });
       map_forces(component);
     });

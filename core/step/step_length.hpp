@@ -24,9 +24,6 @@ struct StepLength {
   double load_part = 0.5;  ///< of dt, after which loads are evaluated: the middle of their impulses' time
 };
 
-/// USAVG: time by which strains and stresses are behind the positions at the end of a step of this length.
-constexpr double strain_lag_after(double dt) { return 0.5 * dt; }
-
 inline constexpr double least_impulse = 1.0 / 64;  ///< time of the last step's impulses, over its length
 
 /// `first_lag`: half of the run's first step.

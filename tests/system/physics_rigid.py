@@ -347,7 +347,7 @@ class Rigid(_mpm.Case):
                                        delta=0.005)  # regression depends a little on the order
 
     def test_free_body_with_other_schemes(self):
-        """USF and USL: momentum is exact, and the bodies part as with MUSL."""
+        """USF, USL and USAVG: momentum is exact, and the bodies part as with MUSL."""
         _, musl, _ = self.go(thrown())
         for algorithm in ("USF", "USL", "USAVG"):
             with self.subTest(algorithm=algorithm):
