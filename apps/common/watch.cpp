@@ -11,6 +11,23 @@
 #include "core/step/offending_particle.hpp"
 
 namespace mpm::apps {
+namespace {
+
+/// What to try where the energy drifts.
+std::string remedies(const core::Scene& scene) {
+  std::string words;
+  const core::SolutionInput& solution = scene.solution;
+  if (solution.integration == core::Integration::explicit_dynamics) {
+    const bool linear = scene.grid.shape == core::ShapeFunction::linear;
+    if (linear) words = "try Grid shape=\"SGMP\"";
+    if (solution.scheme != core::Scheme::usavg)
+      words += fmt::format("{} Solution algorithm=\"USAVG\"", linear ? ", or" : "try");
+    if (!words.empty()) words += "; ";
+  }
+  return words + "docs/stability.md lists remedies";
+}
+
+}  // namespace
 
 Watch::Watch(const core::Scene& scene, double time) : warn_(scene.solution.warn), scene_(scene) {
   const auto note = [&](const auto& points, const std::string& body, const char* load) {
@@ -88,8 +105,8 @@ void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& ba
   if (std::abs(mean) > notable_drift && std::abs(largest_mean_drift_) <= notable_drift) {
     log.warn(
         "step {}, time {:.6g}: the error of the energy balance is {:.3g} % in the mean over {} rows, more "
-        "than {:.3g} %: the results may be wrong; docs/stability.md lists remedies",
-        clock.step, clock.time, 100 * mean, judged_rows, 100 * notable_drift);
+        "than {:.3g} %: the results may be wrong; {}",
+        clock.step, clock.time, 100 * mean, judged_rows, 100 * notable_drift, remedies(scene_));
   }
   largest_mean_drift_ = mean;
 }
@@ -104,9 +121,8 @@ bool Watch::drifted_early() const {
 std::string Watch::words_of_drift() const {
   if (drifted_early())
     return fmt::format(
-        "the error of the energy balance was {:.3g} % at step {}, the last: the results may be wrong; "
-        "docs/stability.md lists remedies",
-        100 * last_drift_, last_step_);
+        "the error of the energy balance was {:.3g} % at step {}, the last: the results may be wrong; {}",
+        100 * last_drift_, last_step_, remedies(scene_));
   const double last = mean_drift();
   const double worst = std::abs(last) > std::abs(largest_mean_drift_) ? last : largest_mean_drift_;
   if (!(std::abs(worst) > notable_drift)) return {};
