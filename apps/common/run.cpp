@@ -171,7 +171,8 @@ class Run {
       return;
     }
     require_newton_solver(*case_.scene);
-    newton_ = parallel::make_newton_solver(world, options_.solver_options);
+    newton_ = parallel::make_newton_solver(world, solution.implicit.value_or(core::ImplicitInput{}),
+                                           options_.solver_options);
     communication_.newton = newton_.get();
   }
   /// Takes the job lock: from here on the files of the job belong to this run.

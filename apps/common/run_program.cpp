@@ -10,6 +10,7 @@
 #include "apps/mpm.hpp"
 #include "core/scene/errors.hpp"
 #include "io/output/file_error.hpp"
+#include "parallel/implicit/solver_library.hpp"
 #include "parallel/mpi.hpp"
 
 namespace mpm {
@@ -36,6 +37,8 @@ int run(int argc, char** argv, const Registry& registry) {
   try {
     return apps::run(options, world, registry);
   } catch (const core::InputErrors& e) {
+    return failed(e, apps::input_error);
+  } catch (const parallel::WrongSolverOptions& e) {
     return failed(e, apps::input_error);
   } catch (const io::FileError& e) { return failed(e, apps::file_error); } catch (const apps::NoThreads& e) {
     return failed(e, apps::out_of_resources);

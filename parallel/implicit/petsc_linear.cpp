@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "parallel/implicit/petsc_errors.hpp"
+#include "parallel/implicit/petsc_options.hpp"
 
 namespace mpm::parallel {
 
@@ -15,19 +16,18 @@ bool few(std::int64_t unknowns, bool springs) {
   return unknowns <= (springs ? direct_with_springs : direct_up_to);
 }
 
+/// Whether a preconditioner solves the system by itself.
+bool is_factorisation(const std::string& preconditioner) {
+  return preconditioner == PCLU || preconditioner == PCCHOLESKY;
+}
+
 }  // namespace
 
 bool takes_multigrid(std::int64_t unknowns, bool springs, bool slender) {
-  PetscBool other = PETSC_FALSE;
-  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-pc_type", &other));
-  return !few(unknowns, springs) && !slender && other == PETSC_FALSE;
+  return !few(unknowns, springs) && !slender && !option_value("-pc_type");
 }
 
-bool takes_augmented_system() {
-  PetscBool other = PETSC_FALSE;
-  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-ksp_type", &other));
-  return other == PETSC_FALSE;
-}
+bool takes_augmented_system() { return !option_value("-ksp_type"); }
 
 void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool slender,
                           const GridHierarchy* grids) {
@@ -35,14 +35,14 @@ void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool s
   PC pc = nullptr;
   check_petsc(SNESGetKSP(snes, &ksp));
   check_petsc(KSPGetPC(ksp, &pc));
-  if (few(unknowns, springs) || slender) {
+  const std::optional<std::string> named = option_value("-pc_type");
+  // What is no factorisation needs iterations, and has no package that makes one.
+  if ((few(unknowns, springs) || slender) && (!named || is_factorisation(*named))) {
     check_petsc(KSPSetType(ksp, KSPPREONLY));
     check_petsc(PCSetType(pc, PCLU));
     // A package that the user has named is not changed: in a later solution PETSc refuses that.
-    PetscBool named = PETSC_FALSE;
-    check_petsc(PetscOptionsHasName(nullptr, nullptr, "-pc_factor_mat_solver_type", &named));
-    // It orders the matrix itself, too: MUMPS has refused PETSc's ordering.
-    if (named == PETSC_FALSE) {
+    // MUMPS orders the matrix itself, too: it has refused PETSc's ordering.
+    if (!option_value("-pc_factor_mat_solver_type")) {
       check_petsc(PCFactorSetMatSolverType(pc, slender ? MATSOLVERPETSC : MATSOLVERMUMPS));
       if (slender) check_petsc(PCFactorSetMatOrderingType(pc, MATORDERINGRCM));
     }
@@ -52,7 +52,7 @@ void choose_linear_solver(SNES snes, std::int64_t unknowns, bool springs, bool s
     check_petsc(KSPSetTolerances(ksp, 1e-5, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
     if (grids != nullptr)
       grids->choose(pc);
-    else
+    else if (!named)
       check_petsc(PCSetType(pc, PCGAMG));
   }
 }
@@ -71,9 +71,12 @@ void choose_conjugate_gradients(SNES snes, double tolerance) {
 void prefer_pivots(SNES snes) {
   KSP ksp = nullptr;
   PC pc = nullptr;
+  PCType type = nullptr;
   MatSolverType solver = nullptr;
   check_petsc(SNESGetKSP(snes, &ksp));
   check_petsc(KSPGetPC(ksp, &pc));
+  check_petsc(PCGetType(pc, &type));
+  if (!is_factorisation(type)) return;
   check_petsc(PCFactorGetMatSolverType(pc, &solver));
   if (solver == nullptr || std::string(solver) != MATSOLVERPETSC) return;
   check_petsc(PCReset(pc));
@@ -84,12 +87,10 @@ void prefer_pivots(SNES snes) {
 bool choose_gmres(SNES snes) {
   KSP ksp = nullptr;
   KSPConvergedReason why = KSP_CONVERGED_ITERATING;
-  PetscBool chosen = PETSC_FALSE;
-  check_petsc(PetscOptionsHasName(nullptr, nullptr, "-ksp_type", &chosen));
   check_petsc(SNESGetKSP(snes, &ksp));
   check_petsc(KSPGetConvergedReason(ksp, &why));
-  if (chosen || (why != KSP_DIVERGED_INDEFINITE_MAT && why != KSP_DIVERGED_INDEFINITE_PC &&
-                 why != KSP_DIVERGED_BREAKDOWN))
+  if (option_value("-ksp_type") || (why != KSP_DIVERGED_INDEFINITE_MAT && why != KSP_DIVERGED_INDEFINITE_PC &&
+                                    why != KSP_DIVERGED_BREAKDOWN))
     return false;
   check_petsc(KSPSetType(ksp, KSPGMRES));
   return true;

@@ -5,7 +5,8 @@
 // others by MUMPS; larger ones by GMRES with multigrid on coarser grids (petsc_hierarchy.hpp), or, where
 // nodes are scattered, with smoothed aggregation (GAMG). The single system of a linearised step is solved by
 // conjugate gradients, preconditioned with the blocks of the nodes; where it turns out not to be positive
-// definite (a law that softens or whose flow is not associated), by GMRES.
+// definite (a law that softens or whose flow is not associated), by GMRES. Where the user names a
+// preconditioner that is no factorisation, and no method, small systems are solved by GMRES, too.
 #pragma once
 
 #include <cstddef>

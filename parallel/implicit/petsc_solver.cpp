@@ -8,11 +8,11 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <mpi.h>
 #include <petscsnes.h>
 
 #include "core/implicit/newton_solver.hpp"
+#include "core/scene/solution.hpp"
 #include "parallel/implicit/petsc_augmented.hpp"
 #include "parallel/implicit/petsc_errors.hpp"
 #include "parallel/implicit/petsc_hierarchy.hpp"
@@ -61,14 +61,13 @@ void give_rigid_motions(const NonlinearProblem& problem, Mat matrix) {
   check_petsc(MatSetNearNullSpace(matrix, rigid));
 }
 
-class PetscSolver final : public core::NewtonSolver {
+/// PETSc from its start, with the user's options, to its end.
+class Session {
  public:
-  PetscSolver(MPI_Comm comm, const std::vector<std::string>& options) {
+  Session(MPI_Comm comm, const std::vector<std::string>& words) : options_(comm, words) {
     check_mpi(MPI_Comm_dup(comm, &comm_));
     PETSC_COMM_WORLD = comm_;
-    words_.push_back("mpm");
-    wrong_words_ = fault_of_words(comm_, options);
-    if (wrong_words_.empty()) words_.insert(words_.end(), options.begin(), options.end());
+    words_.insert(words_.end(), words.begin(), words.end());
     for (std::string& w : words_) pointers_.push_back(w.data());
     pointers_.push_back(nullptr);
     int argc = static_cast<int>(words_.size());
@@ -77,13 +76,30 @@ class PetscSolver final : public core::NewtonSolver {
     PetscOptionsSetValue(nullptr, "-options_left", "no");
     check_petsc(PetscInitialize(&argc, &argv, nullptr, nullptr));
     keep_petsc_errors();
-    given_ = !options.empty();
   }
-  ~PetscSolver() override {
-    of_.reset();
+  ~Session() {
     PetscPopErrorHandler();
     PetscFinalize();
     MPI_Comm_free(&comm_);
+  }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  MPI_Comm comm() const { return comm_; }
+  const UserOptions& options() const { return options_; }
+
+ private:
+  UserOptions options_;
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  std::vector<std::string> words_{"mpm"};
+  std::vector<char*> pointers_;  ///< to these, for PETSc
+};
+
+class PetscSolver final : public core::NewtonSolver {
+ public:
+  PetscSolver(MPI_Comm comm, const core::ImplicitInput& steps, const std::vector<std::string>& options)
+      : session_(comm, options), comm_(session_.comm()), given_(session_.options().any()) {
+    session_.options().refuse_unsuitable(steps.linearised(), steps.matrix_free);
   }
   PetscSolver(const PetscSolver&) = delete;
   PetscSolver& operator=(const PetscSolver&) = delete;
@@ -97,7 +113,6 @@ class PetscSolver final : public core::NewtonSolver {
   void set_up(NonlinearProblem& problem, const NewtonOptions& options);
   bool try_otherwise(SNES snes, bool linear);
   bool meets_tolerance(SNES snes, SNESConvergedReason reason);
-  [[noreturn]] void refuse_options(const std::string& why);
 
   /// What solves with the same places of entries share: PETSc keeps the symbolic part of a factorisation.
   struct SetUp {
@@ -110,14 +125,13 @@ class PetscSolver final : public core::NewtonSolver {
     OwnedSnes snes;
   };
 
-  MPI_Comm comm_ = MPI_COMM_NULL;
+  const Session session_;  ///< ends after what follows
+  const MPI_Comm comm_;
+  const bool given_;  ///< there are options of the user
+  bool looked_ = false;
   std::unique_ptr<SetUp> of_;
   NewtonSolve now_;  ///< the latest solve
-  std::vector<std::string> words_;
-  std::vector<char*> pointers_;
   std::string description_;
-  std::string wrong_words_;  ///< what is wrong with the options; the first solve says it
-  bool given_ = false, looked_ = false;
 };
 
 /// The matrix and the solver, or those of the last solve where the places of the entries are the same.
@@ -161,12 +175,6 @@ bool PetscSolver::try_otherwise(SNES snes, bool linear) {
   if (of_->slender) prefer_pivots(snes);
   of_->slender = false;
   return true;
-}
-
-void PetscSolver::refuse_options(const std::string& why) {
-  throw WrongSolverOptions(
-      fmt::format("options of PETSc after -- ({}): {}; check their values, or remove them",
-                  fmt::join(words_.begin() + 1, words_.end(), " "), why));
 }
 
 /// An error that no shorter step changes: the options ask for what PETSc cannot do.
@@ -214,19 +222,17 @@ bool PetscSolver::meets_tolerance(SNES snes, SNESConvergedReason reason) {
 
 NewtonReport PetscSolver::solve(NonlinearProblem& problem, std::span<double> u,
                                 const NewtonOptions& options) {
-  if (!wrong_words_.empty()) throw WrongSolverOptions(wrong_words_);
   try {
     return solve_with_options(problem, u, options);
   } catch (const PetscFailure& error) {
     if (!given_ || looked_ || !is_of_options(error.code())) throw;
-    refuse_options(error.what());
+    session_.options().refuse(error.what());
   }
 }
 
 NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::span<double> u,
                                              const NewtonOptions& options) {
   const double start = MPI_Wtime();
-  if (!looked_) refuse_unsuitable_options(options.linear, options.matrix_free);
   set_up(problem, options);
   now_ = {&problem, &options, of_->values.get(), of_->grids.get(), of_->augmented.get(), {}, nullptr};
   NewtonReport& report = now_.report;
@@ -253,12 +259,15 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
                            of_->grids.get());
     choose_full_steps(snes, now_);
   }
-  if (SNESSetFromOptions(snes) != 0) refuse_options(take_petsc_error());
+  const PetscErrorCode misread = SNESSetFromOptions(snes);
+  if (given_ && misread != 0) session_.options().refuse(take_petsc_error());
+  check_petsc(misread);
   description_ = description_of(snes);
   report.structure_seconds = MPI_Wtime() - start;
 
   PetscErrorCode code = SNESSolve(snes, nullptr, solution);
-  if (given_ && !looked_ && !now_.failure && is_of_options(code)) refuse_options(take_petsc_error());
+  if (given_ && !looked_ && !now_.failure && is_of_options(code))
+    session_.options().refuse(take_petsc_error());
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   check_petsc(SNESGetConvergedReason(snes, &reason));
   const auto count_iterations = [&] {
@@ -292,7 +301,7 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
   check_petsc(VecRestoreArrayRead(solution, &from));
   report.linear_seconds = MPI_Wtime() - start - report.structure_seconds - report.residual_seconds -
                           report.jacobian_seconds - report.setup_seconds;
-  if (given_ && !looked_) refuse_unused_options();
+  if (given_ && !looked_) session_.options().refuse_unused();
   looked_ = true;
   // An error leaves solvers in the middle of something, and each later solution would fail.
   if (code != 0) of_ = nullptr;
@@ -304,6 +313,6 @@ NewtonReport PetscSolver::solve_with_options(NonlinearProblem& problem, std::spa
 }  // namespace mpm::parallel
 
 extern "C" [[gnu::visibility("default")]] mpm::core::NewtonSolver* mpm_make_newton_solver(
-    MPI_Comm comm, const std::vector<std::string>* options) {
-  return new mpm::parallel::PetscSolver(comm, *options);
+    MPI_Comm comm, const mpm::core::ImplicitInput* steps, const std::vector<std::string>* options) {
+  return new mpm::parallel::PetscSolver(comm, *steps, *options);
 }

@@ -11,7 +11,7 @@ namespace mpm::parallel {
 
 namespace {
 
-using Make = core::NewtonSolver*(MPI_Comm, const std::vector<std::string>*);
+using Make = core::NewtonSolver*(MPI_Comm, const core::ImplicitInput*, const std::vector<std::string>*);
 
 #ifdef MPM_SOLVER_LIBRARY
 /// Where the library may be: found by the loader, beside the code that calls it, or in the library folder
@@ -61,12 +61,13 @@ std::string why_no_newton_solver() {
 }
 
 std::unique_ptr<core::NewtonSolver> make_newton_solver(
-    [[maybe_unused]] const Communicator& world, [[maybe_unused]] const std::vector<std::string>& options) {
+    [[maybe_unused]] const Communicator& world, [[maybe_unused]] const core::ImplicitInput& steps,
+    [[maybe_unused]] const std::vector<std::string>& options) {
 #ifdef MPM_SOLVER_LIBRARY
   std::string why;
   if (void* const loaded = library(why)) {
     if (auto* const make = reinterpret_cast<Make*>(dlsym(loaded, "mpm_make_newton_solver")))
-      return std::unique_ptr<core::NewtonSolver>(make(world.handle(), &options));
+      return std::unique_ptr<core::NewtonSolver>(make(world.handle(), &steps, &options));
   }
 #endif
   throw std::runtime_error(why_no_newton_solver());

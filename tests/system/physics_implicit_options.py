@@ -1,11 +1,22 @@
-"""PETSc's options after --: what implicit steps follow, and what they refuse by name, once, on any ranks. A step is taken only
-with a residual within the tolerance, whatever ends Newton's method."""
+"""PETSc's options, after -- and from elsewhere: what implicit steps follow, and what they refuse by name, once, on any ranks, and
+where they can before files of an earlier run are touched. A step is taken only with a residual within the tolerance, whatever ends
+Newton's method."""
+
+from unittest import mock
 
 import numpy as np
 
 import _cases
 import _mpm
 from _implicit import SOFT, column
+
+# Files of options that PETSc itself would end the program for.
+UNREADABLE = [
+    ("-ksp_type cg\nksp_rtol 1e-8\n", '"ksp_rtol" at the start of line 2'),
+    ("-ksp_type gmres 3\n", '"3" in line 1'),
+    ("-snes_monitor -ksp_monitor\n", '"-ksp_monitor" in line 1'),
+    ("! no comment\n", '"!" at the start of line 1'),
+]
 
 # Each with words of its message.
 REFUSED = [
@@ -14,6 +25,8 @@ REFUSED = [
     (("-ksp_rtol", "abc"), ("-ksp_rtol",)),
     (("-snes_rtol", "1e-3"), ("-snes_rtol", "rtol and atol of Implicit")),
     (("-snes_convergence_test", "skip"), ("-snes_convergence_test", "rtol and atol of Implicit")),
+    (("-snes_max_it", "50"), ("-snes_max_it", "max_newton of Implicit")),
+    (("-snes_divergence_tolerance", "10"), ("-snes_divergence_tolerance", "max_newton of Implicit")),
     (("-pc_factor_mat_solver_type", "nosuch"), ("-pc_factor_mat_solver_type",)),
     # Others would end where they like, or after one system.
     (("-snes_type", "ngmres"), ("-snes_type ngmres", "newtonls or newtontr")),
@@ -46,6 +59,71 @@ class Options(_mpm.Case):
                 outcome = self.run_with(path, options)
                 self.assertEqual(outcome.code, _mpm.DONE, outcome)
 
+    def test_a_preconditioner_alone(self):
+        """What does not solve small systems by itself is iterated with, unless the user says how."""
+        path = self.write(column(steps=2))
+        for options, words in ((("-pc_type", "jacobi"), "gmres with jacobi"), (("-pc_type", "none"), "gmres with none"),
+                               (("-pc_type", "ilu"), "gmres with ilu"), (("-pc_type", "icc"), "gmres with icc"),
+                               (("-pc_type", "gamg"), "gmres with gamg"), (("-pc_type", "hypre"), "gmres with hypre"),
+                               (("-pc_type", "jacobi", "-ksp_type", "cg"), "cg with jacobi"),
+                               (("-pc_type", "cholesky"), "preonly with cholesky"), (("-pc_type", "lu"), "preonly with lu")):
+            with self.subTest(options=options):
+                outcome = self.run_with(path, options)
+                self.assertEqual(outcome.code, _mpm.DONE, outcome)
+                self.assertIn(f": {words};", outcome.out)
+                self.assertIn("0 of them rejected", outcome.out)
+
+    def test_options_from_elsewhere(self):
+        """Of the environment and of files that PETSc reads by itself: followed, or refused with where they come from."""
+        path = self.write(column(steps=2))
+        (self.folder / "home").mkdir()
+        own = self.folder / "home/.petscrc"
+        place = {"environment": "in the environment variable PETSC_OPTIONS", "file": "in a file .petscrc"}
+
+        def run(environment="", file="", after=(), **more):
+            own.write_text(file)
+            with mock.patch.dict(_mpm.ENVIRONMENT, PETSC_OPTIONS=environment, HOME=str(own.parent)):
+                return self.run_with(path, after, **more)
+
+        for source in place:
+            with self.subTest(source):
+                outcome = run(**{source: "-ksp_type gmres"})
+                self.assertEqual(outcome.code, _mpm.DONE, outcome)
+                self.assertIn(": gmres with lu;", outcome.out)
+                for options, words in (("-nosuch 1", f"unknown or unused options of PETSc {place[source]}: -nosuch;"),
+                                       ("-ksp_type gmrez", f"options of PETSc {place[source]} (-ksp_type gmrez): "),
+                                       ("-snes_max_it 50", f"option -snes_max_it of PETSc {place[source]} has no effect"),
+                                       ("-mat_type dense", f"option -mat_type dense of PETSc {place[source]}: expected aij")):
+                    outcome = run(**{source: options})
+                    self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
+                    self.assertEqual(len(outcome.err.splitlines()), 1, outcome)
+                    self.assertIn(words, outcome.err)
+        for parts, words in (({"environment": "-ksp_type cg nonsense"}, f'"nonsense" {place["environment"]} belongs to no option'),
+                             ({"environment": "-options_file /nonexist"}, f'{place["environment"]}: the file cannot be read'),
+                             ({"file": "nonsense\n"}, f'{own}, whose options PETSc takes, has "nonsense" at the start of line 1'),
+                             ({"environment": "-one 1", "file": "-two 2", "after": ("-three", "3", "-one", "1")},
+                              f'after --: -one, -three, {place["file"]}: -two;'),
+                             ({"environment": "-nosuch 1", "ranks": 2}, f'{place["environment"]}: -nosuch;')):
+            with self.subTest(words):
+                outcome = run(**parts)
+                self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
+                self.assertEqual(len(outcome.complaint.splitlines()), 1, outcome)
+                self.assertIn(words, outcome.err)
+        outcome = run(file="-nosuch 1", after=("-skip_petscrc",))
+        self.assertEqual(outcome.code, _mpm.DONE, outcome)
+
+    def test_files_of_an_earlier_run_stay(self):
+        path = self.write(column(steps=2, output='<PostProcessing time_interval="0.5" h5part="1" var="pres"/>'))
+        self.run_in("out", [path])
+        before = _mpm.contents(self.folder / "out")
+        for options in (("nonsense",), ("-options_file", "/nonexist"), ("-snes_rtol", "1e-3"), ("-mat_type", "dense")):
+            for dry in ((), ("--dry-run",)):
+                with self.subTest(options=options, dry=dry):
+                    outcome = _mpm.run([path, *dry, "--output-dir", self.folder / "out", "--", *options])
+                    self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
+                    self.assertIn(options[0], outcome.err)
+                    self.assertEqual(_mpm.contents(self.folder / "out"), before)
+
     def test_what_is_refused(self):
         path = self.write(column(steps=2))
         for options, words in REFUSED:
@@ -55,10 +133,12 @@ class Options(_mpm.Case):
                 self.assertEqual(len(outcome.err.splitlines()), 1, outcome)
                 for word in words:
                     self.assertIn(word, outcome.err)
-        (self.folder / "options").write_text("-ksp_type cg\nksp_rtol 1e-8\n")
-        outcome = self.run_with(path, ("-options_file", self.folder / "options"))
-        self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
-        self.assertIn('"ksp_rtol" at the start of line 2', outcome.err)
+        for text, words in UNREADABLE:
+            with self.subTest(text):
+                (self.folder / "options").write_text(text)
+                outcome = self.run_with(path, ("-options_file", self.folder / "options"))
+                self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
+                self.assertIn(words, outcome.err)
         outcome = self.run_with(self.write(_mpm.bounce(0.1), "explicit.xmp"), ("-ksp_type", "cg"))
         self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
         self.assertIn("-ksp_type", outcome.err)
@@ -69,7 +149,8 @@ class Options(_mpm.Case):
 
     def test_ranks_leave_together(self):
         path = self.write(column(steps=2))
-        for options in (("-mat_type", "dense"), ("-mat_type", "nosuch"), ("-options_file", "/nonexist"), ("-pc_type", "nosuch")):
+        for options in (("-mat_type", "dense"), ("-mat_type", "nosuch"), ("-options_file", "/nonexist"), ("-pc_type", "nosuch"),
+                        ("nonsense",)):
             with self.subTest(options=options):
                 outcome = self.run_with(path, options, ranks=2)
                 self.assertEqual(outcome.code, _mpm.INPUT_ERROR, outcome)
