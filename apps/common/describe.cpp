@@ -225,9 +225,10 @@ void say_what_was_counted(const core::Model& model, core::Reductions& ranks, io:
       "with a strain increment too large for the return to the yield surface: use a smaller TimeStep "
       "factor",
       "limited by LimitVelocity",
-      boxes ? "with a domain wider than a cell, limited to one cell: use CPDI or larger cells"
-            : "with a domain that extends more than a cell from the particle, limited to one cell: use "
-              "larger cells",
+      boxes
+          ? "with a domain wider than a cell, limited to one cell: use CPDI or larger cells"
+          : "with a domain that extends more than a cell from the particle, limited to one cell, in a fluid "
+            "replaced by a cube: use larger cells",
       "with a tangled domain, replaced by a parallelepiped or a cube: use smaller steps or CPDI"};
   ranks.sum(std::span<std::int64_t>(counts));
   for (std::size_t i = 0; i < std::size(counts); ++i) {

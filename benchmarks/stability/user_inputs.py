@@ -32,6 +32,7 @@ KEYS = ("input", "shape", "scheme")
 ROWS = [("bounce", "linear", "MUSL", 1), ("histories", "linear", "MUSL", 1), ("sand_column", "linear", "MUSL", 1),
         ("sand_column", "linear", "USL", 0.08), ("sand_column", "linear", "USF", 0.08), ("sand_column", "linear", "USAVG", 0.08),
         *(("dam_break", "linear", scheme, 1) for scheme in ("MUSL", "USAVG")),
+        *(("dam_break", shape, "MUSL", 1) for shape in ("CPDI", "CPDI2")),
         *(("sphere_on_plate", "linear", scheme, 1) for scheme in ("MUSL", "USAVG", "USF", "USL")), ("sphere_on_plate", "SGMP", "MUSL", 1),
         *(("rigid_ram", "linear", scheme, 1) for scheme in ("MUSL", "USAVG")),
         *(("rigid_ram", shape, "MUSL", 1) for shape in ("SGMP", "QuadraticBSpline", "uGIMP", "CPDI"))]

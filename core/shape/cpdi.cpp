@@ -4,30 +4,74 @@ namespace mpm::core {
 
 namespace {
 
+using R = Lanes<8>;
+
+/// Lanes of a block whose domains reach, reach(axis), more than a cell.
+template <class F>
+unsigned wide_lanes(const BrickFrame& frame, F reach) {
+  unsigned wide = 0;
+  for (int a = 0; a < 3; ++a) wide |= bits(R(cpdi::farthest) < reach(a) * R(frame.inverse_cell[a]));
+  return wide;
+}
+
+/// Corners about the middle with these half edges.
+void set_corners(const ColumnLayout& layout, double* block, int lane, const double (&middle)[3],
+                 const double (&edge)[3][3]) {
+  double* corner = HexahedronDomain::of(layout, block) + lane;
+  for (int a = 0; a < 3; ++a) {
+    double to[corners];
+    parallelepiped_corners(middle[a], edge[0][a], edge[1][a], edge[2][a], to);
+    for (int c = 0; c < corners; ++c) corner[block_lanes * (3 * c + a)] = to[c];
+  }
+}
+/// A cube about the particle.
+void set_cube(const ColumnLayout& layout, double* block, int lane) {
+  const double half = cpdi::half_of_cube(layout, block, lane);
+  set_corners(layout, block, lane, {0, 0, 0}, {{half, 0, 0}, {0, half, 0}, {0, 0, half}});
+}
+
 /// The parallelepiped of the hexahedron's mean edges about its mean corner, or a cube about the particle.
 void replace_domain(const ColumnLayout& layout, double* block, int lane) {
-  double* corner = HexahedronDomain::of(layout, block) + lane;
+  const double* corner = HexahedronDomain::of(layout, block) + lane;
   double x[3][corners];
   for (int c = 0; c < corners; ++c)
     for (int a = 0; a < 3; ++a) x[a][c] = corner[block_lanes * (3 * c + a)];
   const Hexahedron<double> old(x);
-  const bool sound = dot(old.a[0], cross(old.a[1], old.a[2])) > 0;
-  const double half = cpdi::half_of_cube(layout, block, lane);
+  if (!(dot(old.a[0], cross(old.a[1], old.a[2])) > 0)) return set_cube(layout, block, lane);
+  double edge[3][3], middle[3];
   for (int a = 0; a < 3; ++a) {
-    double edge[3] = {}, middle = 0;
-    for (int k = 0; k < 3; ++k) edge[k] = sound ? old.a[k][a] : (k == a ? half : 0);
-    if (sound) middle = old.middle[a];
-    double to[corners];
-    parallelepiped_corners(middle, edge[0], edge[1], edge[2], to);
-    for (int c = 0; c < corners; ++c) corner[block_lanes * (3 * c + a)] = to[c];
+    middle[a] = old.middle[a];
+    for (int k = 0; k < 3; ++k) edge[k][a] = old.a[k][a];
   }
+  set_corners(layout, block, lane, middle, edge);
 }
 
 }  // namespace
 
+void Cpdi::replace_wide(const BrickFrame& frame, const ColumnLayout& layout, double* block) {
+  Vec3<R> r[3];
+  Parallelepiped::load_edges(layout, block, r);
+  double* edge = block + layout.offset(Column::edge_1x);
+  for (unsigned left = wide_lanes(frame, [&](int a) { return abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]); });
+       left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    const double half = cpdi::half_of_cube(layout, block, lane);
+    for (int i = 0; i < 9; ++i) edge[block_lanes * i + lane] = i % 4 == 0 ? half : 0;
+  }
+}
+
+void Cpdi2::replace_wide(const BrickFrame& frame, const ColumnLayout& layout, double* block) {
+  R x[3][corners];
+  HexahedronDomain::load_corners(layout, block, x);
+  for (unsigned left = wide_lanes(frame, [&](int a) { return HexahedronDomain::reach_of(x[a]); }); left != 0;
+       left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    set_cube(layout, block, lane);
+  }
+}
+
 DomainCounts Cpdi2::settle(const BrickFrame& frame, const ColumnLayout& layout, bool free, double* block,
                            int used) {
-  using R = Lanes<8>;
   double* corner = HexahedronDomain::of(layout, block);
   R x[3][corners];
   HexahedronDomain::load_corners(layout, block, x);

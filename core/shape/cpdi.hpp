@@ -14,7 +14,9 @@
 // that axis scaled back to one cell: weights of the same parallelepiped or hexahedron, squeezed. A
 // tangled domain, whose Jacobian is not positive at a corner or in the mean, is replaced: a hexahedron by the
 // parallelepiped of its mean edges, and where that is tangled too, by a cube of the particle's volume. Both
-// are counted. Shown by tests/core/shape.
+// are counted. In a fluid, whose shear draws domains out to needles that tell nothing of it, one that reaches
+// more than a cell is replaced by such a cube, too: with needles a dam break ends in particles of any speed.
+// Shown by tests/core/shape.
 #pragma once
 
 #include "core/shape/corners.hpp"
@@ -134,6 +136,8 @@ struct Cpdi : CornerShape<Parallelepiped> {
     }
     return {cpdi::count(wide & ~tangled, used), cpdi::count(tangled, used)};
   }
+  /// Replaces domains that reach more than a cell by cubes.
+  static void replace_wide(const BrickFrame& frame, const ColumnLayout& layout, double* block);
 };
 static_assert(ShapePolicy<Cpdi>);
 
@@ -217,6 +221,8 @@ struct Cpdi2 : CornerShape<HexahedronDomain> {
   /// their domains' centroids, the domains of another body to their particles.
   static DomainCounts settle(const BrickFrame& frame, const ColumnLayout& layout, bool free, double* block,
                              int used);
+  /// As Cpdi.
+  static void replace_wide(const BrickFrame& frame, const ColumnLayout& layout, double* block);
 };
 static_assert(ShapePolicy<Cpdi2>);
 

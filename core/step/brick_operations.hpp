@@ -146,6 +146,10 @@ template <ShapePolicy S, TransferPolicy T>
   if constexpr (Traits::settles)
     at.statistics.domains +=
         S::settle(frame, layout, loads_.motion(body).kind == BodyMotion::Kind::free, block, used);
+  if constexpr (requires { S::replace_wide(frame, layout, block); }) {
+    const bool is_fluid = model_.bodies[static_cast<std::size_t>(body)].model->initial_shear_speed() == 0;
+    if (is_fluid) S::replace_wide(frame, layout, block);
+  }
 }
 
 template <ShapePolicy S, TransferPolicy T>

@@ -354,6 +354,32 @@ TEST_CASE("A parallelepiped that turns inside out becomes a cube of the particle
   CHECK(read_domain<Cpdi>(layout, block + 2, block_lanes)[7][2] == Approx(0.4));
 }
 
+TEMPLATE_TEST_CASE(
+    "In a fluid a domain that reaches more than a cell becomes a cube of the particle's volume", "", Cpdi,
+    Cpdi2) {
+  TransferCase<TestType> c({1, 1, 1}, 8, 37);
+  double* block = c.pool.block(c.tile.blocks[0]);
+  const ColumnLayout& layout = c.pool.layout();
+  const auto cell = [&](std::size_t a) { return 1 / c.frame().inverse_cell[static_cast<int>(a)]; };
+  const auto box_of = [&](int l) {
+    Vector half;
+    for (std::size_t a = 0; a < 3; ++a)
+      half[a] = (l % 2 == 1 && a == static_cast<std::size_t>(l / 2 % 3) ? 1.01 : 0.99) * cell(a);
+    return mpm::tests::box(half);
+  };
+  for (int l = 0; l < 8; ++l) {
+    write_domain<TestType>(layout, box_of(l), block + l, block_lanes);
+    block[layout.offset(Column::volume) + l] = 0.027;
+  }
+  TestType::replace_wide(c.frame(), layout, block);
+  for (int l = 0; l < 8; ++l) {
+    const DomainCorners wanted = l % 2 == 1 ? mpm::tests::box({0.15, 0.15, 0.15}) : box_of(l);
+    const DomainCorners now = read_domain<TestType>(layout, block + l, block_lanes);
+    for (std::size_t k = 0; k < 8; ++k)
+      for (std::size_t a = 0; a < 3; ++a) CHECK(now[k][a] == Approx(wanted[k][a]).epsilon(1e-14));
+  }
+}
+
 TEMPLATE_TEST_CASE("What infrequent terms see of a particle's nodes is what the kernels use, each node once",
                    "", Cpdi, Cpdi2) {
   TransferCase<TestType> c({2, 2, 2}, 64, 36);
