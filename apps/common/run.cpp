@@ -313,6 +313,7 @@ class Run {
     report.particle_steps =
         communication_.reductions.spread(particle_steps_).mean * communication_.reductions.size();
     const core::Totals totals = core::compute_totals(model_, communication_);
+    if (status != "failed" && watch_->last_noted_step() < model_.clock.step) note_balance(totals);
     if (report.reason.empty()) report.reason = watch_->words_of_drift();
     const std::string emptied = words_of_emptied_bodies(model_, totals);
     log_->say("\n{}", io::timing_table(report));

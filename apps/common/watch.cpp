@@ -97,6 +97,7 @@ double Watch::mean_drift() const {
 void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log) {
   last_step_ = clock.step;
   last_drift_ = balance.relative_drift;
+  began_with_energy_ = balance.initial_share > 0.5;
   if (clock.step < (is_implicit() ? 1 : first_judged_step)) return;
   drifts_.push_back(balance.relative_drift);
   if (drifts_.size() > judged_rows) drifts_.pop_front();
@@ -113,9 +114,10 @@ void Watch::note_balance(const core::Clock& clock, const core::EnergyBalance& ba
 
 /// Whether the run had fewer steps than the others are judged by, and a notable drift.
 bool Watch::drifted_early() const {
-  return !is_implicit() && last_step_ > 0 && last_step_ < first_judged_step &&
-         std::abs(last_drift_) >
-             std::max(notable_drift_of_short_run, notable_steps_of_drift / static_cast<double>(last_step_));
+  if (is_implicit() || last_step_ == 0 || last_step_ >= first_judged_step) return false;
+  const double of_fall =
+      std::max(notable_drift_of_short_run, notable_steps_of_drift / static_cast<double>(last_step_));
+  return std::abs(last_drift_) > (began_with_energy_ ? notable_drift : of_fall);
 }
 
 std::string Watch::words_of_drift() const {

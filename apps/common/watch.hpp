@@ -23,8 +23,9 @@ inline constexpr std::size_t judged_rows = 10;
 /// The first step of an explicit run that is checked: earlier the total energy may be so small (a body that
 /// starts to fall) that the error of one step is a notable fraction of it.
 inline constexpr std::int64_t first_judged_step = 50;
-/// An explicit run with fewer steps is judged by its last row, above these: a body that falls from rest for n
-/// steps has an error of up to 1/n.
+/// An explicit run with fewer steps is judged by its last row: above notable_drift where it has begun with
+/// half of its energy or more, above these where it has not: a body that falls from rest for n steps has an
+/// error of up to 1/n.
 inline constexpr double notable_drift_of_short_run = 0.1;
 inline constexpr double notable_steps_of_drift = 2;
 
@@ -37,8 +38,9 @@ class Watch {
   /// exceeds EnergyFraction, on every rank. Collective.
   void after_step(const core::Model& model, const core::Stepper::Incidents& mine, core::Reductions& ranks,
                   io::Log& log);
-  /// The energy balance at a row of the status file; warns at the first notable drift.
+  /// The energy balance at a row of the status file or at the end; warns at the first notable drift.
   void note_balance(const core::Clock& clock, const core::EnergyBalance& balance, io::Log& log);
+  std::int64_t last_noted_step() const { return last_step_; }
   /// Message about a notable drift since the start or continuation of this run; empty without one.
   std::string words_of_drift() const;
   /// Reports a notable drift, and what level 1 has counted beyond the particles that it named.
@@ -69,6 +71,7 @@ class Watch {
   bool is_implicit() const { return scene_.solution.integration == core::Integration::implicit; }
   std::int64_t last_step_ = 0;  ///< of the rows
   double last_drift_ = 0;
+  bool began_with_energy_ = false;
   std::deque<double> drifts_;  ///< of the last judged_rows
   double largest_mean_drift_ = 0;
   std::multimap<double, std::string> load_ends_;  ///< end time of each load table, and its owner

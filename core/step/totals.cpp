@@ -321,7 +321,9 @@ EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
                            totals.removed_internal + totals.dissipated_by_contact;
   const double scale =
       std::max({std::abs(initial_energy), std::abs(totals.external_work), std::abs(accounted)});
-  if (scale > 0) balance.relative_drift = (accounted - totals.external_work - initial_energy) / scale;
+  if (!(scale > 0)) return balance;
+  balance.relative_drift = (accounted - totals.external_work - initial_energy) / scale;
+  balance.initial_share = std::abs(initial_energy) / scale;
   return balance;
 }
 

@@ -71,6 +71,7 @@ struct EnergyBalance {
   /// Present and removed energy, that of the particles at one instant (Ledger::internal_lead), and what
   /// contact has dissipated, less external work and initial energy; relative to the largest of these.
   double relative_drift = 0;
+  double initial_share = 0;  ///< initial energy, relative to the same
 };
 EnergyBalance energy_balance(const Totals& totals, double initial_energy);
 
