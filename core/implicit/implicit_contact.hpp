@@ -89,13 +89,14 @@ class ImplicitContact {
   ContactSpring::Response response(const Touch& touch) const {
     return touch.spring.response(relative(touch));
   }
-  /// f(own node, force on it) of each touch.
+  /// f(own node, force on it, whether by a rigid body) of each touch.
   template <class F>
   void for_each_force(F f) const {
     for (const Touch& touch : touches_) {
       const Vec3<double> force = response(touch).force;
-      if (const std::size_t i = members_[touch.first].own; i != no_own) f(i, -1.0 * force);
-      if (const std::size_t i = members_[touch.second].own; i != no_own) f(i, force);
+      const Member &first = members_[touch.first], &second = members_[touch.second];
+      if (first.own != no_own) f(first.own, -1.0 * force, second.rigid >= 0);
+      if (second.own != no_own) f(second.own, force, first.rigid >= 0);
     }
   }
   /// Adds `factor` times the stiffness; its structure alone without `values`.

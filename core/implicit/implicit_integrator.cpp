@@ -227,9 +227,13 @@ bool ImplicitIntegrator::residual(std::span<const double> u, std::span<double> r
 
 void ImplicitIntegrator::find_contact_forces() {
   if (!contact_) return;
-  for (NodeState& at : state_) std::fill_n(at.contact, 3, 0.0);
-  contact_->for_each_force([&](std::size_t i, const Vec3<double>& force) {
+  for (NodeState& at : state_) {
+    std::fill_n(at.contact, 3, 0.0);
+    at.meets_rigid = false;
+  }
+  contact_->for_each_force([&](std::size_t i, const Vec3<double>& force, bool by_rigid) {
     for (int a = 0; a < 3; ++a) state_[i].contact[a] += force[a];
+    state_[i].meets_rigid |= by_rigid;
   });
 }
 
@@ -294,8 +298,9 @@ void ImplicitIntegrator::move() {
       work += at.external[a] * u;
       if (rule_.dynamic()) {
         if (moved(i, a)) work += at.impulse[a] * u / model_.clock.dt;
-      } else if (held(i, a) || !touches) {
+      } else if (held(i, a) || !at.meets_rigid) {
         // From equilibrium to equilibrium loads and reactions change in proportion: the work of their means.
+        // What deformable components do to each other at the start cancels in the sum over both.
         work += 0.5 * ((held(i, a) ? at.reaction[a] : 0.0) - at.force[a]) * u;
       }
       const double v = held(i, a)

@@ -60,6 +60,7 @@ class ImplicitIntegrator final : public Integrator, private NonlinearProblem {
     double external[3];  ///< force
     double force[3];     ///< all, at the start
     double contact[3];   ///< force in the last evaluation
+    bool meets_rigid;    ///< a part of it is by a rigid body
     double reaction[3];  ///< residual of the last evaluation, also of held components
     double ahead[3];     ///< what the rest of the way of held nodes adds to it
     double drive[3];     ///< change of velocity in the step of the bodies of prescribed motion that hold it

@@ -46,7 +46,7 @@ class ImplicitPassesWith final : public ImplicitPasses {
   const Loads& loads() const override { return loads_; }
   void begin_step(double dt, double part) override {
     dt_ = dt;
-    loads_.begin_step(model_.clock.time, dt, part);
+    loads_.begin_step(model_.clock.time, dt, part, Loads::VelocityOfStep::mean);
     const auto& input = model_.scene->solution.implicit;
     const double ramp = input ? input->gravity_ramp : 0, now = model_.clock.time + part * dt;
     gravity_ = (ramp > now ? now / ramp : 1.0) * model_.scene->solution.gravity;

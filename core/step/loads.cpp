@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace mpm::core {
 
@@ -136,14 +137,25 @@ void Loads::add_functions(const Model& model, const std::vector<const BodyInput*
   }
 }
 
-void Loads::begin_step(double time, double dt, double part) {
+void Loads::begin_step(double time, double dt, double part, VelocityOfStep velocity) {
   middle_ = time + part * dt;
+  struct Sample {
+    double time, weight;
+  };
+  const Sample simpson[] = {{time, 1.0 / 6}, {time + 0.5 * dt, 4.0 / 6}, {time + dt, 1.0 / 6}};
+  const Sample end[] = {{time + dt, 1.0}};
+  const bool mean = velocity == VelocityOfStep::mean;
+  const std::span<const Sample> samples = mean ? std::span<const Sample>(simpson) : end;
   for (const Held& h : held_) {
-    double v[3];
-    for (int a = 0; a < 3; ++a) v[a] = (*h.input->prescribed_velocity)[a];
-    functions_->add_values(h.of_time, model_->bodies[h.body], time + dt, v);
-    motions_[h.body].velocity.common = {v[0], v[1], v[2]};
-    motions_[h.body].velocity.time = time + dt;
+    Vec3<double> sum{};
+    for (const Sample& sample : samples) {
+      double v[3];
+      for (int a = 0; a < 3; ++a) v[a] = (*h.input->prescribed_velocity)[a];
+      functions_->add_values(h.of_time, model_->bodies[h.body], sample.time, v);
+      sum = sum + sample.weight * Vec3<double>{v[0], v[1], v[2]};
+    }
+    motions_[h.body].velocity.common = sum;
+    motions_[h.body].velocity.time = mean ? time + 0.5 * dt : time + dt;
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     OfBody& mine = bodies_[b];
@@ -155,7 +167,9 @@ void Loads::begin_step(double time, double dt, double part) {
                                      ? motion.velocity.common
                                      : input.prescribed_velocity.value_or(input.initial_velocity);
       motion.kind = BodyMotion::Kind::prescribed;
-      motion.velocity.common = start + velocity_gained(input, time + dt);
+      motion.velocity.common = start;
+      for (const Sample& sample : samples)
+        motion.velocity.common = motion.velocity.common + sample.weight * velocity_gained(input, sample.time);
     }
     if (!mine.loaded) continue;
     mine.acceleration = acceleration_of(input, middle_);

@@ -45,8 +45,8 @@ Vec3<double> velocity_gained(const BodyInput& input, double time);
 /// deformable body from rest by half a cell, at least; infinite without either.
 double fall_time(const Model& model);
 
-/// The velocity that the input gives a body's particles at the end of a step: for all the same, or with
-/// expressions of their places at its beginning.
+/// The velocity that the input gives a body's particles in a step: for all the same, or with expressions of
+/// their places at its beginning.
 struct PrescribedMotion {
   Vec3<double> common{};
   std::vector<LoadFunctions::Term> terms;  ///< of place; their values are added
@@ -79,9 +79,12 @@ class Loads {
   /// Largest part of the critical step with non-reflecting faces.
   static constexpr double nonreflecting_factor = 0.5;
 
-  /// Called before a step from `time` to `time + dt`: loads are evaluated after `part` of
-  /// it, prescribed velocities (ConstrainRigidPosition, expressions) at its end.
-  void begin_step(double time, double dt, double part = 0.5);
+  /// Prescribed velocities (ConstrainRigidPosition, expressions) in a step: those at its end, or, where a
+  /// step may be long against their changes, the means over it by Simpson's rule, so that bodies travel as
+  /// far as the input says; with expressions of the place, those at its middle.
+  enum class VelocityOfStep { end, mean };
+  /// Called before a step from `time` to `time + dt`; loads are evaluated after `part` of it.
+  void begin_step(double time, double dt, double part = 0.5, VelocityOfStep velocity = VelocityOfStep::end);
 
   bool any() const { return !bodies_.empty(); }
   /// Force per mass on a body in this step: the part that is the same for all its particles.
