@@ -140,6 +140,12 @@ def foam():
                             [steel, bits_laws.material("foam")]), 400.0)
 
 
+def rebound():
+    body = _mpm.block("block", (3, 3, 1.5), (4, 4, 4), (0, 0, -1.5), 0.5, "soft")
+    return Scene("an elastic block that rebounds from a rigid wall (type 4)",
+                 _mpm.scene([body], box((10, 10, 10), faces="000040"), solution(4.0), [SOFT]), 4.0)
+
+
 SOFT = elastic("soft", 1.0, 1000.0)
 SCENES = {
     "stiffness": collision("stiffness 1e6 : 1, met in a cell", elastic("first", 1.0, 1e7), elastic("second", 1.0, 10.0), 0.3, 10.0),
@@ -158,6 +164,7 @@ SCENES = {
     "failed": failed(0),
     "failed viscous": failed(1),
     "foam": foam(),
+    "rebound": rebound(),
 }
 
 

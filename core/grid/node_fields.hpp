@@ -1,15 +1,16 @@
 // Nodal fields of the background grid, by name.
 //
-// Every brick stores its contributions to its nodes in one to six arrays of records. A field names
+// Every brick stores its contributions to its nodes in one to seven arrays of records. A field names
 // consecutive components of an array's record; kernels, sums and the halo exchange use fields. A scheme maps
 // to the grid twice per step and needs the first sums again after the second map: hence two arrays, and a
-// sixth for momentum and mass where a scheme maps them before the forces.
+// sixth for momentum and mass where a scheme maps them before the forces; a seventh for the forces before the
+// strain, which tell at rigid walls what they hold.
 // Corrections of the velocities (core/transfer/corrected.hpp) are mapped between the two, and products with
 // the consistent mass matrix (core/transfer/consistent.hpp): the third array. Contact needs the surfaces of
 // the bodies at both: the fourth, and how far they reach: the fifth. Fields of different phases may share
 // memory: heat conduction uses the arrays while the mechanics does not.
 //
-// A record of the first array fills a cache line of 64 bytes, one of the others half a line.
+// A record of the first and the seventh array fills a cache line of 64 bytes, one of the others half a line.
 #pragma once
 
 #include <array>
@@ -18,13 +19,14 @@
 
 namespace mpm::core {
 
-enum class NodeArray : int { first, second, third, fourth, fifth, sixth };
+enum class NodeArray : int { first, second, third, fourth, fifth, sixth, seventh };
 inline constexpr std::array node_arrays{NodeArray::first,  NodeArray::second, NodeArray::third,
-                                        NodeArray::fourth, NodeArray::fifth,  NodeArray::sixth};
-/// Doubles per record of summed nodes, and per record of the first array.
+                                        NodeArray::fourth, NodeArray::fifth,  NodeArray::sixth,
+                                        NodeArray::seventh};
+/// Doubles per record of summed nodes, and per record of the arrays of forces.
 inline constexpr int node_doubles = 8;
 constexpr int record_doubles(NodeArray of) {
-  return of == NodeArray::first ? node_doubles : node_doubles / 2;
+  return of == NodeArray::first || of == NodeArray::seventh ? node_doubles : node_doubles / 2;
 }
 
 /// Components [first, first + count) of every record of an array.
@@ -55,6 +57,7 @@ inline constexpr NodeFields second_momentum{NodeArray::second, 0, 3};
 inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
 inline constexpr NodeFields start_momentum{NodeArray::sixth, 0, 3};
 inline constexpr NodeFields start_mass{NodeArray::sixth, 3, 1};
+inline constexpr NodeFields start_force{NodeArray::seventh, 4, 3};
 // Cells in use (core/step/cells_in_use.hpp), where no other field is.
 inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
 // Implicit steps: sum of S + h |grad S|, positive where a node is active; volumes, those of bodies of
@@ -89,6 +92,7 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"second mass", node_field::second_mass},
     NamedNodeFields{"start momentum", node_field::start_momentum},
     NamedNodeFields{"start mass", node_field::start_mass},
+    NamedNodeFields{"start force", node_field::start_force},
     NamedNodeFields{"cells in use", node_field::cells_in_use},
     NamedNodeFields{"support", node_field::support},
     NamedNodeFields{"moved volume", node_field::moved_volume},
@@ -121,6 +125,7 @@ inline constexpr NodeFields implicit_surface = node_field::momentum | node_field
 inline constexpr NodeFields implicit_lag = node_field::momentum;
 inline constexpr NodeFields momentum_mass = node_field::second_momentum | node_field::second_mass;
 inline constexpr NodeFields start = node_field::start_momentum | node_field::start_mass;
+inline constexpr NodeFields start_force = node_field::start_force;   ///< momentum and mass stay zero
 inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
 inline constexpr NodeFields correction = node_field::correction;
 inline constexpr NodeFields cells_in_use = node_field::cells_in_use;
@@ -138,7 +143,9 @@ constexpr bool maps_mass(NodeFields f) {
   return f.includes(node_field::mass) || f.includes(node_field::second_mass) ||
          f.includes(node_field::start_mass);
 }
-constexpr bool maps_force(NodeFields f) { return f.includes(node_field::force); }
+constexpr bool maps_force(NodeFields f) {
+  return f.includes(node_field::force) || f.includes(node_field::start_force);
+}
 
 /// The arrays that a scene's schemes use; the others are not allocated.
 class NodeArraySet {

@@ -1,6 +1,7 @@
 #pragma once
 // The background grid from the input.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -81,6 +82,10 @@ struct GridInput {
   MovingGridInput moving;
   DynamicCellInput dynamic_cell;
   SourceLocation source;
+
+  bool has_face(Boundary of) const {
+    return std::ranges::any_of(axes, [&](const GridAxis& a) { return a.lower == of || a.upper == of; });
+  }
 };
 
 }  // namespace mpm::core

@@ -46,6 +46,12 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     if (strain_may_jump(model_)) then("limit strain", [&] { limit_strain(); });
   };
 
+  const auto forces_at_start = [&] {
+    if (!pass.needs_forces_at_start()) return;
+    then("old forces to grid", [&] { pass.map_forces_at_start(); });
+    then("exchange old forces", [&] { pass.finish_exchange(); });
+  };
+
   // First: every exchange sends what there is in each of these fields.
   if (model_.scene->contact.enable) then("velocity fields of components", [&] { pass.find_fields(ranks_); });
 
@@ -90,6 +96,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     case Scheme::usf:
       then("particles to grid", [&] { pass.map_momentum_mass(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      forces_at_start();
       limit();
       solve("velocities", Passes::MassSystem::velocity_at_start);
       then("stress, and forces to grid", [&] { pass.update_stress_and_map_forces(); });
@@ -102,6 +109,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     case Scheme::usavg:
       then("particles to grid", [&] { pass.map_momentum_mass(); });
       then("exchange", [&] { pass.finish_exchange(); });
+      forces_at_start();
       limit();
       solve("velocities", Passes::MassSystem::velocity_at_start);
       then("stress, second half, and forces to grid", [&] { pass.update_stress_and_map_forces(); });

@@ -56,7 +56,10 @@ NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
     arrays.add(NodeArray::third);
   if (scene.contact.enable) arrays.add(NodeArray::fourth);
   if (scene.contact.measures_gaps()) arrays.add(NodeArray::fifth);
-  if (strains_first(scene.solution.scheme)) arrays.add(NodeArray::sixth);
+  if (strains_first(scene.solution.scheme)) {
+    arrays.add(NodeArray::sixth);
+    if (scene.grid.has_face(Boundary::rigid_wall)) arrays.add(NodeArray::seventh);
+  }
   return arrays;
 }
 

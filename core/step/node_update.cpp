@@ -195,9 +195,11 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
   });
   // Nodes on a fixed or symmetry face keep neither momentum nor force (thesis, below 2-41): particles feel
   // them through the stress alone, and no energy is lost. A rigid wall stops a node that would leave the
-  // grid, and its reaction acts on the particles too: only then do particles come to rest at the wall, can
-  // leave it again, and gain no energy when it releases them. With USF an error proportional to the step
-  // remains: its strain uses the node's velocity before the wall has stopped it.
+  // grid, and particles are stopped by their stress, as at a symmetry face, but for tension, which no wall
+  // bears. A node that moves away with u and that pressure stops gives them -u |u/dv|: all of dv where it
+  // barely stops, nearly nothing under high pressure. A velocity mapped from particles beside the wall is not
+  // that of the wall: to take it from them in every step would cost up to half of the energy of a rebound,
+  // however short the steps.
   //
   // A full node on a face has half the mass of one inside, and so has its floor: 1 - 2 m / floor.
   faces.for_each_node(record, [](int axis, int sign, Boundary boundary, double* at) {
@@ -209,11 +211,28 @@ void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const
     } else if (boundary == Boundary::symmetry) {
       v[axis] = dv[axis] = 0;
     } else if (boundary == Boundary::rigid_wall && sign * v[axis] > 0) {
-      dv[axis] -= v[axis];
+      const double before = v[axis] - dv[axis];
+      if (sign * before < 0)
+        dv[axis] = -before * std::abs(before / dv[axis]);
+      else if (sign * dv[axis] > 0)
+        dv[axis] = 0;
       v[axis] = 0;
     }
   });
   faces.fill(record);
+}
+
+void hold_at_rigid_walls(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
+                         double* record) {
+  const double gravity[] = {forces.gravity.x, forces.gravity.y, forces.gravity.z};
+  const double kept = 1 - dt * forces.damping;
+  faces.for_each_node(record, [&](int axis, int sign, Boundary boundary, double* at) {
+    const MappedRecord<double> sums{at};
+    const double m = sums.mass();
+    if (boundary != Boundary::rigid_wall || !(m > mass_cutoff)) return;
+    double& momentum = sums.momentum()[axis];
+    if (sign * (kept * momentum + dt * (sums.force()[axis] + m * gravity[axis])) > 0) momentum = 0;
+  });
 }
 
 void keep_motion(const NodeSelection& nodes, const double* record, double* motion) {

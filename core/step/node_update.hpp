@@ -84,6 +84,11 @@ class BoundaryFaces {
   int count_ = 0;
 };
 
+/// Takes the momentum of the nodes that a rigid wall would hold in a step with these forces: they strain
+/// nothing.
+void hold_at_rigid_walls(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,
+                         double* record);
+
 /// MappedRecord -> MotionRecord: velocity at the end of the step and its increment. Outer nodes follow those
 /// that are updated.
 void update_nodes(const NodeForces& forces, double dt, double mass_cutoff, const BoundaryFaces& faces,

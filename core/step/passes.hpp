@@ -48,6 +48,9 @@ class Passes {
   /// returns.
   virtual void map_momentum_mass_force() = 0;
   virtual void map_momentum_mass() = 0;
+  /// USF, USAVG: the forces before the strain, which tell what rigid walls hold.
+  virtual bool needs_forces_at_start() const = 0;
+  virtual void map_forces_at_start() = 0;
   virtual void finish_exchange() = 0;
 
   /// XPIC and FMPM: momentum of order `order`, from 2, to grid, once the forces are there. Nothing happens in

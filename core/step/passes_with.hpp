@@ -73,6 +73,8 @@ class PassesWith final : public Passes {
   void move_rigid_bodies() override;
   void map_momentum_mass_force() override { map_to_grid<mapped::momentum_mass_force>(); }
   void map_momentum_mass() override { map_to_grid<mapped::start>(); }
+  bool needs_forces_at_start() const override { return model_.grid->arrays().has(NodeArray::seventh); }
+  void map_forces_at_start() override { map_to_grid<mapped::start_force>(); }
   void finish_exchange() override { halo_.end(*model_.grid); }
   void correct_velocities(int order) override;
   void finish_correction() override {
@@ -111,7 +113,7 @@ class PassesWith final : public Passes {
     SiteAverages averages;   ///< of the current tile; empty where volume changes are not averaged
     double strain_rate = 0;  ///< largest of the thread's bricks
     std::tuple<CarriedSums<NodeArray::first>, CarriedSums<NodeArray::second>, CarriedSums<NodeArray::third>,
-               CarriedSums<NodeArray::sixth>>
+               CarriedSums<NodeArray::sixth>, CarriedSums<NodeArray::seventh>>
         carried;  ///< of this pass
     [[no_unique_address]] std::conditional_t<Traits::corrects || Traits::solves, typename S::Field, Nothing>
         corrected;
@@ -209,6 +211,14 @@ class PassesWith final : public Passes {
   /// Momentum and mass at the start of the step, where a scheme maps them before the forces.
   void sum_start(Slot s, std::int32_t component, Scratch& at, double* sums, const NodeMask* some = nullptr) {
     sum<NodeArray::sixth>(momentum_shared_, s, component, at, sums, some);
+  }
+  /// The same to strain with: without what rigid walls hold.
+  void sum_start_held(Slot s, std::int32_t component, Scratch& at, double* sums,
+                      const NodeMask* some = nullptr) {
+    const bool holds = needs_forces_at_start() && !faces(s).none();
+    if (holds) sum<NodeArray::seventh>(shared_, s, component, at, sums, some);
+    sum_start(s, component, at, sums, some);
+    if (holds) hold_at_rigid_walls(forces_, velocity_dt, model_.grid->geometry().mass_cutoff, faces(s), sums);
   }
   template <NodeFields what, class F>
   void map_bricks(F work);
@@ -353,9 +363,8 @@ class PassesWith final : public Passes {
   void volumetric_strain(const BrickFrame& frame, const Place& place, int b, Scratch& at);
   void update_material(const Body& body, Scratch& at);
 
-  /// Of USAVG's strain at the start of a step, by how volumes are updated from it.
+  /// Of strains at new positions, by how volumes are updated from them.
   ReferredTrace referred_trace() const {
-    if (scheme_ != Scheme::usavg) return ReferredTrace::of_gradient;
     switch (static_cast<VolumeUpdate>(model_.options.volume_update)) {
       case VolumeUpdate::rate: return ReferredTrace::of_new_volume;
       case VolumeUpdate::exponential:
@@ -384,10 +393,10 @@ class PassesWith final : public Passes {
     const Slot next = reached(s + 1) == nullptr ? s + 1 : grid.owned();
     return {grid, of == NodeArray::first ? moving_shared_ : shared<of>(), next, block_count(grid.brick(s))};
   }
-  /// Only the first array holds forces.
+  /// The first array and the seventh hold forces.
   template <NodeArray of>
   const SharedNodes& shared() const {
-    return of == NodeArray::first ? shared_ : momentum_shared_;
+    return of == NodeArray::first || of == NodeArray::seventh ? shared_ : momentum_shared_;
   }
   int motion_doubles() const {
     if constexpr (Traits::can_keep_field)

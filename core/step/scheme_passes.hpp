@@ -123,7 +123,7 @@ void PassesWith<S, T>::update_stress_and_map_forces() {
     const auto update = [&](std::int32_t component, [[maybe_unused]] std::size_t k) {
       const NodeMask* some = reached(s);
       double* const nodes = at.nodes.data();
-      sum_start(s, component, at, nodes, some);
+      sum_start_held(s, component, at, nodes, some);
       if (takes_momenta(s)) return;
       second_velocities(grid.geometry().mass_cutoff, nodes, nodes, faces(s), shared_.summed(some), nodes);
       if constexpr (Traits::solves) take_solved_strain(s, k, at);

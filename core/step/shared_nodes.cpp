@@ -221,6 +221,7 @@ MPM_INSTANTIATE(NodeArray::second)
 MPM_INSTANTIATE(NodeArray::third)
 MPM_INSTANTIATE(NodeArray::fourth)
 MPM_INSTANTIATE(NodeArray::sixth)
+MPM_INSTANTIATE(NodeArray::seventh)
 #undef MPM_INSTANTIATE
 
 }  // namespace mpm::core

@@ -38,7 +38,7 @@ void PassesWith<S, T>::begin_solution([[maybe_unused]] Slot s, [[maybe_unused]] 
     MotionVector from = Motion::velocity_at, stopped = Motion::velocity_at, u = Motion::velocity_at;
     switch (system) {
       case MassSystem::velocity_at_start:
-        sum_start(s, component, at, at.nodes.data());
+        sum_start_held(s, component, at, at.nodes.data());
         second_velocities(cutoff, at.nodes.data(), at.nodes.data(), faces(s), shared_.summed(),
                           at.nodes.data());
         from = stopped = Motion::strain_velocity_at;

@@ -29,7 +29,7 @@ class SparseBricks {
     if (revision_ == grid.revision() && reached_.size() == owned) return;
     revision_ = grid.revision();
     reached_.assign(owned, {});
-    for (const NodeArray of : {NodeArray::first, NodeArray::second, NodeArray::sixth})
+    for (const NodeArray of : {NodeArray::first, NodeArray::second, NodeArray::sixth, NodeArray::seventh})
       if (grid.arrays().has(of)) written_[static_cast<std::size_t>(of)].assign(owned, {});
   }
   /// The nodes that the particles of a brick reach in this step; null: all of them.

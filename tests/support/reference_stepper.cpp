@@ -84,7 +84,10 @@ void ReferenceStepper::step_with() {
   particles_to_grid<Support>();
   const bool averages = case_.scheme == ReferenceScheme::usavg;
   if (strains_first() && !(averages && steps_ == 0)) {
-    initial_velocities();
+    const bool holds = case_.wall_reaction && std::ranges::count(case_.boundary, 4) > 0;
+    if (holds) add_forces<Support>();
+    initial_velocities(holds ? velocity_dt : 0);
+    for (Node& node : grid_) node.f = {};
     if (case_.consistent) {
       solve_mass<Support>(&Node::w, &Node::w);
       stop_at_walls(&Node::w);
@@ -217,12 +220,13 @@ void ReferenceStepper::add_force(const ReferenceParticle& particle, double press
   }
 }
 
-/// 2-33.
-void ReferenceStepper::initial_velocities() {
+/// 2-33. Nodes that a rigid wall would stop in a step of dt with the forces so far strain nothing either.
+void ReferenceStepper::initial_velocities(double dt) {
   for_active_nodes([&](const Index& index, Node& node) {
     for (std::size_t a = 0; a < 3; ++a) {
       node.w[a] = node.p[a] / node.m;
-      if (stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
+      const bool stops = stop(index, a, node.p[a] + dt * node.f[a]) == Stop::wall;
+      if (stops || stop(index, a, node.w[a]) != Stop::none) node.w[a] = 0;
     }
   });
 }
@@ -247,7 +251,12 @@ void ReferenceStepper::integrate_momentum(double dt) {
       node.w[a] = (node.p[a] - left_out * f_internal * dt) / node.m;
       const Stop kind = stop(index, a, node.p[a]);
       if (kind != Stop::none) {
-        node.f[a] = kind == Stop::wall && case_.wall_reaction ? -p_old / dt : 0.0;
+        const bool leaves = kind == Stop::wall && stop(index, a, p_old) == Stop::none;
+        const bool presses = stop(index, a, node.f[a]) != Stop::none;
+        if (kind != Stop::wall || !case_.wall_reaction || (!leaves && presses))
+          node.f[a] = 0;
+        else if (leaves)
+          node.f[a] = p_old * p_old / (dt * dt * node.f[a]);
         node.p[a] = node.w[a] = 0;
         node.held[a] = true;
       }
@@ -337,8 +346,8 @@ void ReferenceStepper::update_stresses(double dt, bool at_start) {
       add_own_kick(particle, nodes, case_.cell, dt, L);
     }
     const double rate = L[0][0] + L[1][1] + L[2][2];
-    if (at_start) L = relative_to_old_positions(L, dt);
-    if (at_start && case_.scheme == ReferenceScheme::usavg) {
+    if (at_start) {
+      L = relative_to_old_positions(L, dt);
       // V (1 + dt tr L) has to grow by dt times the rate of the new volume.
       const double more = (rate / (1 - dt * rate) - (L[0][0] + L[1][1] + L[2][2])) / 3;
       for (std::size_t a = 0; a < 3; ++a) L[a][a] += more;

@@ -31,7 +31,7 @@ struct ReferenceCase {
   std::array<int, 6> boundary{};
   /// In the thesis a component that a constraint stops has no force, so particles beside a wall keep part of
   /// their speed towards it and a rigid wall hardly lets go of them. With this, the force at a rigid wall is
-  /// the one that stops the node.
+  /// tension, or p^2/(dt^2 f) where f stops a node that leaves with p.
   bool wall_reaction = false;
   ReferenceShape shape = ReferenceShape::linear;
   Vector gimp_half_size{};  ///< of a particle's first domain, length, for shapes with domains
@@ -161,7 +161,7 @@ class ReferenceStepper {
   bool maps_back() const {
     return case_.scheme == ReferenceScheme::musl || case_.scheme == ReferenceScheme::usavg;
   }
-  void initial_velocities();
+  void initial_velocities(double dt);
   void integrate_momentum(double dt);
   /// Whether this step is one of XPIC or FMPM.
   bool corrects() const {

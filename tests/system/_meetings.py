@@ -81,7 +81,7 @@ def scene(number, seed):
     lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-3e-7"/></Detonation>' if "TNT" in names else ""
     shape = rng.choice(SHAPES)
     grid = _mpm.grid((0, 0, 0), [18 * CELL, 7 * CELL, 6 * CELL], faces, CELL).replace("<Grid>", f'<Grid shape="{shape}">')
-    algorithm, factor = rng.choice(("MUSL", "MUSL", "USF", "USL")), rng.choice((0.5, 0.9))
+    algorithm, factor = rng.choice(("MUSL", "USAVG", "USF", "USL")), rng.choice((0.5, 0.9))
     bodies = components[0] + "".join(f'</Component><Component name="{i + 2}">{of}' for i, of in enumerate(components[1:]))
     meets = contact(rng, names)
     consistent = rng.random() < 0.2 and algorithm != "USL" and "CPDI" not in shape

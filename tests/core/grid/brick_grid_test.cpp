@@ -94,7 +94,7 @@ TEST_CASE("Bricks that stay keep their particles; new ones and those that were g
 TEST_CASE("Bricks with several velocity fields keep nodes for each of them, apart from all others") {
   BrickGrid grid(cube(24), {},
                  {NodeArray::first, NodeArray::second, NodeArray::third, NodeArray::fourth, NodeArray::fifth,
-                  NodeArray::sixth});
+                  NodeArray::sixth, NodeArray::seventh});
   grid.reset({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{3, 0, 0}});
   const std::vector<std::vector<std::int32_t>> components{{}, {0, 2, 5}, {2, 3}, {3, 4}};
   const std::vector<int> fields{1, 3, 2, 2};

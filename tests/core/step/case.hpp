@@ -252,6 +252,10 @@ struct SmallRun {
     scene->solution.time_step.factor = c.dt_factor;
     scene->solution.gravity = {c.gravity[0], c.gravity[1], c.gravity[2]};
     scene->grid.shape = shape_function_of(c.shape);
+    for (std::size_t i = 0; i < 3; ++i) {
+      scene->grid.axes[i].lower = static_cast<core::Boundary>(c.boundary[2 * i]);
+      scene->grid.axes[i].upper = static_cast<core::Boundary>(c.boundary[2 * i + 1]);
+    }
     model.scene = scene;
     model.materials.push_back(std::make_unique<OracleLaw>(c.material, std::move(fails)));
     core::GridGeometry g;
