@@ -59,7 +59,7 @@ class Methods(Case):
             text = scene("QuadraticBSpline", 'FMPM xpic_order="3" xpic_interval="3"', algorithm)
             alone = self.run_in(f"alone {algorithm}", [self.write(text)]).state
             stops = {}
-            for parts in (3, 5, 7, 11, 13):
+            for parts in (3, 5, 7, 11, 13, 17, 19, 23):
                 if len(stops) == 3:
                     break
                 folder = f"stops {algorithm} {parts}"

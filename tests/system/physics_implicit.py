@@ -3,6 +3,7 @@
 import math
 import re
 
+import h5py
 import numpy as np
 
 import _cases
@@ -333,6 +334,27 @@ class Implicit(_mpm.Case):
                 scene = self.write(column(more=rule).replace("quasistatic", "dynamic"))
                 outcome = _mpm.run([scene, "--output-dir", self.folder, "--dry-run"])
                 self.assertEqual(outcome.out.count("acceleration_lag_x"), columns, outcome)  # the ram's have none
+
+
+    def test_a_platen_travels_as_far_in_one_step_as_in_many(self):
+        """Its velocity is an expression of t: steps take the mean, of which Simpson's rule has cubic ones exactly."""
+        soft = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0.3"')
+        ram = _mpm.material("ram", 1.0, 'type="Rigid"')
+        grid = _mpm.grid((0, 0, 0), (2, 2, 6), "222220")
+        for speed, kind, travel in (("-0.5*t", "quasistatic", 0.25), ("-t^3", "quasistatic", 0.25), ("-0.5*t", "dynamic", 0.25)):
+            for steps in (1, 4):
+                with self.subTest(speed=speed, kind=kind, steps=steps):
+                    bodies = [_mpm.block("soft", (0, 0, 0), (2, 2, 4), of="soft"),
+                              _mpm.block("ram", (0, 0, 4), (2, 2, 1), of="ram",
+                                         more=f'<PrescribedVelocity vx="0" vy="0" vz="{speed}"/>')]
+                    solution = ('<Solution Integration="impl"><EndTime value="1"/>'
+                                f'<Implicit type="{kind}" time_step="{1 / steps}"/></Solution>')
+                    output = '<PostProcessing time_interval="1" h5part="1" var="body"/>'
+                    self.run_in("out", [self.write(_mpm.scene(bodies, grid, solution, [soft, ram], output))])
+                    with h5py.File(self.folder / "out/case.h5part") as file:
+                        now = _mpm.pictures(file)[-1]
+                        top = np.max(now["z"][:])
+                    self.assertAlmostEqual(top, 4.75 - travel, delta=1e-12)
 
 
 class Refused(_mpm.Case):

@@ -202,6 +202,18 @@ class Meeting(_mpm.Case):
                 self.assertLess(abs(below[2] / (9 * 0.02 / (2 / YOUNG + 2 / (4 * YOUNG))) - 1), 0.03)
                 self.assertLess(abs(below[2] / above[2] - 1), 1e-4)
 
+    def test_weight_works_on_blocks_on_each_other(self):
+        """Put on in one step it works with half of its force: what the blocks store, as without contact."""
+        blocks = [_mpm.block("low", (1, 1, 0), (2, 2, 2)), _mpm.block("up", (1, 1, 2), (2, 2, 2))]
+        weight = '<Gravity ax="0" ay="0" az="-5"/>'
+        for shape in ("linear", "QuadraticBSpline"):
+            with self.subTest(shape):
+                text = scene(blocks, "222220", ((0, 0, 0), (4, 4, 8)), steps=2, shape=shape)
+                self.run_in(shape, [self.write(text.replace("</Solution>", weight + "</Solution>"))])
+                energy = self.summary(shape)["energy"]
+                self.assertGreater(energy["internal"], 0.5)
+                self.assertLess(abs(energy["relative_drift"]), 0.03)
+
     def test_what_contact_cannot_do_is_refused(self):
         base = scene(stack(10.0), "202020", ROOM)
         for change, words in ((('type="quasistatic"', 'type="semi"'), ["semi-implicit"]),

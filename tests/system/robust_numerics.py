@@ -75,6 +75,18 @@ class Failures(Case):
                 self.assertIn("the specified time step 0.1 is 3.69 times the critical step 0.0271", said[0])
                 self.assertRegex(said[1], r"the error of the energy balance was \d+.* % at step 8, the last")
 
+    def test_the_last_row_is_judged_too(self):
+        """A block with one particle in a cell that drifts across cells gains energy; no row of the status file is due before the end."""
+        speed = [f"{drift}+3*cos(pi*({axis}-4.1)/6)" for drift, axis in zip((1, 0.7, 0.4), "xyz")]
+        soft = _mpm.material("soft", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')
+        text = _mpm.scene([_mpm.block("block", (4.1, 4.1, 4.1), (6, 6, 6), speed, 1, "soft")], _mpm.grid((0, 0, 0), (30, 30, 30)),
+                          _mpm.solution(4, factor=0.9), [soft], '<Console print_time="40"/>')
+        self.write(text)
+        outcome = self.run_in("out", [self.folder / "case.xmp"])
+        self.assertEqual(len(_mpm.table(self.folder / "out/case.sta")["step"]), 2)
+        self.assertRegex(outcome.out, r"warning: the error of the energy balance was up to \d+.* %")
+        self.assertIn("the error of the energy balance", _mpm.summary(self.folder / "out")["reason"])
+
     def test_energy_fraction(self):
         self.check_failure(scene(_mpm.BOUNCING, '<EnergyFraction value="1e-4"/>', end=9),
                            r"step \d+, time [\d.]+: the relative error of the total energy is .*, more than EnergyFraction 0\.0001")
