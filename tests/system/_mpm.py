@@ -3,6 +3,7 @@
 The scenes' units are nobody's: cells of 1, densities of 1, waves of about 37."""
 
 import contextlib
+import functools
 import json
 import os
 import pathlib
@@ -244,6 +245,21 @@ class Case(unittest.TestCase):
         expected = self.state(text, "on2", ranks=2)
         halfway = restarts(self.folder / "on2")[0]
         self.assertEqual(self.run_in("on3", [halfway], ranks=3).state, expected)
+
+
+@functools.cache
+def built_without_implicit_steps():
+    """As mpm_check says of an implicit scene. A solver that is built and cannot be loaded fails the tests instead."""
+    implicit = solution(1, attributes='Integration="impl"', more='<Implicit type="quasistatic" time_step="1"/>')
+    with tempfile.TemporaryDirectory(prefix="mpm-") as folder:
+        path = pathlib.Path(folder) / "case.xmp"
+        path.write_text(scene([block("block", (0, 0, 0), (2, 2, 2))], grid((0, 0, 0), (2, 2, 2)), implicit))
+        return "MPM_WITH_PETSC" in run([path], program="mpm_check").err
+
+
+def needs_implicit_steps(test):
+    """Decorator of a test or of a class of tests."""
+    return unittest.skipIf(built_without_implicit_steps(), "built without implicit steps (MPM_WITH_PETSC=OFF)")(test)
 
 
 def script(path, *arguments):

@@ -50,6 +50,7 @@ def energy_left(radius, angle, steps):
     return square * u**2 + v**2
 
 
+@_mpm.needs_implicit_steps
 class Implicit(_mpm.Case):
     def test_uniform_compression_is_exact(self):
         """Wherever the ram's face is in a cell, while no particle changes its own; with linear functions, whose particles feel one
@@ -335,7 +336,6 @@ class Implicit(_mpm.Case):
                 outcome = _mpm.run([scene, "--output-dir", self.folder, "--dry-run"])
                 self.assertEqual(outcome.out.count("acceleration_lag_x"), columns, outcome)  # the ram's have none
 
-
     def test_a_platen_travels_as_far_in_one_step_as_in_many(self):
         """Its velocity is an expression of t: steps take the mean, of which Simpson's rule has cubic ones exactly."""
         soft = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0.3"')
@@ -357,6 +357,7 @@ class Implicit(_mpm.Case):
                     self.assertAlmostEqual(top, 4.75 - travel, delta=1e-12)
 
 
+@_mpm.needs_implicit_steps
 class Refused(_mpm.Case):
     def refused(self, text, *words):
         outcome = self.run_in("refused", [self.write(text)], code=_mpm.INPUT_ERROR)

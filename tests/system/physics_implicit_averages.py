@@ -7,6 +7,7 @@ import _mpm
 from _implicit import RAM, YOUNG, implicit, residuals
 
 
+@_mpm.needs_implicit_steps
 class Averaged(_mpm.Case):
     """Volume changes averaged over cells, against locking."""
 

@@ -28,6 +28,7 @@ def scene(block, plate, velocity, shape="linear", friction=0.0, steps=5, faces="
 PRESSED = (((0, 0, 0), (SIDE, SIDE, SIDE)), ((0, 0, SIDE), (6, 6, 2)))  # a plate over the whole block and beyond
 
 
+@_mpm.needs_implicit_steps
 class ImplicitContact(_mpm.Case):
     def forces(self, folder):
         """On the plate, a row per step."""

@@ -10,6 +10,7 @@ import _mpm
 from _implicit import POISSON, RAM, SOFT, YOUNG, column, implicit
 
 
+@_mpm.needs_implicit_steps
 class Far(_mpm.Case):
     """Steps in which particles travel over several bricks of four cells."""
 

@@ -37,6 +37,7 @@ ROOM = ((0, 0, 0), (7, 7, 7))
 ELASTIC = (law("soft"), law("hard", 3 * YOUNG, 2.0))
 
 
+@_mpm.needs_implicit_steps
 class Meeting(_mpm.Case):
     def summary(self, folder):
         return _mpm.summary(self.folder / folder)

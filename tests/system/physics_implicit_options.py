@@ -46,6 +46,7 @@ REFUSED = [
 ]
 
 
+@_mpm.needs_implicit_steps
 class Options(_mpm.Case):
     def run_with(self, job, options, folder="out", **more):
         return _mpm.run([job, "--output-dir", self.folder / folder, "--", *options], **more)

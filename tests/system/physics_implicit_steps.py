@@ -7,6 +7,7 @@ from _implicit import RAM, column, implicit
 from physics_implicit import METAL, alpha
 
 
+@_mpm.needs_implicit_steps
 class Steps(_mpm.Case):
     def words(self, folder):
         return (self.folder / folder / "case.out").read_text()

@@ -19,6 +19,7 @@ def scene(body, grid, faces, shape="linear", implicit="", load="", materials=(SO
                       solution.replace('<TimeStep factor="0.5"/>', ""), list(materials), STATE.format(var))
 
 
+@_mpm.needs_implicit_steps
 class Block(_mpm.Case):
     """A block whose faces cut cells, under a weight that grows in two steps and bends it, solved directly, and otherwise."""
 
@@ -98,6 +99,7 @@ class MeanPressures(Block):
         self.assertGreater(self.check("named", "-ksp_type", "gmres"), 100)  # measured 266
 
 
+@_mpm.needs_implicit_steps
 class Stabilisation(_mpm.Case):
     """A cube under its weight, Poisson's ratio 0, between three symmetry planes, whose outermost particles reach by a small part
     of a cell into one more layer of cells: the stress in a layer is the weight above it."""

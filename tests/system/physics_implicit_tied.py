@@ -6,6 +6,7 @@ from _implicit import POISSON, RAM, SOFT, YOUNG, implicit
 SHAPES = ("linear", "uGIMP", "CPDI2", "QuadraticBSpline", "CubicBSpline", "SGMP", "DDMP")
 
 
+@_mpm.needs_implicit_steps
 class Tied(_mpm.Case):
     def force(self, text, folder, ranks=1):
         """On the body at the end, downward."""

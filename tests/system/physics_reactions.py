@@ -131,6 +131,7 @@ class Reactions(_mpm.Case):
                     # Round-off of sums in another order, over the last step, which is short.
                     np.testing.assert_allclose(*forces, rtol=1e-9, atol=1e-9)
 
+    @_mpm.needs_implicit_steps
     def test_implicit_equilibrium(self):
         """The force of a rigid ram on a column is the stress in it times its area in every step, for every shape; the same on two
         ranks and through a restart."""
@@ -156,6 +157,7 @@ class Reactions(_mpm.Case):
             again = drive(_cases.status(self.folder / name), "ram")
             np.testing.assert_allclose(again[:, 1:], forces[:, 1 - again.shape[1]:], atol=1e-5 * np.abs(forces).max())
 
+    @_mpm.needs_implicit_steps
     def test_implicit_momentum(self):
         """What the drive gives is all that the momentum gains, to the solver's tolerance."""
         bodies = [_mpm.block("ram", (2, 3, 3), (3, 3, 3), more=driven("3", "0.2*(x - 3)", "0.5*t")),
@@ -173,6 +175,7 @@ class Reactions(_mpm.Case):
                     self.assertGreater(np.abs(status["px[body:block]"][-1]), 1)
                     self.assertLess(error, 1e-6)
 
+    @_mpm.needs_implicit_steps
     def test_implicit_frames(self):
         """A block meets a driven body: the same whether the body hardly moves or is held still, and the books of energy close alike in
         frames in which both move."""
