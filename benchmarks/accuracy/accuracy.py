@@ -3,7 +3,7 @@
   accuracy.py run                     every case; more than an hour on two free cores with --jobs 2
   accuracy.py run --case riemann      this case only; --shape, --transfer, --scheme, --study choose alike
   accuracy.py run --every             with every shape, transfer and scheme: many hours
-  accuracy.py run --quick             a minute: the coarse grids of some studies
+  accuracy.py run --quick             about three minutes of the processor: the coarse grids of some studies
   accuracy.py list                    cases, studies and methods
   accuracy.py point KEY               measures one point again; KEY as `list --points` prints it
   accuracy.py tables                  tables and plots from the CSV files alone
@@ -48,7 +48,7 @@ def machine():
 
 
 def refuse(kind, name, there_is):
-    raise SystemExit(f"{kind} '{name}' does not exist; there is: {', '.join(there_is)}")
+    results.refuse(f"{kind} '{name}' does not exist; there is: {', '.join(there_is)}")
 
 
 def chosen(kind, names, there_is):
@@ -65,14 +65,17 @@ def selected(options):
     transfers = chosen("transfer", options.transfer, methods.transfers())
     schemes = chosen("scheme", options.scheme, methods.schemes())
     studies = chosen("study", options.study, list(dict.fromkeys(s for name in cases for s in CASES[name].studies)))
-    found = {}
+    found, there_is = {}, {}
     for name in cases:
-        points = [p for p in CASES[name].points(options.quick, options.every) if p.study in studies and p.method.shape in shapes
-                  and p.method.transfer in transfers and p.method.scheme in schemes]
+        of_studies = [p for p in CASES[name].points(options.quick, options.every) if p.study in studies]
+        there_is.update({f"{name} {p.method}": p.method.shape for p in of_studies})
+        points = [p for p in of_studies if p.method.shape in shapes and p.method.transfer in transfers and p.method.scheme in schemes]
         if points:
             found[name] = points
     if not found:
-        raise SystemExit("no point of the benchmark is left; `accuracy.py list` says what there is")
+        with_shape = [words for words, shape in there_is.items() if shape in shapes]
+        of_any_case = dict.fromkeys(f"{name}: {p.study}" for name, case in CASES.items() for p in case.points(options.quick))
+        results.refuse(f"no point has all of these; there is: {', '.join(with_shape or there_is or of_any_case)}")
     return found
 
 
@@ -83,7 +86,7 @@ def find(key):
     """The case and the point of this key; refuses what does not exist by its name."""
     words = key.split("/")
     if len(words) != len(PARTS):
-        raise SystemExit(f"point '{key}': expected {'/'.join(PARTS)}")
+        results.refuse(f"point '{key}': expected {'/'.join(PARTS)}")
     if words[0] not in CASES:
         refuse("case", words[0], CASES)
     case = CASES[words[0]]
@@ -95,7 +98,7 @@ def find(key):
     method = methods.Method(*words[2:5])
     if case.excluded(method):
         there_are = sorted({str(m) for m in case.methods_of(words[1], every=True)})
-        raise SystemExit(f"{case.name} leaves out {method}: {case.excluded(method)}; there is: {', '.join(there_are)}")
+        results.refuse(f"{case.name} leaves out {method}: {case.excluded(method)}; there is: {', '.join(there_are)}")
     points = [*case.points_of(words[1], method), *case.points_of(words[1], method, quick=True)]
     for point in points:
         if point.key == key:
@@ -177,11 +180,13 @@ def render(options):
 def one_point(options):
     case, point = find(options.key)
     row = runner.run(case, point, options.plots, options.keep)
+    if options.keep:
+        print(f"{'files':<12} {options.plots / 'runs' / point.key.replace('/', '-')}")
+    if row["status"] == runner.REFUSED:
+        results.refuse(row_text(case, point, row))
     for name, value in row.items():
         if value != "":
             print(f"{name:<12} {value:.6g}" if isinstance(value, float) else f"{name:<12} {value}")
-    if options.keep:
-        print(f"{'files':<12} {options.plots / 'runs' / point.key.replace('/', '-')}")
 
 
 def show(options):
@@ -204,7 +209,7 @@ def arguments(words=None):
     for word in ("case", "study", "shape", "transfer", "scheme"):
         parser.add_argument(f"--{word}", nargs="+", metavar=word.upper())
     parser.add_argument("--every", action="store_true", help="every shape with every transfer and scheme, in every study")
-    parser.add_argument("--quick", action="store_true", help="coarse grids of some studies; a minute")
+    parser.add_argument("--quick", action="store_true", help="coarse grids of some studies; about three minutes of the processor")
     parser.add_argument("--points", action="store_true", help="with list: the key of every point")
     parser.add_argument("--keep", action="store_true", help="leave the files of the runs in OUT/runs")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time; above 1 they disturb each other's times a little")

@@ -5,7 +5,7 @@ import shutil
 import signal
 import xml.etree.ElementTree as ElementTree
 
-from common import timed_run
+from common import results, timed_run
 
 import methods
 from case import Unmeasurable
@@ -29,12 +29,6 @@ def loop_seconds(summary, processor, wall):
     return (spent["loop"] - spent["output"]) * min(1.0, processor / wall)
 
 
-def reason(said):
-    """What the program complained about, in one line without the folder of the file."""
-    lines = [line.strip() for line in said.splitlines() if line.strip()]
-    return (lines[0].split("case.xmp:")[-1] if lines else "no message")[:160]
-
-
 def run(case, point, out, keep=False):
     """The row of the point: its columns, its errors where it was done, `note` where it was not."""
     folder = out / "runs" / point.key.replace("/", "-")
@@ -56,7 +50,7 @@ def run(case, point, out, keep=False):
                        seconds=loop_seconds(summary, processor, wall))
             row.update({name: float(value) for name, value in case.measure(point, folder).items()})
         elif code in (2, 3):
-            row.update(status=REFUSED if code == 2 else FAILED, note=reason(said))
+            row.update(status=REFUSED if code == 2 else FAILED, note=results.reason(said))
         elif code == -signal.SIGKILL:
             row.update(status=FAILED, note=f"killed after {LIMIT} s")
         else:

@@ -68,7 +68,7 @@ def write(case, path, rows, head, earlier):
         out = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
         out.writeheader()
         for row in rows:
-            out.writerow({k: written(v) if isinstance(v, float) else v for k, v in row.items()})
+            out.writerow({k: written(v) if isinstance(v, float) else v[:160] if k == "note" else v for k, v in row.items()})
     return rows
 
 

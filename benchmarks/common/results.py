@@ -37,6 +37,18 @@ def run(command, echo=False, **more):
     return said
 
 
+def refuse(message):
+    """Ends the script with the exit code that the programs have for wrong input."""
+    print(message, file=sys.stderr)
+    raise SystemExit(2)
+
+
+def reason(said):
+    """What a program complained about, in one line without the folder of its input file."""
+    lines = [line.strip() for line in said.splitlines() if line.strip()]
+    return lines[0].split(".xmp:")[-1] if lines else "no message"
+
+
 def last_json(text):
     return json.loads(text.strip().splitlines()[-1])
 

@@ -2,7 +2,7 @@
 
   implicit.py run                     every study; about half an hour on one core
   implicit.py run --study column      this study only; --shape SHAPE chooses alike
-  implicit.py run --quick             a minute: the coarse grids of some studies
+  implicit.py run --quick             two to three minutes of the processor: the coarse grids of some studies
   implicit.py list                    studies, and the key of every run
   implicit.py tables                  the tables from the CSV files alone
 
@@ -39,7 +39,18 @@ def machine():
 
 
 def refuse(kind, name, there_is):
-    raise SystemExit(f"{kind} '{name}' does not exist; there is: {', '.join(there_is)}")
+    results.refuse(f"{kind} '{name}' does not exist; there is: {', '.join(there_is)}")
+
+
+def runs_of(names, quick):
+    """Each of these studies and its runs, all or the quick ones."""
+    for name in names:
+        yield name, [r for r in STUDIES[name].runs() if r.quick or not quick]
+
+
+def labels_of(names, quick):
+    """The studies that have such runs, with their shapes."""
+    return dict.fromkeys(f"{name} {r.labels.get('shape', '')}".strip() for name, runs in runs_of(names, quick) for r in runs)
 
 
 def chosen(options):
@@ -48,8 +59,7 @@ def chosen(options):
         if name not in STUDIES:
             refuse("study", name, STUDIES)
     found = {}
-    for name in options.study or STUDIES:
-        runs = [r for r in STUDIES[name].runs() if not options.quick or r.quick]
+    for name, runs in runs_of(options.study or STUDIES, options.quick):
         if options.shape:
             there_is = dict.fromkeys(r.labels["shape"] for r in STUDIES[name].runs() if "shape" in r.labels)
             for shape in options.shape:
@@ -59,7 +69,8 @@ def chosen(options):
         if runs:
             found[name] = runs
     if not found:
-        raise SystemExit("no run is left; `implicit.py list` says what there is")
+        there_is = labels_of(options.study or STUDIES, options.quick) or labels_of(STUDIES, options.quick)
+        results.refuse(f"no run has all of these; there is: {', '.join(there_is)}")
     return found
 
 
@@ -148,7 +159,7 @@ def arguments(words=None):
     parser.add_argument("command", choices=("run", "list", "tables"))
     for word in ("study", "shape"):
         parser.add_argument(f"--{word}", nargs="+", metavar=word.upper())
-    parser.add_argument("--quick", action="store_true", help="coarse grids of some studies; a minute")
+    parser.add_argument("--quick", action="store_true", help="coarse grids of some studies; two to three minutes of the processor")
     parser.add_argument("--keep", action="store_true", help="leave the files of the runs in OUT/runs")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time; above 1 they disturb each other's times a little")
     parser.add_argument("--repeat", type=int, default=1, help="the list of runs so many times over; of each run the median time")

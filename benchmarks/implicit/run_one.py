@@ -82,12 +82,6 @@ class Result:
         return _cases.status(self.folder)
 
 
-def reason(said):
-    """What the program complained about, in one line without the folder of the file."""
-    lines = [line.strip() for line in said.splitlines() if line.strip()]
-    return (lines[0].split("case.xmp:")[-1] if lines else "no message")[:200]
-
-
 def run(one, out, keep=False):
     """The row of a run: its labels, what it cost, what was measured, `note` where it was not done."""
     folder = out / "runs" / one.key
@@ -111,7 +105,7 @@ def run(one, out, keep=False):
                        linear=sum(s.linear for s in steps), cuts=sum(s.cuts for s in steps))
         row.update({name: value if isinstance(value, str) else float(value) for name, value in one.measure(result).items()})
     elif code in (2, 3):
-        row.update(status=REFUSED if code == 2 else FAILED, note=reason(said))
+        row.update(status=REFUSED if code == 2 else FAILED, note=results.reason(said)[:200])
     elif code == -signal.SIGKILL:
         row.update(status=FAILED, note=f"killed after {LIMIT} s")
     else:

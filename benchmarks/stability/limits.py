@@ -129,7 +129,7 @@ def run(text, folder):
     path.write_text(text)
     done = subprocess.run([BIN / "mpm_run", "--output-dir", folder, path], capture_output=True, text=True)
     if done.returncode == 2:
-        raise Refused(done.stderr)
+        raise Refused(results.reason(done.stderr))
     if done.returncode != 0:
         return None
     lines = [line.split() for line in pathlib.Path(folder, "limit.sta").read_text().splitlines() if line.strip()]
@@ -242,17 +242,19 @@ def main():
     options = parser.parse_args()
     if options.tables:
         return results.refresh(PAGE, tables(results.read(TABLE)[1]))
-    rows = []
-    for method in [(s, t, a, options.mass) for t in options.transfer for s in options.shape for a in options.scheme]:
+    chosen = [(s, t, a, options.mass) for t in options.transfer for s in options.shape for a in options.scheme]
+    rows, refused = [], 0
+    for method in chosen:
         try:
             if options.factor:
                 print(*method, *(f"{growth(name, method, options.factor):.4g}" for name in options.scene), flush=True)
                 continue
             rows.append(measure(method, options.scene))
         except Refused as refusal:
-            if options.docs:
+            refused += 1
+            if options.docs and refused < len(chosen):
                 continue
-            raise SystemExit(refusal)
+            parser.error(f"the program refuses {' '.join(method)}: {refusal}")
         print(*(f"{v:.4g}" if isinstance(v, float) else v for v in rows[-1].values()), flush=True)
         if options.csv:
             results.write(options.csv, rows)

@@ -29,6 +29,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / part) for part
 
 from common import results  # noqa: E402: found by the line above
 from accuracy import methods  # noqa: E402
+from limits import Refused  # noqa: E402: from this folder
 import _mpm  # noqa: E402
 import numpy as np  # noqa: E402
 
@@ -56,13 +57,13 @@ def scene(name, method, steps, factor):
 
 
 def measure(name, method, steps=STEPS, factor=FACTOR):
-    """A row of the table, or none for a method that the program refuses."""
+    """A row of the table; Refused for a method that the program refuses."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         (folder / "case.xmp").write_text(scene(name, method, steps, factor))
         done = _mpm.run([folder / "case.xmp", "--output-dir", folder], timeout=6000)
         if done.code == 2:
-            return None
+            raise Refused(results.reason(done.err))
         row = {"scene": name, "shape": method.shape, "scheme": method.scheme, "transfer": method.transfer, "code": done.code,
                "steps": _mpm.summary(folder)["steps"], "drift": ""}
         if done.code == 0:
@@ -112,20 +113,29 @@ def main():
     parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--shape", nargs="+", choices=methods.shapes())
     parser.add_argument("--scheme", nargs="+", choices=methods.schemes())
-    parser.add_argument("--transfer", nargs="+", choices=methods.transfers())
+    # argparse breaks a usage line at the brackets of FMPM(5).
+    parser.add_argument("--transfer", nargs="+", choices=methods.transfers(), metavar="TRANSFER", help=", ".join(methods.transfers()))
     parser.add_argument("--steps", type=int, default=STEPS)
     parser.add_argument("--factor", type=float, default=FACTOR, help="of the critical step; the time stays the same")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--docs", action="store_true", help="write docs/stability/long_runs.csv and the table of docs/stability.md")
     options = parser.parse_args()
     points = [(name, method) for method in wanted(options) for name in options.scene]
-    rows = []
+    rows, refused = [], {}
+
+    def measured(point):
+        try:
+            return measure(*point, options.steps, options.factor)
+        except Refused as refusal:
+            refused[str(point[1])] = refusal
+            return None
+
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for row in pool.map(lambda point: measure(*point, options.steps, options.factor), points):
-            if row is None:
-                continue
+        for row in filter(None, pool.map(measured, points)):
             rows.append(row)
             print(", ".join(f"{v:.3g}" if isinstance(v, float) else str(v) for v in row.values()), flush=True)
+    if not rows:
+        parser.error("the program refuses all of these; " + "; ".join(f"{method}: {refusal}" for method, refusal in refused.items()))
     if options.docs:
         chosen = options.shape or options.scheme or options.transfer or len(options.scene) < len(SCENES)
         rows = merged(rows) if chosen else rows

@@ -192,7 +192,7 @@ def judge(name, shape, scheme, averaging, folder):
     row = {"scene": name, "shape": shape, "scheme": scheme, "averaging": averaging, "verdict": "wrong", "code": done.code,
            "steps": "", "drift": "", "speed": "", "note": ""}
     if done.code == 2:
-        raise SystemExit(f"{name}: {done.err}")
+        results.refuse(f"{name}: {done.err}")
     if done.code not in (0, 3):
         row["note"] = done.err.strip()[-100:]
         return row
@@ -346,6 +346,8 @@ def main():
         return
     if options.course:
         points = [c for c in COURSES if c[0] in (options.shape or COURSE_SHAPES) and c[1] in options.scheme]
+        if not points:
+            parser.error(f"--course has none of these shapes; choose from {', '.join(COURSE_SHAPES)}")
         function, path, join = functools.partial(course, factor=options.factor), COURSE_TABLE, merged_courses
     else:
         points = [(name, shape, scheme, averaging) for name in options.scene for shape in options.shape or SHAPES

@@ -1,7 +1,9 @@
 """benchmarks/accuracy: manufactured loads against differences of the motion, exact solutions against what they must keep,
 orders of convergence that hold on coarse grids, and refusals by name."""
 
+import contextlib
 import csv
+import io
 import math
 import re
 import sys
@@ -362,11 +364,13 @@ class Merged(_mpm.Case):
         self.assertFalse(accuracy.tables.plot(case, rows, self.folder / "plane_shock.png"))
 
 
-class Refusals(unittest.TestCase):
+class Refusals(_mpm.Case):
     def refused(self, *words):
-        with self.assertRaises(SystemExit) as left:
+        said = io.StringIO()
+        with self.assertRaises(SystemExit) as left, contextlib.redirect_stderr(said):
             accuracy.main(words)
-        return str(left.exception)
+        self.assertEqual(left.exception.code, 2)
+        return said.getvalue()
 
     def test_names_that_do_not_exist(self):
         self.assertIn("case 'vortexx' does not exist; there is: manufactured_cube, vortex,", self.refused("run", "--case", "vortexx"))
@@ -374,6 +378,15 @@ class Refusals(unittest.TestCase):
         self.assertIn("transfer 'flip' does not exist; there is: FLIP,", self.refused("list", "--transfer", "flip"))
         self.assertIn("scheme 'MUS' does not exist; there is: MUSL,", self.refused("list", "--scheme", "MUS"))
         self.assertIn("study 'Sod' does not exist; there is: sod,", self.refused("list", "--case", "riemann", "--study", "Sod"))
+
+    def test_a_choice_that_leaves_nothing(self):
+        self.assertIn("no point has all of these; there is: crossing SGMP FLIP MUSL,",
+                      self.refused("list", "--case", "crossing", "--shape", "SGMP", "--transfer", "APIC"))
+        self.assertIn("; there is: manufactured_cube: slab, fine steps, crossing: ", self.refused("run", "--quick", "--case", "taylor_bar"))
+
+    def test_a_point_that_the_program_refuses(self):
+        self.assertRegex(self.refused("point", "riemann/sod/linear/APIC/MUSL/50/2/0.4", "--out", str(self.folder)),
+                         r"^riemann/sod/linear/APIC/MUSL/50/2/0.4: refused: .* expected shape QuadraticBSpline")
 
     def test_points_that_do_not_exist(self):
         self.assertIn("expected case/study/shape/transfer/scheme/cells/", self.refused("point", "vortex"))

@@ -1,7 +1,9 @@
 """benchmarks/implicit: the exact solutions against what they must keep, errors and orders that hold on coarse grids, and
 refusals by name."""
 
+import contextlib
 import csv
+import io
 import math
 import pathlib
 import re
@@ -141,7 +143,7 @@ class Solutions(unittest.TestCase):
         self.assertEqual(run_one.steps_of(log), [run_one.Step(0.05, 270, (0.24, 1e-3), 3, 3, 1)])
 
 
-@unittest.skipUnless(list((_mpm.BIN.parent / "lib").glob("libmpm_implicit.*")), "built without PETSc")
+@_mpm.needs_implicit_steps
 class Quick(_mpm.RunOnce):
     """The coarse grids."""
 
@@ -269,14 +271,20 @@ class Document(unittest.TestCase):
 
 class Refusals(unittest.TestCase):
     def refused(self, *words):
-        with self.assertRaises(SystemExit) as left:
+        said = io.StringIO()
+        with self.assertRaises(SystemExit) as left, contextlib.redirect_stderr(said):
             implicit.main(words)
-        return str(left.exception)
+        self.assertEqual(left.exception.code, 2)
+        return said.getvalue()
 
     def test_names_that_do_not_exist(self):
         self.assertIn("study 'colum' does not exist; there is: column,", self.refused("run", "--study", "colum"))
         self.assertIn("column: shape 'Linear' does not exist; there is: linear,",
                       self.refused("list", "--study", "column", "--shape", "Linear"))
+
+    def test_a_choice_that_leaves_nothing(self):
+        self.assertIn("no run has all of these; there is: column linear, column uGIMP,",
+                      self.refused("run", "--quick", "--study", "column", "--shape", "SGMP"))
 
     def test_an_interrupted_study_keeps_its_rows(self):
         runs = [r for r in STUDIES["laws"].runs()][:3]

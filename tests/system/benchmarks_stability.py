@@ -57,7 +57,8 @@ class Stability(unittest.TestCase):
         self.assertLess(abs(row["drift"]), 0.02)
         twice = long_runs.measure("viscous", methods.Method("linear", "FLIP", "MUSL"), steps=5000, factor=0.45)
         self.assertAlmostEqual(twice["steps"] / row["steps"], 2, delta=0.05)
-        self.assertIsNone(long_runs.measure("viscous", methods.Method("linear", "APIC", "MUSL"), steps=10))
+        with self.assertRaises(limits.Refused):
+            long_runs.measure("viscous", methods.Method("linear", "APIC", "MUSL"), steps=10)
 
     def test_verdicts(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -65,11 +66,22 @@ class Stability(unittest.TestCase):
         self.assertEqual(row["verdict"], "stable", row)
 
     def test_what_does_not_exist(self):
-        for script, words in (("limits.py", ("--shape", "cubic")), ("verdicts.py", ("--scene", "none")),
-                              ("long_runs.py", ("--scheme", "RK4")), ("run.py", ("everything",))):
-            done = subprocess.run([sys.executable, FOLDER / script, *words], capture_output=True, text=True)
-            self.assertEqual(done.returncode, 2, done)
-            self.assertIn("choose from", done.stderr)
+        method = ("--shape", "linear", "--transfer", "APIC", "--scheme", "MUSL")
+        for script, words, said in (("limits.py", ("--shape", "cubic"), "choose from"), ("verdicts.py", ("--scene", "none"), "choose from"),
+                                    ("long_runs.py", ("--scheme", "RK4"), "choose from"), ("run.py", ("everything",), "choose from"),
+                                    # A choice that leaves nothing: of the table's rows, or since the program refuses it.
+                                    ("user_inputs.py", ("--input", "bounce", "--scheme", "USL"), "choose from bounce linear MUSL"),
+                                    ("verdicts.py", ("--course", "--shape", "uGIMP"), "choose from linear, SGMP,"),
+                                    ("limits.py", ("--docs", "--factor", "0.5", *method), "linear APIC MUSL lumped: "),
+                                    ("long_runs.py", ("--steps", "100", *method), "expected shape QuadraticBSpline,")):
+            with self.subTest(script=script, words=words):
+                done = subprocess.run([sys.executable, FOLDER / script, *words], capture_output=True, text=True)
+                self.assertEqual(done.returncode, 2, done)
+                self.assertIn(said, done.stderr)
+
+    def test_help_names_every_transfer(self):
+        done = subprocess.run([sys.executable, FOLDER / "long_runs.py", "--help"], capture_output=True, text=True)
+        self.assertIn(" ".join(f"{name}," for name in methods.transfers())[:-1], " ".join(done.stdout.split()))
 
 
 if __name__ == "__main__":
