@@ -377,8 +377,10 @@ TEST_CASE("At walls the energy stays with short steps, gravity's work included",
         const double coarse = energy_error(c, 0.1, 0.2, potential),
                      fine = energy_error(c, 0.025, 0.2, potential);
         CAPTURE(coarse, fine);
-        CHECK(fine < 0.01);          // 0.0008 to 0.0085
-        CHECK(coarse / fine > 3.5);  // first order
+        CHECK(fine < 0.01);  // 0.0008 to 0.0085
+        // First order; at a rigid wall (3.4 at least) the times at which it holds a node depend on the step,
+        // too.
+        CHECK(coarse / fine > (wall == 4 ? 3.3 : 3.5));
       }
     }
   }
