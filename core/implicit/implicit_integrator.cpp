@@ -298,9 +298,10 @@ void ImplicitIntegrator::move() {
       work += at.external[a] * u;
       if (rule_.dynamic()) {
         if (moved(i, a)) work += at.impulse[a] * u / model_.clock.dt;
-      } else if (held(i, a) || !at.meets_rigid) {
+      } else if (held(i, a) || !touches || (!at.meets_rigid && !contact_->rubs())) {
         // From equilibrium to equilibrium loads and reactions change in proportion: the work of their means.
-        // What deformable components do to each other at the start cancels in the sum over both.
+        // What deformable components do to each other at the start cancels in the sum over both, but for
+        // friction.
         work += 0.5 * ((held(i, a) ? at.reaction[a] : 0.0) - at.force[a]) * u;
       }
       const double v = held(i, a)

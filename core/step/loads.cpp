@@ -142,10 +142,11 @@ void Loads::begin_step(double time, double dt, double part, VelocityOfStep veloc
   struct Sample {
     double time, weight;
   };
-  const Sample simpson[] = {{time, 1.0 / 6}, {time + 0.5 * dt, 4.0 / 6}, {time + dt, 1.0 / 6}};
+  const double apart = 0.5 / std::sqrt(3.0);
+  const Sample gauss[] = {{time + (0.5 - apart) * dt, 0.5}, {time + (0.5 + apart) * dt, 0.5}};
   const Sample end[] = {{time + dt, 1.0}};
   const bool mean = velocity == VelocityOfStep::mean;
-  const std::span<const Sample> samples = mean ? std::span<const Sample>(simpson) : end;
+  const std::span<const Sample> samples = mean ? std::span<const Sample>(gauss) : end;
   for (const Held& h : held_) {
     Vec3<double> sum{};
     for (const Sample& sample : samples) {

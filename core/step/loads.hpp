@@ -80,7 +80,7 @@ class Loads {
   static constexpr double nonreflecting_factor = 0.5;
 
   /// Prescribed velocities (ConstrainRigidPosition, expressions) in a step: those at its end, or, where a
-  /// step may be long against their changes, the means over it by Simpson's rule, so that bodies travel as
+  /// step may be long against their changes, the means over it by Gauss's rule, so that bodies travel as
   /// far as the input says; with expressions of the place, those at its middle.
   enum class VelocityOfStep { end, mean };
   /// Called before a step from `time` to `time + dt`; loads are evaluated after `part` of it.

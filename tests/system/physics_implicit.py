@@ -337,7 +337,7 @@ class Implicit(_mpm.Case):
                 self.assertEqual(outcome.out.count("acceleration_lag_x"), columns, outcome)  # the ram's have none
 
     def test_a_platen_travels_as_far_in_one_step_as_in_many(self):
-        """Its velocity is an expression of t: steps take the mean, of which Simpson's rule has cubic ones exactly."""
+        """Its velocity is an expression of t: steps take the mean, of which Gauss's rule has cubic ones exactly."""
         soft = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0.3"')
         ram = _mpm.material("ram", 1.0, 'type="Rigid"')
         grid = _mpm.grid((0, 0, 0), (2, 2, 6), "222220")

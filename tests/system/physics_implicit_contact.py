@@ -65,7 +65,7 @@ class ImplicitContact(_mpm.Case):
             with self.subTest(shape=shape):
                 text = scene(((0, 0, 0), (2, 2, 4.5)), ((0, 0, 4.5), (2, 2, 2)), (0, 0, 0), shape, steps=12, faces="222220", end=12.0,
                              grid=((0, 0, 0), (2, 2, 9)))
-                motion = f"if(t&lt;4.5,-0.0125,if(t&lt;8.5,{lift / 4},-{lift / 4}))"
+                motion = f"if(t&lt;4,-0.0125,if(t&lt;8,{lift / 4},-{lift / 4}))"
                 folder = f"lift{lift}{shape}"
                 self.run_in(folder, [self.write(text.replace('<PrescribedVelocity vx="0" vy="0" vz="0"', f'<PrescribedVelocity vx="0" vy="0" vz="{motion}"'))])
                 found = self.forces(folder)[:, 2]
