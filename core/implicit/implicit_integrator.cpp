@@ -287,6 +287,7 @@ void ImplicitIntegrator::move() {
   find_contact_forces();
   if (faces_) faces_->end_step(displacements_, of_nodes_);
   const double cutoff = model_.grid->geometry().mass_cutoff;
+  const bool rubs = contact_ && contact_->rubs();
   std::vector<double> gained(solution_.size()), lag_gained(lags_ ? solution_.size() : 0);
   for (std::size_t i = 0; i < state_.size(); ++i) {
     const NodeState& at = state_[i];
@@ -298,7 +299,7 @@ void ImplicitIntegrator::move() {
       work += at.external[a] * u;
       if (rule_.dynamic()) {
         if (moved(i, a)) work += at.impulse[a] * u / model_.clock.dt;
-      } else if (held(i, a) || !touches || (!at.meets_rigid && !contact_->rubs())) {
+      } else if (held(i, a) || !touches || (!at.meets_rigid && !rubs)) {
         // From equilibrium to equilibrium loads and reactions change in proportion: the work of their means.
         // What deformable components do to each other at the start cancels in the sum over both, but for
         // friction.

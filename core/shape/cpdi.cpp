@@ -6,12 +6,8 @@ namespace {
 
 using R = Lanes<8>;
 
-/// Lanes of a block whose domains reach, reach(axis), more than a cell.
-template <class F>
-unsigned wide_lanes(const BrickFrame& frame, F reach) {
-  unsigned wide = 0;
-  for (int a = 0; a < 3; ++a) wide |= bits(R(cpdi::farthest) < reach(a) * R(frame.inverse_cell[a]));
-  return wide;
+unsigned wide_lanes(const BrickFrame& frame, const R (&x)[3][corners]) {
+  return cpdi::wide_lanes(frame, [&](int a) { return HexahedronDomain::reach_of(x[a]); });
 }
 
 /// Corners about the middle with these half edges.
@@ -51,23 +47,15 @@ void replace_domain(const ColumnLayout& layout, double* block, int lane) {
 void Cpdi::replace_wide(const BrickFrame& frame, const ColumnLayout& layout, double* block) {
   Vec3<R> r[3];
   Parallelepiped::load_edges(layout, block, r);
-  double* edge = block + layout.offset(Column::edge_1x);
-  for (unsigned left = wide_lanes(frame, [&](int a) { return abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]); });
-       left != 0; left &= left - 1) {
-    const int lane = __builtin_ctz(left);
-    const double half = cpdi::half_of_cube(layout, block, lane);
-    for (int i = 0; i < 9; ++i) edge[block_lanes * i + lane] = i % 4 == 0 ? half : 0;
-  }
+  for (unsigned left = Parallelepiped::wide_lanes(frame, r); left != 0; left &= left - 1)
+    Parallelepiped::set_cube(layout, block, __builtin_ctz(left));
 }
 
 void Cpdi2::replace_wide(const BrickFrame& frame, const ColumnLayout& layout, double* block) {
   R x[3][corners];
   HexahedronDomain::load_corners(layout, block, x);
-  for (unsigned left = wide_lanes(frame, [&](int a) { return HexahedronDomain::reach_of(x[a]); }); left != 0;
-       left &= left - 1) {
-    const int lane = __builtin_ctz(left);
-    set_cube(layout, block, lane);
-  }
+  for (unsigned left = wide_lanes(frame, x); left != 0; left &= left - 1)
+    set_cube(layout, block, __builtin_ctz(left));
 }
 
 DomainCounts Cpdi2::settle(const BrickFrame& frame, const ColumnLayout& layout, bool free, double* block,
@@ -84,18 +72,16 @@ DomainCounts Cpdi2::settle(const BrickFrame& frame, const ColumnLayout& layout, 
     domain = Hexahedron<R>(x);
   }
   const Vec3<R> centroid = domain.centroid();
-  unsigned wide = 0;
   for (int a = 0; a < 3; ++a) {
     for (int c = 0; c < corners; ++c) {
       x[a][c] -= centroid[a];
       store(corner + block_lanes * (3 * c + a), x[a][c]);
     }
-    wide |= bits(R(cpdi::farthest) < HexahedronDomain::reach_of(x[a]) * R(frame.inverse_cell[a]));
     if (!free) continue;
     double* position = block + layout.offset(next(Column::position_x, a));
     store(position, load<R>(position) + centroid[a]);
   }
-  return {cpdi::count(wide & ~tangled, used), cpdi::count(tangled, used)};
+  return {cpdi::count(wide_lanes(frame, x) & ~tangled, used), cpdi::count(tangled, used)};
 }
 
 }  // namespace mpm::core

@@ -33,6 +33,15 @@ inline double half_of_cube(const ColumnLayout& layout, const double* block, int 
   return 0.5 * std::cbrt(std::max(block[layout.offset(Column::volume) + lane], 0.0));
 }
 
+/// Lanes of a block whose domains reach, reach(axis), more than `farthest`.
+template <class F>
+unsigned wide_lanes(const BrickFrame& frame, F reach) {
+  using R = Lanes<8>;
+  unsigned wide = 0;
+  for (int a = 0; a < 3; ++a) wide |= bits(R(farthest) < reach(a) * R(frame.inverse_cell[a]));
+  return wide;
+}
+
 inline int count(unsigned lanes, int used) { return __builtin_popcount(lanes & ((1u << used) - 1)); }
 
 }  // namespace cpdi
@@ -77,6 +86,14 @@ struct Parallelepiped {
     const double* edge = block + layout.offset(Column::edge_1x);
     for (int k = 0; k < 3; ++k)
       for (int a = 0; a < 3; ++a) r[k][a] = load<R>(edge + block_lanes * (3 * k + a));
+  }
+  static void set_cube(const ColumnLayout& layout, double* block, int lane) {
+    double* edge = block + layout.offset(Column::edge_1x) + lane;
+    const double half = cpdi::half_of_cube(layout, block, lane);
+    for (int i = 0; i < 9; ++i) edge[block_lanes * i] = i % 4 == 0 ? half : 0;
+  }
+  static unsigned wide_lanes(const BrickFrame& frame, const Vec3<R> (&r)[3]) {
+    return cpdi::wide_lanes(frame, [&](int a) { return abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]); });
   }
   static void evaluate(const BrickFrame& frame, const ColumnLayout& layout, const double* block,
                        const R (&middle)[3], R (&at)[3][corners], R (&reach)[3],
@@ -123,17 +140,10 @@ struct Cpdi : CornerShape<Parallelepiped> {
         store(edge + block_lanes * (3 * k + a), r[k][a]);
       }
     }
-    unsigned wide = 0;
-    for (int a = 0; a < 3; ++a) {
-      const R reach = abs(r[0][a]) + abs(r[1][a]) + abs(r[2][a]);
-      wide |= bits(R(cpdi::farthest) < reach * R(frame.inverse_cell[a]));
-    }
+    const unsigned wide = Parallelepiped::wide_lanes(frame, r);
     const unsigned tangled = bits(!(R(0.0) < dot(r[0], cross(r[1], r[2])))) & ((1u << used) - 1);
-    for (unsigned left = tangled; left != 0; left &= left - 1) {
-      const int l = __builtin_ctz(left);
-      const double half = cpdi::half_of_cube(layout, block, l);
-      for (int i = 0; i < 9; ++i) edge[block_lanes * i + l] = i % 4 == 0 ? half : 0;
-    }
+    for (unsigned left = tangled; left != 0; left &= left - 1)
+      Parallelepiped::set_cube(layout, block, __builtin_ctz(left));
     return {cpdi::count(wide & ~tangled, used), cpdi::count(tangled, used)};
   }
   /// Replaces domains that reach more than a cell by cubes.

@@ -23,6 +23,16 @@ void PassesWith<S, T>::sum_and_update_nodes(Slot s, std::int32_t component, Scra
                nodes);
 }
 
+template <ShapePolicy S, TransferPolicy T>
+void PassesWith<S, T>::sum_start_held(Slot s, std::int32_t component, Scratch& at, double* sums,
+                                      const NodeMask* some) {
+  const BoundaryFaces walls = faces(s);
+  const bool holds = needs_forces_at_start() && !walls.none();
+  if (holds) sum<NodeArray::seventh>(shared_, s, component, at, sums, some);
+  sum_start(s, component, at, sums, some);
+  if (holds) hold_at_rigid_walls(forces_, velocity_dt, model_.grid->geometry().mass_cutoff, walls, sums);
+}
+
 /// Brings the updated nodes into at.field, with consistent mass as they have been solved for, and the
 /// corrected velocities into at.corrected.
 template <ShapePolicy S, TransferPolicy T>
@@ -36,6 +46,14 @@ void PassesWith<S, T>::take_updated_nodes(Slot s, [[maybe_unused]] std::int32_t 
       add_order(s, orders_, component, k, at);
     at.corrected.take_motion(corrected_nodes(s, k));
   }
+}
+
+template <ShapePolicy S, TransferPolicy T>
+const typename S::Field& PassesWith<S, T>::moving_field(const Scratch& at) const {
+  if constexpr (Traits::corrects) {
+    if (moves_corrected() && !maps_back(scheme_)) return at.corrected;
+  }
+  return at.field;
 }
 
 /// Brings the strain velocities into at.field: those of at.nodes, or of momenta where it takes these.
@@ -261,6 +279,16 @@ template <ShapePolicy S, TransferPolicy T>
   at.statistics.events += batch.events;
   if ((batch.vanishing | batch.negative) != 0)
     name_unphysical(model_.scene->solution.warn, body, batch, at.statistics);
+}
+
+template <ShapePolicy S, TransferPolicy T>
+ReferredTrace PassesWith<S, T>::referred_trace() const {
+  switch (static_cast<VolumeUpdate>(model_.options.volume_update)) {
+    case VolumeUpdate::rate: return ReferredTrace::of_new_volume;
+    case VolumeUpdate::exponential:
+    case VolumeUpdate::accumulated_strain: return ReferredTrace::unchanged;
+    default: return ReferredTrace::of_gradient;
+  }
 }
 
 /// Sums a tile's volume changes in its sites. The gradients are formed once more with the stress:

@@ -134,16 +134,8 @@ class PassesWith final : public Passes {
   }
 
   /// USAVG's update at the start of a step completes that of the step before, with the velocities of then.
-  StrainInterval interval_at_start() const {
-    const double time = model_.clock.time;
-    if (scheme_ == Scheme::usavg) return {strain_lag_, time, 0, StrainPart::second_half};
-    return {dt, time + dt, -lag_ / dt};  // the velocities are yet to follow these stresses
-  }
-  StrainInterval interval_at_end() const {
-    const double left = model_.clock.strain_lag, done = dt - left;
-    return {done, model_.clock.time + done, (lag_ - left) / done,
-            scheme_ == Scheme::usavg ? StrainPart::first_half : StrainPart::all};
-  }
+  StrainInterval interval_at_start() const;
+  StrainInterval interval_at_end() const;
 
   /// The number of leading columns that passes read up to the stress; up to the mass below.
   static constexpr int columns_to_stress = static_cast<int>(Column::viscous_pressure) + 1;
@@ -214,12 +206,7 @@ class PassesWith final : public Passes {
   }
   /// The same to strain with: without what rigid walls hold.
   void sum_start_held(Slot s, std::int32_t component, Scratch& at, double* sums,
-                      const NodeMask* some = nullptr) {
-    const bool holds = needs_forces_at_start() && !faces(s).none();
-    if (holds) sum<NodeArray::seventh>(shared_, s, component, at, sums, some);
-    sum_start(s, component, at, sums, some);
-    if (holds) hold_at_rigid_walls(forces_, velocity_dt, model_.grid->geometry().mass_cutoff, faces(s), sums);
-  }
+                      const NodeMask* some = nullptr);
   template <NodeFields what, class F>
   void map_bricks(F work);
 
@@ -331,12 +318,7 @@ class PassesWith final : public Passes {
     return false;
   }
   /// The same as a field. MUSL and USAVG move particles in a later pass, by the motion kept for it.
-  const typename S::Field& moving_field(const Scratch& at) const {
-    if constexpr (Traits::corrects) {
-      if (moves_corrected() && !maps_back(scheme_)) return at.corrected;
-    }
-    return at.field;
-  }
+  const typename S::Field& moving_field(const Scratch& at) const;
   /// The nodes' velocities and masses that move a brick's particles of the field number `k`.
   const double* moving_nodes(Slot s, std::size_t k, const Scratch& at) {
     return moves_corrected() ? corrected_nodes(s, k) : at.nodes.data();
@@ -364,14 +346,7 @@ class PassesWith final : public Passes {
   void update_material(const Body& body, Scratch& at);
 
   /// Of strains at new positions, by how volumes are updated from them.
-  ReferredTrace referred_trace() const {
-    switch (static_cast<VolumeUpdate>(model_.options.volume_update)) {
-      case VolumeUpdate::rate: return ReferredTrace::of_new_volume;
-      case VolumeUpdate::exponential:
-      case VolumeUpdate::accumulated_strain: return ReferredTrace::unchanged;
-      default: return ReferredTrace::of_gradient;
-    }
-  }
+  ReferredTrace referred_trace() const;
   bool updates_volume_by_cell() const {
     return model_.options.volume_update == static_cast<int>(VolumeUpdate::cell);
   }

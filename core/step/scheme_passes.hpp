@@ -6,6 +6,20 @@
 
 namespace mpm::core {
 
+template <ShapePolicy S, TransferPolicy T>
+auto PassesWith<S, T>::interval_at_start() const -> StrainInterval {
+  const double time = model_.clock.time;
+  if (scheme_ == Scheme::usavg) return {strain_lag_, time, 0, StrainPart::second_half};
+  return {dt, time + dt, -lag_ / dt};  // the velocities are yet to follow these stresses
+}
+
+template <ShapePolicy S, TransferPolicy T>
+auto PassesWith<S, T>::interval_at_end() const -> StrainInterval {
+  const double left = model_.clock.strain_lag, done = dt - left;
+  return {done, model_.clock.time + done, (lag_ - left) / done,
+          scheme_ == Scheme::usavg ? StrainPart::first_half : StrainPart::all};
+}
+
 /// Sums of all velocity fields, as if the bodies stuck to each other, into at.nodes.
 template <ShapePolicy S, TransferPolicy T>
 template <NodeArray of>

@@ -34,12 +34,7 @@ void check_settings(const Node& solution, const core::SolutionInput& input, cons
 }
 
 void check_faces(const Node& root, const core::GridInput& grid, const BuildContext& context) {
-  const auto unsuitable = [](core::Boundary b) {
-    return b == core::Boundary::nonreflecting || b == core::Boundary::rigid_wall;
-  };
-  const bool any = std::ranges::any_of(grid.axes, [&](const core::GridAxis& axis) {
-    return unsuitable(axis.lower) || unsuitable(axis.upper);
-  });
+  const bool any = grid.has_face(core::Boundary::nonreflecting) || grid.has_face(core::Boundary::rigid_wall);
   const auto node = root.child("Grid");
   if (any && node)
     node->report(

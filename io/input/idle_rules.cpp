@@ -54,11 +54,7 @@ bool nothing_explodes(const Place& at) {
   });
 }
 
-bool no_free_face(const Place& at) {
-  return std::ranges::none_of(at.scene.grid.axes, [](const core::GridAxis& axis) {
-    return axis.lower == core::Boundary::free || axis.upper == core::Boundary::free;
-  });
-}
+bool no_free_face(const Place& at) { return !at.scene.grid.has_face(core::Boundary::free); }
 
 bool all_rigid(const Place& at) {
   return !any_body(at.scene,
