@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/has_shape.hpp"
 #include "core/particle_range.hpp"
 #include "core/step/finite.hpp"
 #include "core/step/offending_particle.hpp"
@@ -18,7 +19,7 @@ std::string remedies(const core::Scene& scene) {
   std::string words;
   const core::SolutionInput& solution = scene.solution;
   if (solution.integration == core::Integration::explicit_dynamics) {
-    const bool linear = scene.grid.shape == core::ShapeFunction::linear;
+    const bool linear = scene.grid.shape == core::ShapeFunction::linear && core::has_shape("SGMP");
     if (linear) words = "try Grid shape=\"SGMP\"";
     if (solution.scheme != core::Scheme::usavg)
       words += fmt::format("{} Solution algorithm=\"USAVG\"", linear ? ", or" : "try");

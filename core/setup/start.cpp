@@ -67,6 +67,7 @@ void refuse_undefined(const Model& model, Reductions& ranks) {
 /// overflow; names the fastest particle, of which `mine` is this rank's. Collective.
 void refuse_endless(const Model& model, const Fastest& mine, Reductions& ranks) {
   const SolutionInput& solution = model.scene->solution;
+  if (solution.integration != Integration::explicit_dynamics) return;  // this length bounds no step
   const TimeStepInput& how = solution.time_step;
   constexpr double most_steps = 9223372036854775808.0;  // 2^63
   const auto endless = [&](double dt) { return !(dt * most_steps > solution.end_time); };

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "core/built.hpp"
+#include "core/has_shape.hpp"
 #include "core/scene/limits.hpp"
 #include "io/input/build.hpp"
 
@@ -33,8 +32,7 @@ core::ShapeFunction shape_function(std::string_view word) {
 void require_built(const Node& node, std::string_view attribute, std::string_view shape,
                    const BuildContext& context) {
   const bool is_known = !shape.empty();  // else it has been reported
-  if (!is_known || std::ranges::find(core::built_shapes, shape) != std::ranges::end(core::built_shapes))
-    return;
+  if (!is_known || core::has_shape(shape)) return;
   node.report(context.diagnostics, attribute,
               fmt::format("this program was built without {}: expected {}, or a program built with the CMake "
                           "option -DMPM_SHAPES=all",

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "core/built.hpp"
 #include "core/contact/component_contact.hpp"
+#include "core/has_shape.hpp"
 
 namespace mpm::io {
 
@@ -52,7 +52,7 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
   const std::optional<Node> grid = root.child("Grid");
   if (!grid || grid->find("shape") != nullptr) return;
   // A build without others has nothing better to offer.
-  if (std::ranges::find(core::built_shapes, "SGMP") == std::ranges::end(core::built_shapes)) return;
+  if (!core::has_shape("SGMP")) return;
   double cell = std::numeric_limits<double>::infinity();
   for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
   const double cells = VelocityRange(scene).largest_difference() * scene.solution.end_time / cell;

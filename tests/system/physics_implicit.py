@@ -336,6 +336,16 @@ class Implicit(_mpm.Case):
                 outcome = _mpm.run([scene, "--output-dir", self.folder, "--dry-run"])
                 self.assertEqual(outcome.out.count("acceleration_lag_x"), columns, outcome)  # the ram's have none
 
+    def test_no_explicit_step_bounds_how_long_a_run_may_last(self):
+        """Slow creep to rest, in units in which an explicit run would need more than 2^63 steps."""
+        soft, end = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0"'), 1e18
+        body = _mpm.block("soft", (0, 0, 0), (2, 2, 4), of="soft")
+        scene = _mpm.scene([body], _mpm.grid((0, 0, 0), (2, 2, 6), "222220"),
+                           implicit(end, step=end / 2, more='gravity_ramp="1"', extra='<Gravity ax="0" ay="0" az="-1"/>'), [soft])
+        self.run_in("out", [self.write(scene)])
+        summary = _mpm.summary(self.folder / "out")
+        self.assertEqual((summary["time"], summary["steps"]), (end, 2))
+
     def test_a_platen_travels_as_far_in_one_step_as_in_many(self):
         """Its velocity is an expression of t: steps take the mean, of which Gauss's rule has cubic ones exactly."""
         soft = _mpm.material("soft", 1.0, 'type="NeoHookean" Young="1000" Poisson="0.3"')
