@@ -3,7 +3,7 @@
 set -eu
 
 packages="build-essential g++ cmake ninja-build ccache git pkg-config
-  libopenmpi-dev openmpi-bin libhdf5-openmpi-dev hdf5-tools libmetis-dev petsc-dev
+  libopenmpi-dev openmpi-bin libhdf5-openmpi-dev hdf5-tools libmetis-dev petsc-dev libopenblas0-serial
   libeigen3-dev catch2 libxml2-dev libcli11-dev libfmt-dev libmuparser-dev nlohmann-json3-dev zlib1g-dev
   python3 python3-numpy python3-matplotlib python3-h5py python3-sympy
   clang-14 libomp-14-dev libclang-rt-14-dev clang-format-14"
