@@ -31,9 +31,9 @@ def read(path):
 
 
 def part_of(rows, among):
-    """Words for `rows`, some of those `among`: the transfers or the studies that are all theirs, or how many they are."""
+    """Words for `rows`, some of those `among`: the transfers, studies or schemes that are all theirs, or how many they are."""
     mine = {identity(r) for r in rows}
-    for column in ("transfer", "study"):
+    for column in ("transfer", "study", "scheme"):
         names = list(dict.fromkeys(r[column] for r in rows))
         if len(names) < len({r[column] for r in among}) and all(identity(r) in mine for r in among if r[column] in names):
             return ", ".join(names)
