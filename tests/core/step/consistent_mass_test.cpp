@@ -75,14 +75,14 @@ TEST_CASE("Consistent mass keeps momentum to round-off, and uniform motion") {
       ReferenceCase c = tumbling(shape, scheme);
       SmallRun deforms(c);
       const Motion before = motion_of(deforms);
-      deforms.step(30);
+      deforms.step(brief(30));
       const Motion after = motion_of(deforms);
       for (std::size_t a = 0; a < 3; ++a)
         CHECK(after.momentum[a] == Approx(before.momentum[a]).epsilon(1e-12));
 
       for (ReferenceParticle& p : c.particles) p.v = {6, -5, 4};
       SmallRun uniform(c);
-      uniform.step(30);
+      uniform.step(brief(30));
       double off = 0;
       for (const auto& [identity, p] : uniform.particles())
         off = std::max({off, std::abs(p.v[0] - 6), std::abs(p.v[1] + 5), std::abs(p.v[2] - 4)});
@@ -115,6 +115,7 @@ TEST_CASE("Fewer particles than nodes: the matrix is singular, the motion is fin
   for (const ReferenceShape shape : reference_shapes) {
     if (!core::consistent_mass_goes_with(shape_function_of(shape))) continue;
     for (const ReferenceScheme scheme : schemes) {
+      if (left_out(shape, scheme)) continue;
       // Lone particles beside a node, on a face, just beside one and inside a cell; then one particle per
       // cell. (Exactly at a node others have no mass and no part in the motion, with lumped mass too.)
       for (const int row : {1, 4, 6}) {

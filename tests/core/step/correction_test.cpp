@@ -102,12 +102,12 @@ TEST_CASE("XPIC and FMPM keep uniform motion and momentum in every order") {
         };
         SmallRun deforms(c);
         const Vector before = momentum(deforms);
-        deforms.step(30);
+        deforms.step(brief(30));
         for (std::size_t a = 0; a < 3; ++a) CHECK(momentum(deforms)[a] == Approx(before[a]).epsilon(1e-12));
 
         for (ReferenceParticle& p : c.particles) p.v = {6, -5, 4};
         SmallRun uniform(c);
-        uniform.step(30);
+        uniform.step(brief(30));
         double off = 0;
         for (const auto& [identity, p] : uniform.particles())
           off = std::max({off, std::abs(p.v[0] - 6), std::abs(p.v[1] + 5), std::abs(p.v[2] - 4)});
