@@ -4,6 +4,7 @@ import run_one  # noqa: F401: says where the next one is
 
 import _mpm
 
+FACTOR = 0.8  # of explicit runs, of the critical step
 SHAPES = ("linear", "uGIMP", "QuadraticBSpline", "SGMP", "CPDI2")
 
 
@@ -48,7 +49,7 @@ def implicit(end, step, kind="quasistatic", more="", children=""):
                          more=f'<Implicit type="{kind}" time_step="{float(step)!r}" {more}/>{children}')
 
 
-def explicit(end, factor=0.8, damping=None, more="", transfer="FLIP"):
+def explicit(end, factor=FACTOR, damping=None, more="", transfer="FLIP"):
     relax = f'<DynamicRelax damping="{damping!r}"/>' if damping else ""
     return _mpm.solution(repr(float(end)), factor=repr(factor), attributes=f'transfer="{transfer}"', more=relax + more)
 

@@ -32,6 +32,11 @@ def smooth_growth(length):
     return f"if(t&lt;{length!r},(t/{length!r})^2*(3-2*t/{length!r}),1)"
 
 
+def smooth_speed(length):
+    """The slope of that."""
+    return f"if(t&lt;{length!r},{6 / length!r}*(t/{length!r})*(1-t/{length!r}),0)"
+
+
 def order(coarse, fine, ratio):
     """Observed order between two errors whose sizes have this ratio; None where there is none."""
     if not all(isinstance(v, float) and math.isfinite(v) and v != 0 for v in (coarse, fine)):
@@ -77,6 +82,28 @@ def convergence(rows, name, axis, lead, how=".2e", factor=1.0):
         lines.append([*map(str, labels), *(at.get(p, "–") for p in places), orders(mine, name, axis),
                       f"{last[-1]['seconds']:.2g}" if last else "–"])
     return table([*lead, *(f"{p:g}" for p in places), "orders", "seconds"], lines)
+
+
+def beside(rows, name, lead, how=".2e", factor=1.0, alone=False):
+    """A line for each value of the labels `lead` that implicit and explicit runs have (`alone`: or implicit ones only): value
+    and seconds of each, and the time of the explicit ones over that of the implicit one."""
+    kinds, lines = values(rows, "steps by"), []
+    implicit = kinds[0]
+    for labels in dict.fromkeys(tuple(r[k] for k in lead) for r in rows):
+        at = {r["steps by"]: r for r in where(rows, **dict(zip(lead, labels)))}
+        if implicit not in at or len(at) == 1 and not alone:
+            continue
+        line = [f"{v:g}" if isinstance(v, float) else v for v in labels]
+        for kind in kinds:
+            line += [shown(at[kind], name, how, factor), shown(at[kind], "seconds", ".2g")] if kind in at else ["–", "–"]
+            if kind != implicit:
+                both = kind in at and done(at[kind]) and done(at[implicit])
+                line.append(f"{at[kind]['seconds'] / at[implicit]['seconds']:.2g}" if both else "–")
+        lines.append(line)
+    heads = [*lead]
+    for kind in kinds:
+        heads += [kind, f"seconds, {kind}", *([f"time over, {kind}"] if kind != implicit else [])]
+    return table(heads, lines) if lines else ""
 
 
 def against_explicit(rows, errors):

@@ -63,8 +63,7 @@ inertia, and the longer the run. Dynamic relaxation is shorter: the study below.
         elif how in RELAXED:
             end = RELAXED[how] * PERIOD
             solution = scenes.explicit(end, damping=4 * np.pi / PERIOD)
-            t = f"(t/{end / 2!r})"
-            velocity = f"if({t}&lt;1,-{12 * way / end!r}*{t}*(1-{t}),0)"
+            velocity = f"-{way!r}*{study.smooth_speed(end / 2)}"
         else:
             end = way / (float(how) * WAVE)
             solution = scenes.explicit(end)
