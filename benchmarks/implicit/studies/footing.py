@@ -22,6 +22,14 @@ LAWS = {"DruckerPrager": f'type="DruckerPrager" qfai="0" kfai="{COHESION}" qpsi=
         "ElaPlastic": f'type="ElaPlastic" Yield0="{3**0.5 * COHESION!r}" bq1="0" bq2="0"'}
 
 
+def driven(by, way, wave):
+    """Of steps `by`: the speed of the footing on its way, the solution, and the rows of which a load is the mean."""
+    if by.startswith("implicit"):
+        return way, scenes.implicit(1.0, 1 / STEPS), 1
+    speed = float(by.split()[1]) * wave
+    return speed, scenes.explicit(way / speed), AVERAGED
+
+
 def pressed(shape, h, soil, speed, strength, solution, tied=False, rough=False, end=HALF):
     """The input of soil of this width and depth under the footing, which ends at `end`."""
     width, depth = soil
@@ -96,19 +104,15 @@ and moves at the stated part of the speed of waves, {WAVE:.1f}."""
     @staticmethod
     def one(by, law, averaging, shape, cells, quick):
         h, is_implicit, is_tied = HALF / cells, by.startswith("implicit"), by == "implicit, tied"
-        speed = PRESSED if is_implicit else float(by.split()[1]) * WAVE
-        end = PRESSED / speed
-        solution = scenes.implicit(end, end / STEPS) if is_implicit else scenes.explicit(end)
+        speed, solution, averaged = driven(by, PRESSED, WAVE)
         if averaging == "cell":
             solution = solution.replace("</Solution>", f"{AVERAGES}</Solution>")
         strength = f'{LAWS[law]} Young="{YOUNG}" Poisson="{POISSON}"'
         text = pressed(shape, h, (WIDTH, DEPTH), speed, strength, solution, is_tied, by.endswith("rough"),
                        HALF - h / 2 if is_implicit else HALF)
 
-        def measure(result):
-            return against(PRANDTL, h, result.energies, 1 if is_implicit else AVERAGED)
-
-        return Run({"steps by": by, "law": law, "averaging": averaging, "shape": shape, "cells": cells}, text, measure, quick)
+        return Run({"steps by": by, "law": law, "averaging": averaging, "shape": shape, "cells": cells}, text,
+                   lambda result: against(PRANDTL, h, result.energies, averaged), quick)
 
     def block(self, rows):
         kinds = [[r for r in rows if r["steps by"].startswith("implicit") == is_implicit] for is_implicit in (True, False)]
