@@ -97,7 +97,7 @@ critical for that wave (an angular frequency of 3.65) and for the block's first 
 forces with 16 cells by at most 0.15 % (splines) and 0.03 % (`linear`): what is left are errors of contact and of the grid, not of inertia.
 A ratio of 1e6 makes explicit steps a thousand times shorter. Not run, as they take two minutes or more by the times of 1e3: the laminate with 32
 cells ({explicit_steps(1e6, 32):,.0f} steps of `linear`, 2 min; splines as long) and the inclusion with 8 ({explicit_steps(1e6, 8):,.0f} steps; 2 min, splines 7)
-and 12 ({explicit_steps(1e6, 12):,.0f}; 11 and 36 min)."""
+and 12 ({explicit_steps(1e6, 12):,.0f}; 11 and 16 min)."""
     labels = ("body", "steps by", "shape", "value", "cells")
     measured = ("force", "error")
 
