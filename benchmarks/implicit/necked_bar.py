@@ -6,7 +6,9 @@ plastic flow keeps the volume; the yield stress is Kirchhoff's. Newton's method;
 tests/system/benchmarks_implicit.py compares uniform tension with the closed form.
 
   necked_bar.py [RADIAL AXIAL [HELD [GRADING]]]     the table of studies/necking.py: elongation, ratio of radii, force;
-                                                    HELD 0: ends free to narrow; GRADING 0: elements of one length"""
+                                                    HELD 0: ends free to narrow; GRADING 0: elements of one length
+  necked_bar.py notched|strip RADIAL AXIAL GRADING  studies/notched.py: displacement of an end, radius or half width of the
+                                                    neck, force, and its error against each published curve"""
 
 import dataclasses
 import pathlib
@@ -35,9 +37,10 @@ def at_points():
 
 class Bar:
     """Half of a bar between its middle, z = 0, and its end. `radius`(z); `grading` above 1: finer towards the middle; `held`:
-    the end keeps its width."""
+    the end keeps its width. `plane`: a strip in plane strain instead, of this half width and unit thickness, and the force on
+    half of it."""
 
-    def __init__(self, metal, radius, half, radial, axial, grading=3.0, held=True):
+    def __init__(self, metal, radius, half, radial, axial, grading=3.0, held=True, plane=False):
         self.metal = metal
         t = np.linspace(0, 1, axial + 1)
         z = half * np.expm1(grading * t) / np.expm1(grading) if grading else half * t
@@ -56,6 +59,8 @@ class Bar:
         self.slope = np.einsum("epij,paj->epai", np.linalg.inv(jacobian), slope)  # with respect to the first place
         self.value, self.r0 = value, np.einsum("pa,ea->ep", value, self.first[self.nodes][..., 0])
         self.volume = 2 * np.pi * self.r0[:, :4] * np.linalg.det(jacobian)[:, :4]
+        if plane:  # no strain around the axis
+            self.value, self.r0, self.volume = 0 * value, np.ones_like(self.r0), np.linalg.det(jacobian)[:, :4]
         self.u, self.last = np.zeros_like(self.first), self.first * (0, 1)  # the last step was uniform
         eye = np.broadcast_to(np.eye(2), (*self.volume.shape, 2, 2))
         self.state = (eye, np.ones_like(self.volume), eye, np.ones_like(self.volume), np.zeros_like(self.volume))
@@ -139,8 +144,21 @@ def curve(bar, pulled, steps):
     return np.array(rows)
 
 
+def against_published(name, radial, axial, grading):
+    from studies import notched
+    pulled, bar, curves = notched.CASES[name]
+    found = curve(bar(int(radial), int(axial), float(grading)), pulled, 80)
+    for elongation, radius, force in found[1:]:
+        moved, force = elongation / 2, force / 1e3
+        wanted = [published[np.isclose(published[:, 0], moved), 1] for published in curves.values()]
+        if wanted[0].size:
+            print(f"{moved:.4g} {radius:.4f} {force:.4f}", *(f"{force / w[0] - 1:+.2%}" for w in wanted if w.size))
+
+
 def main(radial=12, axial=40, held=1, grading=3):
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+    if radial in ("notched", "strip"):
+        return against_published(radial, axial, held, grading)
     from studies import necking
     found = curve(necking.bar(int(radial), int(axial), bool(int(held)), float(grading)), necking.PULLED, 140)
     found[:, 1] /= necking.RADIUS

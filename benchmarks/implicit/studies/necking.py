@@ -32,16 +32,20 @@ REFERENCE = np.array([
 PEAK, PEAK_AT = 77.241, 5.2
 
 
-def particles(lower, upper, h, layers=1):
-    """Masses and places in a quarter between two heights: particles in rings of h/2, in layers of h/2, near the middle in
-    `layers` as many."""
-    found, rings = [], round(2 * RADIUS / h)
+def radius(z):
+    return RADIUS * (NECK + (1 - NECK) * np.minimum(z / HALF, 1))
+
+
+def particles(lower, upper, h, layers=1, radius=radius, widest=RADIUS, fine=FINE):
+    """Masses and places in a quarter between two heights: particles in rings of h/2 where the bar is widest, in layers of h/2,
+    near the middle in `layers` as many."""
+    found, rings = [], round(2 * widest / h)
     edges = np.linspace(lower, upper, round(2 * (upper - lower) / h) + 1)
     if layers > 1:
-        coarse = round(2 * FINE / h)
+        coarse = round(2 * fine / h)
         edges = np.concatenate([np.linspace(0, edges[coarse], layers * coarse + 1), edges[coarse + 1:]])
     for z, dz in zip((edges[1:] + edges[:-1]) / 2, np.diff(edges)):
-        wide = RADIUS / rings * (NECK + (1 - NECK) * min(z / HALF, 1))
+        wide = radius(z) / rings
         for ring in range(rings):
             count = max(round(np.pi / 4 * (2 * ring + 1)), 1)
             mass = DENSITY * np.pi / 4 * (2 * ring + 1) * wide**2 * dz / count
@@ -50,9 +54,21 @@ def particles(lower, upper, h, layers=1):
     return np.array(found)
 
 
-def flow(plastic):
+def states(result, mass, height, h):
+    """For each picture how far the end of the bar, at this height, is pulled, the section of the neck over its first one, and
+    the force."""
+    z0, first = result.column("z", 0), result.column("density", 0)
+    bar, head, low = z0 < height, (z0 > height) & (z0 < height + h / 2), z0 < 1.01 * z0.min()
+    for i in range(len(result.states.steps)):
+        z, density, stress = (result.column(name, i) for name in ("z", "density", "SigmaZ"))
+        pulled = (z - z0)[head].mean()
+        section = (first / density)[low].mean() / (z / z0)[low].mean()
+        yield pulled, section, 4e-3 * (mass / density * stress)[bar].sum() / (height + pulled)
+
+
+def flow(plastic, linear=LINEAR):
     left = SATURATION * np.exp(-EXPONENT * plastic)
-    return YIELD + SATURATION + LINEAR * plastic - left, LINEAR + EXPONENT * left
+    return YIELD + SATURATION + linear * plastic - left, linear + EXPONENT * left
 
 
 def considere(part):
@@ -64,7 +80,40 @@ def considere(part):
 def bar(radial, axial, held=True, grading=3.0):
     """The reference, by finite elements."""
     metal = necked_bar.Metal(BULK, SHEAR, flow)
-    return necked_bar.Bar(metal, lambda z: RADIUS * (NECK + (1 - NECK) * z / HALF), HALF, radial, axial, grading, held)
+    return necked_bar.Bar(metal, radius, HALF, radial, axial, grading, held)
+
+
+def pulled_scene(by, shape, averaging, h, cells, widest, pulled, steps, pictures, strengths, points):
+    """The scene of a bar, so many cells high, that goes over into an elastic head, which a grip pulls; and its files. `points`:
+    particles of "bar", "head" and "grip"."""
+    is_implicit = by == "implicit"
+    if is_implicit:
+        end, speed = 1.0, repr(pulled)
+    else:
+        most = float(by.split()[1]) * WAVE
+        end = pulled / most / (1 - RAMP / 2)
+        speed = f"{most!r}*min(1,t/{RAMP * end!r})"
+    parts = {"bar": "metal", "head": "elastic", "grip": "rigid" if is_implicit else "elastic"}  # rigid needs contact there
+    bodies = [f'<Body name="{name}" material="{of}" type="Point"><Geometry file="{name}.txt"/>'
+              f'{scenes.moved(vz=speed) if name == "grip" else ""}</Body>' for name, of in parts.items()]
+    width = (np.ceil(widest / h) + 1) * h
+    top = (cells + 5 + np.ceil(pulled / h) + 2) * h
+    materials = [scenes.material(name, DENSITY, strength) for name, strength in strengths.items()]
+    if is_implicit:
+        materials.append(scenes.rigid(DENSITY))
+    averages = f'<Volumetric averaging="{averaging}"/>'
+    solution = (scenes.implicit(end, end / steps, children=averages) if is_implicit
+                else scenes.explicit(end, more=averages))
+    text = scenes.scene(bodies, scenes.grid(shape, (0, 0, 0), (width, width, top), "202020", h), solution, materials,
+                        scenes.pictures(end / pictures, ("SigmaZ", "density")))
+    return text, {f"{name}.txt": "".join("{:.12g} {:.12g} {:.12g} {:.12g}\n".format(*row) for row in rows)
+                  for name, rows in points.items()}
+
+
+def laws(young, poisson, linear):
+    elastic = f'Young="{young!r}" Poisson="{poisson!r}" bq1="0" bq2="0"'
+    return {"metal": f'type="Voce" {elastic} Yield0="{YIELD}" Q="{SATURATION}" b="{EXPONENT}" H="{linear}"',
+            "elastic": f'type="IsoElastic" {elastic}'}
 
 
 class Necking(study.Study):
@@ -75,10 +124,11 @@ falls linearly to {NECK:g} of that in the middle. Bulk modulus {BULK / 1e3:g} GP
 with a yield stress of {YIELD:g} + {LINEAR:g} e + {SATURATION:g} (1 - exp(-{EXPONENT:g} e)) MPa. The constants are those of
 the bar that J. C. Simo and others took as a benchmark, as a public test of another code repeats them (SPHinXsys,
 stretching.cpp, a bar in plane strain); radius, length and the {2 * PULLED:g} mm are also in a tutorial
-(solids4foam, neckingBar), with other hardening. The curves in Simo's and later papers could not be read for this page; that
-they end near 0.37 of the radius is known at second hand only. The reference is therefore by axisymmetric finite elements
-
-(benchmarks/implicit/necked_bar.py), with ends that keep their width, as here. With ends free to narrow they give 0.351 at
+(solids4foam, neckingBar), with other hardening. The curves in Simo's and later papers could not be read for this page, nor
+were numbers of the experiment of D. M. Norris and others found; that the curves end near 0.37 of the radius is known at
+second hand only. The reference is therefore by axisymmetric finite elements (benchmarks/implicit/necked_bar.py) with ends
+that keep their width, as here; such elements meet [published curves](#necking-of-a-notched-bar) of this bar in plane strain
+and of a notched one. With ends free to narrow they give 0.351 at
 {2 * PULLED:g} mm with 12 by 32 elements (0.306 with ends that keep it, 0.329 with 6 by 16): how the ends are held, and a mesh
 that is fine enough, matter as much as the difference to 0.37. Elements of one length, as long as the cells of the grids below
 (`necked_bar.py 2 8 1 0`, `3 12 1 0`, `4 16 1 0` and `5 20 1 0`), end at 0.522, 0.467, 0.432 and 0.409, with 0.730, 0.707, 0.694 and
@@ -112,50 +162,21 @@ the time. {STEPS} load steps; four times as many narrow the neck of 12 cells fro
     @staticmethod
     def one(by, shape, averaging, layers, cells, quick=False):
         """`cells`: over half the length."""
-        h, is_implicit = HALF / cells, by == "implicit"
-        if is_implicit:
-            end, speed = 1.0, repr(PULLED)
-        else:
-            most = float(by.split()[1]) * WAVE
-            end = PULLED / most / (1 - RAMP / 2)
-            speed = f"{most!r}*min(1,t/{RAMP * end!r})"
-        parts = {"bar": "metal", "head": "elastic", "grip": "rigid" if is_implicit else "elastic"}  # rigid needs contact there
-        bodies = [f'<Body name="{name}" material="{of}" type="Point"><Geometry file="{name}.txt"/>'
-                  f'{scenes.moved(vz=speed) if name == "grip" else ""}</Body>' for name, of in parts.items()]
-        width = (np.ceil(RADIUS / h) + 1) * h
-        top = (cells + 5 + np.ceil(PULLED / h) + 2) * h
-        elastic = f'Young="{YOUNG!r}" Poisson="{POISSON!r}" bq1="0" bq2="0"'
-        law = f'type="Voce" {elastic} Yield0="{YIELD}" Q="{SATURATION}" b="{EXPONENT}" H="{LINEAR}"'
-        materials = [scenes.material("metal", DENSITY, law),
-                     scenes.material("elastic", DENSITY, f'type="IsoElastic" {elastic}')]
-        if is_implicit:
-            materials.append(scenes.rigid(DENSITY))
-        averages = f'<Volumetric averaging="{averaging}"/>'
-        solution = (scenes.implicit(end, end / STEPS, children=averages) if is_implicit
-                    else scenes.explicit(end, more=averages))
-        text = scenes.scene(bodies, scenes.grid(shape, (0, 0, 0), (width, width, top), "202020", h), solution, materials,
-                            scenes.pictures(end / PICTURES, ("SigmaZ", "density")))
+        h = HALF / cells
         points = {"bar": particles(0, HALF, h, layers), "head": particles(HALF, HALF + 3 * h, h),
                   "grip": particles(HALF + 3 * h, HALF + 5 * h, h)}
-        files = {f"{name}.txt": "".join("{:.12g} {:.12g} {:.12g} {:.12g}\n".format(*row) for row in rows)
-                 for name, rows in points.items()}
+        text, files = pulled_scene(by, shape, averaging, h, cells, RADIUS, PULLED, STEPS, PICTURES,
+                                   laws(YOUNG, POISSON, LINEAR), points)
         mass = np.concatenate([rows[:, 0] for rows in points.values()])
 
         def measure(result):
-            z0, first = result.column("z", 0), result.column("density", 0)
-            bar, head, low = z0 < HALF, (z0 > HALF) & (z0 < HALF + h / 2), z0 < 1.01 * z0.min()
-            found = []
-            for i in range(len(result.states.steps)):
-                z, density, stress = (result.column(name, i) for name in ("z", "density", "SigmaZ"))
-                pulled = (z - z0)[head].mean()
-                section = (first / density)[low].mean() / (z / z0)[low].mean()  # over its first one
-                found.append((2 * pulled, NECK * section**0.5, 4e-3 * (mass / density * stress)[bar].sum() / (HALF + pulled)))
-            pulled, radius, force = np.array(found).T
-            return {"middle": np.interp(10, pulled, radius), "radius": radius[-1], "force": force[-1],
+            found = [(2 * pulled, NECK * section**0.5, force) for pulled, section, force in states(result, mass, HALF, h)]
+            pulled, narrow, force = np.array(found).T
+            return {"middle": np.interp(10, pulled, narrow), "radius": narrow[-1], "force": force[-1],
                     "peak": force.max() / PEAK - 1, "at": pulled[force.argmax()]}
 
         labels = {"steps by": by, "shape": shape, "averaging": averaging, "layers": layers, "cells": cells}
-        return Run(labels, text, measure, quick, SOLVER if is_implicit else (), files)
+        return Run(labels, text, measure, quick, SOLVER if by == "implicit" else (), files)
 
     def block(self, rows):
         heads = ["steps by", "shape", "averaging", "layers", "cells", "over the radius", "peak, %", "at, mm", "radius, 10 mm",
