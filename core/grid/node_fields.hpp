@@ -61,11 +61,12 @@ inline constexpr NodeFields start_force{NodeArray::seventh, 4, 3};
 // Cells in use (core/step/cells_in_use.hpp), where no other field is.
 inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
 // Implicit steps: sum of S + h |grad S|, positive where a node is active; volumes, those of bodies of
-// prescribed motion alone and of all; and volumes times moduli.
+// prescribed motion alone and of all; volumes times moduli, and over moduli.
 inline constexpr NodeFields support{NodeArray::first, 7, 1};
 inline constexpr NodeFields moved_volume{NodeArray::first, 3, 1};
 inline constexpr NodeFields volume{NodeArray::first, 4, 1};
 inline constexpr NodeFields modulus{NodeArray::first, 5, 1};
+inline constexpr NodeFields compliance{NodeArray::first, 6, 1};
 // Momentum of an order of XPIC or FMPM, or product with the consistent mass matrix.
 inline constexpr NodeFields correction{NodeArray::third, 0, 3};
 // Contact: sums of m grad S and of m S.
@@ -98,6 +99,7 @@ inline constexpr std::array node_field_table{
     NamedNodeFields{"moved volume", node_field::moved_volume},
     NamedNodeFields{"volume", node_field::volume},
     NamedNodeFields{"modulus", node_field::modulus},
+    NamedNodeFields{"compliance", node_field::compliance},
     NamedNodeFields{"correction", node_field::correction},
     NamedNodeFields{"surface", node_field::surface},
     NamedNodeFields{"surface mass", node_field::surface_mass},
@@ -117,8 +119,9 @@ inline constexpr NodeFields force = node_field::force;  ///< momentum and mass o
 /// the place of the support; and the motion of moved bodies.
 inline constexpr NodeFields implicit_start = momentum_mass_force | node_field::support;
 inline constexpr NodeFields implicit_force = node_field::force | node_field::support;
-inline constexpr NodeFields implicit_motion =
-    node_field::momentum | node_field::moved_volume | node_field::volume | node_field::modulus;
+inline constexpr NodeFields implicit_motion = node_field::momentum | node_field::moved_volume |
+                                              node_field::volume | node_field::modulus |
+                                              node_field::compliance;
 /// Surface and volume of a rigid body in contact, in the places of momentum and mass.
 inline constexpr NodeFields implicit_surface = node_field::momentum | node_field::mass;
 /// Of generalised alpha: mass times the lag of the acceleration, in the place of the momentum.

@@ -128,7 +128,7 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
             inside =
                 inside && first[a] + at[a] >= 0 && first[a] + at[a] < g.cells[static_cast<std::size_t>(a)];
           const int lowest = shape.index(at[0], at[1], at[2]);
-          double fill = 0, volume = 0, modulus = 0;
+          double fill = 0, volume = 0, modulus = 0, compliance = 0;
           bool active = true;
           bool mirrored = false;
           for (const int corner : corner_) mirrored |= nodes[lowest + corner].from != lowest + corner;
@@ -148,15 +148,16 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
             fill += std::min(1.0, sides * sum[node_field::volume.first] / cell_volume) / 8;
             volume += sum[node_field::volume.first];
             modulus += sum[node_field::modulus.first];
+            compliance += sum[node_field::compliance.first];
           }
           if (!active || !inside) {
             if (handles(field, at)) find_ties(field, lowest, sums.data(), nodes);
             continue;
           }
-          if (!(volume > 0)) continue;
+          if (!(compliance > 0)) continue;
           const double empty = centred_ ? 1 : 1 - fill;
           if (empty > hardly_empty && handles(field, at))
-            cells.push_back({lowest, alpha_ * empty * modulus / volume});
+            cells.push_back({lowest, alpha_ * empty * std::min(modulus / volume, volume / compliance)});
         }
       }
     }

@@ -5,7 +5,8 @@
 // Every cell whose eight nodes are active gets a soft elastic material in its empty part (the alpha method of
 // finite cells: Parvizian, Duester and Rank, Comput. Mech. 41 (2007) 121):
 //   f = - alpha (1 - fill) M  integral of B^T (sym grad u),    M: the longitudinal modulus of the material
-//   around, at most four times its shear modulus
+//   around, at most four times its shear modulus; of several materials the harmonic mean, as a share of the
+//   stiffest one's would carry more than a soft matrix does
 // The displacement is that of the step and the grid is new in each, so this material never stores stress: it
 // changes a stiffness by the share alpha (Implicit@stabilisation). Other remedies: ghost penalties on the
 // faces of such cells (Coombs, IJNME 124 (2023) 4841), which couple nodes two cells apart.

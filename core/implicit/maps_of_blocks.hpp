@@ -57,14 +57,14 @@ void ImplicitPassesWith<S>::map_motion() {
               material.reference_density() * (shear > 0 ? std::min(c * c, 4 * shear * shear) : c * c);
           for (int l = 0; l < used; ++l) {
             const double volume = block[layout.offset(Column::volume) + l];
-            double per_shape[6] = {0, 0, 0, 0, volume, volume * modulus};
+            double per_shape[7] = {0, 0, 0, 0, volume, volume * modulus, modulus > 0 ? volume / modulus : 0};
             if (moved) {
               const Vec3<double> v = loads_.motion(tile.body).velocity.velocity(block + l);
               for (int a = 0; a < 3; ++a) per_shape[a] = volume * v[a];
               per_shape[3] = volume;
             }
             for_each_weight<S>(place, l, inverse_cell, [&](int node, double shape) {
-              for (int i = 0; i < 6; ++i) contributions[node_doubles * node + i] += shape * per_shape[i];
+              for (int i = 0; i < 7; ++i) contributions[node_doubles * node + i] += shape * per_shape[i];
             });
           }
         });

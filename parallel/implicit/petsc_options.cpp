@@ -138,7 +138,9 @@ bool gives(const std::vector<std::string>& words, const std::string& name) {
 }
 
 /// Options that are set here (PetscSolver).
-bool is_ours(const std::string& name) { return name == "-options_left" || name == "-no_signal_handler"; }
+bool is_ours(const std::string& name) {
+  return name == "-options_left" || name == "-no_signal_handler" || name == null_pivots_of_mumps;
+}
 
 }  // namespace
 
@@ -237,7 +239,7 @@ void UserOptions::refuse_unused() const {
   std::vector<std::string> unused, parts;
   for (PetscInt i = 0; i < n; ++i) unused.push_back(fmt::format("-{}", names[i]));
   check_petsc(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
-  std::erase_if(unused, is_ours);
+  std::erase_if(unused, [&](const std::string& name) { return is_ours(name) && origin_of(name) == in_file; });
   for (const std::string_view origin : {after_dashes, in_environment, in_file}) {
     std::vector<std::string> of_origin = unused;
     std::erase_if(of_origin, [&](const std::string& name) { return origin_of(name) != origin; });

@@ -13,6 +13,10 @@
 
 namespace mpm::parallel {
 
+/// Whether MUMPS goes on where a row has no pivot (its ICNTL(24)), by default: a system that is singular to
+/// round-off, as with one particle in a cell, then has a solution, which the residual judges.
+inline constexpr const char* null_pivots_of_mumps = "-mat_mumps_icntl_24";
+
 /// The value of an option, wherever it has been given; "" for one without a value.
 std::optional<std::string> option_value(const char* name);
 

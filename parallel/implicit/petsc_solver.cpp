@@ -74,6 +74,7 @@ class Session {
     char** argv = pointers_.data();
     PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
     PetscOptionsSetValue(nullptr, "-options_left", "no");
+    PetscOptionsSetValue(nullptr, null_pivots_of_mumps, "1");
     check_petsc(PetscInitialize(&argc, &argv, nullptr, nullptr));
     keep_petsc_errors();
   }

@@ -130,5 +130,24 @@ class Stabilisation(_mpm.Case):
                     self.assertLess(usual, most)
                     self.assertLess(abs(usual - none), apart)
 
+    def test_a_stiff_core_does_not_stiffen_the_matrix_around(self):
+        """A column of which the middle half is 1e6 times as stiff, under its weight. A share of the stiffness of the stiffest
+        material around carried more than the soft one in the cells next to it: a tenth of the displacement with SGMP."""
+        stiff = _mpm.material("stiff", 1.0, 'type="NeoHookean" Young="1e9" Poisson="0.3"')
+        bodies = [_mpm.block("lower", (0, 0, 0), (1, 1, 2)), _mpm.block("core", (0, 0, 2), (1, 1, 4), of="stiff"),
+                  _mpm.block("upper", (0, 0, 6), (1, 1, 2))]
+        for shape in ("linear", "SGMP", "QuadraticBSpline"):
+            moved = []
+            for share in ("1e-3", "0"):
+                text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), (1, 1, 10), "222220").replace("<Grid>", f'<Grid shape="{shape}">'),
+                                  _mpm.solution(1.0, attributes='Integration="impl"', more='<Implicit type="quasistatic" time_step="1" '
+                                                f'stabilisation="{share}"/><Gravity ax="0" ay="0" az="-1"/>')
+                                  .replace('<TimeStep factor="0.5"/>', ""), [SOFT, stiff], STATE.format("pres"))
+                self.run_in("core", [self.write(text)])
+                states = _cases.States(self.folder / "core")
+                moved.append((states.column("z", 0) - states.column("z")).max())
+            with self.subTest(shape=shape):
+                self.assertAlmostEqual(moved[0] / moved[1], 1, delta=0.005)
+
 
 _mpm.main()
