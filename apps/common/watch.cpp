@@ -19,10 +19,10 @@ std::string remedies(const core::Scene& scene) {
   std::string words;
   const core::SolutionInput& solution = scene.solution;
   if (solution.integration == core::Integration::explicit_dynamics) {
-    const bool linear = scene.grid.shape == core::ShapeFunction::linear && core::has_shape("SGMP");
-    if (linear) words = "try Grid shape=\"SGMP\"";
+    const bool to_sgmp = scene.grid.shape == core::ShapeFunction::linear && core::has_shape("SGMP");
+    if (to_sgmp) words = "try Grid shape=\"SGMP\"";
     if (solution.scheme != core::Scheme::usavg)
-      words += fmt::format("{} Solution algorithm=\"USAVG\"", linear ? ", or" : "try");
+      words += fmt::format("{} Solution algorithm=\"USAVG\"", to_sgmp ? ", or" : "try");
     if (!words.empty()) words += "; ";
   }
   return words + "docs/stability.md lists remedies";

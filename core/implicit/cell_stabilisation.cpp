@@ -155,6 +155,7 @@ void CellStabilisation::find_cells(const NodeUnknowns& unknowns) {
             continue;
           }
           if (!(compliance > 0)) continue;
+          // A rigid body has a volume and neither modulus nor compliance: the smaller mean counts it as soft.
           const double empty = centred_ ? 1 : 1 - fill;
           if (empty > hardly_empty && handles(field, at))
             cells.push_back({lowest, alpha_ * empty * std::min(modulus / volume, volume / compliance)});

@@ -1,13 +1,11 @@
 // The families of shape functions, each with its policy.
 #pragma once
 
-#include <algorithm>
-#include <iterator>
 #include <stdexcept>
 #include <tuple>
 #include <type_traits>
 
-#include "core/built.hpp"
+#include "core/has_shape.hpp"
 #include "core/scene/grid.hpp"
 #include "core/shape/bspline.hpp"
 #include "core/shape/cpdi.hpp"
@@ -23,7 +21,7 @@ using Shapes =
 
 /// Whether this build has the passes of these shape functions; input checking refuses others.
 template <class S>
-inline constexpr bool is_built = std::ranges::find(built_shapes, S::name) != std::ranges::end(built_shapes);
+inline constexpr bool is_built = has_shape(S::name);
 
 /// f(std::type_identity<S>()) with the policy of `shape`, whether this build has its passes or not.
 template <class F>

@@ -11,7 +11,6 @@ namespace {
 using namespace mpm;
 using test::bar;
 using test::check_faults;
-
 using test::faults;
 using test::replaced;
 
