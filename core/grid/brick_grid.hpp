@@ -149,10 +149,16 @@ class BrickGrid {
   }
   CellsAround& cells_around(Slot s, int field) { return cells_of_fields_[field_index(s, field)]; }
   CellsAround& cells_around(Slot s) { return cells_around_[static_cast<std::size_t>(s)]; }
-  /// None in use, for every owned brick.
-  void reset_cells_around() {
+  /// Room for their weights.
+  CellWeightsAround& cell_weights(Slot s, int field) { return weights_of_fields_[field_index(s, field)]; }
+  CellWeightsAround& cell_weights(Slot s) { return cell_weights_[static_cast<std::size_t>(s)]; }
+  /// None in use, for every owned brick; with room for weights or without.
+  void reset_cells_around(bool weighted) {
+    const std::size_t fields = has_fields_by_component() ? field_count() : 0;
     cells_around_.assign(bricks_.size(), {});
-    cells_of_fields_.assign(has_fields_by_component() ? field_count() : 0, {});
+    cells_of_fields_.assign(fields, {});
+    cell_weights_.resize(weighted ? bricks_.size() : 0);
+    weights_of_fields_.resize(weighted ? fields : 0);
   }
   /// Those that hold particles of an owned brick, where the pass that has moved these has found them:
   /// cell (i, j, k) in bit i + 4 j + 16 k.
@@ -184,6 +190,7 @@ class BrickGrid {
   std::vector<std::int32_t> components_;
   std::vector<CellsAround> cells_around_;     ///< by owned slot, or empty
   std::vector<CellsAround> cells_of_fields_;  ///< by field_index(), where there are fields by component
+  std::vector<CellWeightsAround> cell_weights_, weights_of_fields_;  ///< alike, or empty
   int boundary_ = 0;
   std::uint64_t revision_ = 0;
   std::vector<std::optional<std::uint64_t>> own_cells_;  ///< by owned slot

@@ -4,6 +4,8 @@
 // (-1, 0, 1)/(2 h).
 #include "core/shape/ddmp.hpp"
 
+#include <limits>
+
 namespace mpm::core {
 
 namespace ddmp {
@@ -38,9 +40,9 @@ constexpr BitRows bit_rows = [] {
   return r;
 }();
 
-/// The cells in use, and 1/n_j.
+/// Weights of the cells, and the reciprocals of their sums around the points.
 struct CellWeights {
-  Row in_use[cells * cells];  ///< row j + 6 k
+  Row cell[cells * cells];  ///< row j + 6 k
   Row share[points * points];
 
   explicit CellWeights(const CellsAround& around) {
@@ -48,15 +50,18 @@ struct CellWeights {
     for (int k = 0; k < cells; ++k) {
       for (int j = 0; j < cells; ++j) {
         const int n = j + cells * k;
-        in_use[n] = load<Row>(bit_rows.row[around.row(j - 1, k - 1)]);
-        both[n] = in_use[n] + previous(in_use[n]);
+        cell[n] =
+            load<Row>(around.weights == nullptr ? bit_rows.row[around.row(j - 1, k - 1)]
+                                                : around.weights->row[CellsAround::index(j - 1, k - 1)]);
+        both[n] = cell[n] + previous(cell[n]);
       }
     }
     for (int k = 0; k < points; ++k) {
       for (int j = 0; j < points; ++j) {
         const Row* at = both + j + cells * k;
-        share[j + points * k] = Row(1.0) / max(at[0] + at[1] + at[cells] + at[cells + 1],
-                                               Row(1.0));  // unread where there are none
+        share[j + points * k] =
+            Row(1.0) / max(at[0] + at[1] + at[cells] + at[cells + 1],
+                           Row(std::numeric_limits<double>::min()));  // unread where there are none
       }
     }
   }
@@ -69,8 +74,8 @@ template <class F>
   if (r < cells) f(r, r + 1);
 }
 
-/// put(j, k, sum) for the rows first .. last along y and z: over the four cells beside row (j, k) in use, the
-/// sum of (2 or 1 along y) (2 or 1 along z) a, a given on the cells' edges along x. In the cells' lanes.
+/// put(j, k, sum) for the rows first .. last along y and z: over the four cells beside row (j, k), weighted,
+/// the sum of (2 or 1 along y) (2 or 1 along z) a, a given on the cells' edges along x. In the cells' lanes.
 template <class F>
 [[gnu::always_inline]] inline void across(const Row* a, const CellWeights& weights, int first, int last,
                                           F put) {
@@ -86,7 +91,7 @@ template <class F>
       beside(k, [&](int cell_k, int) {
         const Row* m = along_z[cell_k == k];
         beside(j, [&](int cell_j, int other_j) {
-          sum += weights.in_use[cell_j + cells * cell_k] * (Row(2.0) * m[j] + m[other_j]);
+          sum += weights.cell[cell_j + cells * cell_k] * (Row(2.0) * m[j] + m[other_j]);
         });
       });
       put(j, k, sum);
@@ -95,16 +100,16 @@ template <class F>
 }
 
 /// A plane of cells between two rows' planes of nodes, `a` on its edges across the plane, by the row r of the
-/// edge: sum over the cells beside row `r` in use of (2 or 1 along x) (2 or 1 along the rows) a, in the
+/// edge: weighted sum over the cells beside row `r` of (2 or 1 along x) (2 or 1 along the rows) a, in the
 /// nodes' lanes. `cell`: number of the plane's first row of cells, `stride` to the next.
 [[gnu::always_inline]] inline Row along(const Row* a, const CellWeights& weights, int r, int cell,
                                         int stride) {
   Row lower(0.0), upper(0.0);  // of the cells' lower and upper nodes, in the cells' lanes
   beside(r, [&](int cell_r, int other) {
-    const Row in_use = weights.in_use[cell + stride * cell_r];
+    const Row weight = weights.cell[cell + stride * cell_r];
     const Row m = Row(2.0) * a[r] + a[other], n = ddmp::next(m);
-    lower += in_use * (Row(2.0) * m + n);
-    upper += in_use * (Row(2.0) * n + m);
+    lower += weight * (Row(2.0) * m + n);
+    upper += weight * (Row(2.0) * n + m);
   });
   return lower + previous(upper);
 }
@@ -407,18 +412,21 @@ void Ddmp::shape_and_gradient(const Place& place, int lane, const Vec3<double>& 
     shape[at] = s;
     gradient[at] = gradient[at] + alpha * direct;
     // The node's share of the averaged gradients, from the cells around it.
-    const int beside = place.cells->beside(cell[0] + c[0], cell[1] + c[1], cell[2] + c[2]);
-    const double share = (1 - alpha) * s / (9.0 * std::max(beside, 1));
+    const double beside = place.cells->weight_beside(cell[0] + c[0], cell[1] + c[1], cell[2] + c[2]);
+    const double share = beside > 0 ? (1 - alpha) * s / (9 * beside) : 0;
     for (int m = 0; m < 8; ++m) {  // the node is corner m of the cell m around it
       const int lowest[3] = {c[0] - (m & 1), c[1] - (m >> 1 & 1), c[2] - (m >> 2)};
-      if (!place.cells->has(cell[0] + lowest[0], cell[1] + lowest[1], cell[2] + lowest[2])) continue;
+      const double weight =
+          place.cells->weight(cell[0] + lowest[0], cell[1] + lowest[1], cell[2] + lowest[2]);
+      if (weight == 0) continue;
       for (int i = 0; i < 8; ++i) {
         const double agree[3] = {(i & 1) == (m & 1) ? 2.0 : 1.0, (i >> 1 & 1) == (m >> 1 & 1) ? 2.0 : 1.0,
                                  i >> 2 == m >> 2 ? 2.0 : 1.0};
         const double g[3] = {agree[1] * agree[2], agree[0] * agree[2], agree[0] * agree[1]};
         Vec3<double>& to =
             gradient[number(lowest[0] + (i & 1), lowest[1] + (i >> 1 & 1), lowest[2] + (i >> 2))];
-        for (int a = 0; a < 3; ++a) to[a] += ((i >> a & 1) != 0 ? share : -share) * inverse_cell[a] * g[a];
+        for (int a = 0; a < 3; ++a)
+          to[a] += ((i >> a & 1) != 0 ? share : -share) * weight * inverse_cell[a] * g[a];
       }
     }
   };

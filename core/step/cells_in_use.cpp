@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <limits>
 
 #include "core/shape/cells_of_particles.hpp"
 #include "core/shape/list.hpp"
@@ -18,6 +20,20 @@ constexpr std::uint64_t bit_of(int i, int j, int k) {
   return std::uint64_t{1} << (i + brick_cells * (j + brick_cells * k));
 }
 
+std::size_t number_of(std::uint64_t bit) { return static_cast<std::size_t>(std::countr_zero(bit)); }
+
+/// But for the zeros.
+bool all_alike(const CellWeightsAround& weights) {
+  double first = 0;
+  for (const auto& row : weights.row) {
+    for (const double weight : row) {
+      if (first == 0) first = weight;
+      if (weight != 0 && weight != first) return false;
+    }
+  }
+  return true;
+}
+
 /// f(bit, node of the brick's node block) for each cell.
 template <class F>
 void for_each_cell_of(const NodeBlockShape& shape, F f) {
@@ -28,9 +44,20 @@ void for_each_cell_of(const NodeBlockShape& shape, F f) {
   }
 }
 
+/// f(tile, its place in the brick) for the tiles of a component but those of the bodies `without`.
+template <class F>
+void for_each_tile(const Brick& brick, std::int32_t component, std::span<const int> without, F f) {
+  for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
+    const ParticleTile& tile = brick.tiles[c];
+    if (component != all_components && tile.component != component) continue;
+    if (std::ranges::find(without, tile.body) == without.end()) f(tile, c);
+  }
+}
+
 /// Adds the mirror images beyond the constrained faces of the grid. One axis after the other, so that those
-/// beyond edges and corners follow.
-void add_mirror_images(const GridGeometry& geometry, BrickCoord brick, CellsAround& around) {
+/// beyond edges and corners follow. `weights`: those of `around`, if it has any.
+void add_mirror_images(const GridGeometry& geometry, BrickCoord brick, CellsAround& around,
+                       CellWeightsAround* weights) {
   const int first[3] = {brick_cells * brick.x, brick_cells * brick.y, brick_cells * brick.z};
   const auto copy_layer = [&](int axis, int from, int to) {
     int c[3];
@@ -39,8 +66,10 @@ void add_mirror_images(const GridGeometry& geometry, BrickCoord brick, CellsArou
       for (v = -1; v <= brick_cells; ++v) {
         c[axis] = from;
         if (!around.has(c[0], c[1], c[2])) continue;
+        const double weight = around.weight(c[0], c[1], c[2]);
         c[axis] = to;
         around.add(c[0], c[1], c[2]);
+        if (weights != nullptr) weights->row[CellsAround::index(c[1], c[2])][c[0] + 1] = weight;
       }
     }
   };
@@ -61,32 +90,102 @@ std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component, std
   const BrickFrame frame(grid.geometry(), brick.coord);
   constexpr int columns = static_cast<int>(Column::position_x) + 3;
   CellsOfParticles found;
-  for (std::size_t c = 0; c < brick.tiles.size(); ++c) {
-    const ParticleTile& tile = brick.tiles[c];
-    if (component != all_components && tile.component != component) continue;
-    if (std::ranges::find(without, tile.body) != without.end()) continue;
+  for_each_tile(brick, component, without, [&](const ParticleTile& tile, std::size_t c) {
     const BlockPool& pool = *model.bodies[static_cast<std::size_t>(tile.body)].pool;
     const BlockPrefetch prefetch(model, s, c);
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       prefetch.request<Linear>(b, pool.layout(), columns);
       found.add(frame, pool.layout(), pool.block(tile.blocks[b]), (1u << tile.used_lanes(b)) - 1);
     }
-  }
+  });
   return found.cells();
 }
+
+CellWeights find_cell_weights(const Model& model, Slot s, std::int32_t component,
+                              std::span<const int> without) {
+  using Block = Lanes<block_lanes>;
+  constexpr double least = std::numeric_limits<double>::min();
+  const Brick& brick = model.grid->brick(s);
+  const BrickFrame frame(model.grid->geometry(), brick.coord);
+  CellWeights weights{};
+  for_each_tile(brick, component, without, [&](const ParticleTile& tile, std::size_t c) {
+    const Body& body = model.bodies[static_cast<std::size_t>(tile.body)];
+    const ColumnLayout& layout = body.pool->layout();
+    const double reference = std::max(body.model->reference_density(), least);
+    const BlockPrefetch prefetch(model, s, c);
+    CellsOfParticles found;  // of blocks without thin particles
+    const auto add = [&](int cell, double weight) {
+      double& at = weights[static_cast<std::size_t>(cell)];
+      at = std::max(at, weight);
+    };
+    for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
+      prefetch.request<Linear>(b, layout, static_cast<int>(Column::volume) + 1);
+      const double* block = body.pool->block(tile.blocks[b]);
+      const int used = tile.used_lanes(b);
+      const double *x = block + layout.offset(Column::position_x),
+                   *mass = block + layout.offset(Column::mass),
+                   *volume = block + layout.offset(Column::volume);
+      if (all(Block(4.0) * load<Block>(mass) >= Block(reference) * load<Block>(volume))) {
+        found.add(frame, layout, block, (1u << used) - 1);
+        continue;
+      }
+      const auto place = locate_in_sites<Block, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
+      for (int l = 0; l < used; ++l) {
+        const bool dense =
+            4 * mass[l] >= reference * volume[l];  // as above: blocks differ by their other lanes
+        add(place.node[l], dense ? reference : std::max(least, 4 * mass[l] / volume[l]));
+      }
+    }
+    for (std::uint64_t cells = found.cells(); cells != 0; cells &= cells - 1)
+      add(std::countr_zero(cells), reference);
+  });
+  return weights;
+}
+
+CellsInUse::CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without)
+    : model_(model),
+      halo_(halo),
+      without_(std::move(without)),
+      weighs_(std::ranges::any_of(
+          model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })) {}
 
 void CellsInUse::find_own(Slot s) {
   BrickGrid& grid = *model_.grid;
   prefetch_coming_bricks(grid, s);
   if (!grid.has_fields_by_component()) {
     std::optional<Cells> known;
-    if (without_.empty()) known = grid.own_cells(s);
-    cells(s, 0) = known ? *known : find_cells(model_, s, all_components, without_);
+    if (without_.empty() && !weighs_) known = grid.own_cells(s);
+    if (known)
+      cells(s, 0) = *known;
+    else
+      find_field(s, 0, all_components);
     return;
   }
   cells(s, 0) = 0;
-  for (int f = 0; const std::int32_t component : grid.components(s))
-    cells(s, f++) = find_cells(model_, s, component, without_);
+  for (int f = 0; const std::int32_t component : grid.components(s)) find_field(s, f++, component);
+}
+
+void CellsInUse::find_field(Slot s, int field, std::int32_t component) {
+  if (!weighs_) {
+    cells(s, field) = find_cells(model_, s, component, without_);
+    return;
+  }
+  take_weights(s, field, find_cell_weights(model_, s, component, without_));
+}
+
+void CellsInUse::take_weights(Slot s, int field, const CellWeights& found) {
+  Cells in_use = 0;
+  double common = 0;
+  for (std::size_t c = 0; c < found.size(); ++c) {
+    if (found[c] == 0) continue;
+    in_use |= Cells{1} << c;
+    if (common == 0) common = found[c];
+    if (found[c] != common) common = several;
+  }
+  const std::size_t at = model_.grid->field_index(s, field);
+  cells_[at] = in_use;
+  weights_[at] = found;
+  common_weight_[at] = common;
 }
 
 void CellsInUse::write_to_nodes(Slot s) {
@@ -96,7 +195,10 @@ void CellsInUse::write_to_nodes(Slot s) {
     double* at = grid.contributions(field.array, s, f) + field.first;
     for (int n = 0; n < grid.shape().nodes(); ++n) at[width * n] = 0;
     const Cells own = cells(s, f);
-    for_each_cell_of(grid.shape(), [&](Cells bit, int node) { at[width * node] = (own & bit) != 0 ? 1 : 0; });
+    for_each_cell_of(grid.shape(), [&](Cells bit, int node) {
+      const double weight = weighs_ ? weights(s, f)[number_of(bit)] : 1;
+      at[width * node] = (own & bit) != 0 ? weight : 0;
+    });
   }
 }
 
@@ -106,14 +208,21 @@ void CellsInUse::read_from_nodes(Slot s) {
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
     const double* at = grid.contributions(field.array, s, f) + field.first;
     Cells found = 0;
-    for_each_cell_of(grid.shape(), [&](Cells bit, int node) { found |= at[width * node] != 0 ? bit : 0; });
+    CellWeights weights;
+    for_each_cell_of(grid.shape(), [&](Cells bit, int node) {
+      found |= at[width * node] != 0 ? bit : 0;
+      weights[number_of(bit)] = at[width * node];
+    });
     cells(s, f) = found;
+    if (weighs_) take_weights(s, f, weights);
   }
 }
 
 void CellsInUse::find() {
   BrickGrid& grid = *model_.grid;
   cells_.resize(grid.field_count());
+  weights_.resize(weighs_ ? grid.field_count() : 0);
+  common_weight_.resize(weights_.size());
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
     find_own(s);
     write_to_nodes(s);
@@ -126,34 +235,67 @@ void CellsInUse::finish_exchange() {
   BrickGrid& grid = *model_.grid;
   halo_.end(grid);
   for (int g = 0; g < grid.ghosts(); ++g) read_from_nodes(grid.owned() + g);
-  grid.reset_cells_around();
+  grid.reset_cells_around(weighs_);
   for_each_by_threads(0, grid.owned(), 16, [&](int slot) {
     const auto s = static_cast<Slot>(slot);
-    combine(s, all_components, grid.cells_around(s));
+    combine(s, all_components, grid.cells_around(s), weighs_ ? &grid.cell_weights(s) : nullptr);
     if (!grid.has_fields_by_component()) return;
-    for (int f = 0; const std::int32_t component : grid.components(s))
-      combine(s, component, grid.cells_around(s, f++));
+    for (int f = 0; const std::int32_t component : grid.components(s)) {
+      combine(s, component, grid.cells_around(s, f), weighs_ ? &grid.cell_weights(s, f) : nullptr);
+      ++f;
+    }
   });
 }
 
-/// Of one component, or of all.
-CellsInUse::Cells CellsInUse::cells_of(Slot s, std::int32_t component) const {
+/// f(index) for the fields of one component, or of all.
+template <class F>
+void CellsInUse::for_fields_of(Slot s, std::int32_t component, F f) const {
   const BrickGrid& grid = *model_.grid;
-  const auto of_field = [&](int f) { return cells_[grid.field_index(s, f)]; };
-  if (component != all_components) {
-    const int f = grid.field_of(s, component);
-    return f < 0 ? 0 : of_field(f);
+  if (component == all_components) {
+    for (int field = 0; field < grid.velocity_fields(s); ++field) f(grid.field_index(s, field));
+  } else if (const int field = grid.field_of(s, component); field >= 0) {
+    f(grid.field_index(s, field));
   }
+}
+
+CellsInUse::Cells CellsInUse::cells_of(Slot s, std::int32_t component) const {
   Cells all = 0;
-  for (int f = 0; f < grid.velocity_fields(s); ++f) all |= of_field(f);
+  for_fields_of(s, component, [&](std::size_t field) { all |= cells_[field]; });
   return all;
 }
 
-void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around) const {
+double CellsInUse::weight_of(Slot s, std::int32_t component, std::size_t cell) const {
+  double largest = 0;
+  for_fields_of(s, component, [&](std::size_t field) { largest = std::max(largest, weights_[field][cell]); });
+  return largest;
+}
+
+/// Of those in use in a brick and its neighbours.
+bool CellsInUse::weigh_alike(const Brick& brick, std::int32_t component) const {
+  double common = 0;
+  for (const Slot from : brick.neighbour) {
+    if (from == no_slot) continue;
+    for_fields_of(from, component, [&](std::size_t field) {
+      const double weight = common_weight_[field];
+      if (common == 0) common = weight;
+      if (weight != 0 && weight != common) common = several;
+    });
+  }
+  return common != several;
+}
+
+void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around,
+                         CellWeightsAround* weights) const {
   const BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
   const auto is_full = [&](Slot from) { return from != no_slot && cells_of(from, component) == ~Cells{0}; };
-  if (std::ranges::all_of(brick.neighbour, is_full)) return around.add_all();
+  if (weights != nullptr && weigh_alike(brick, component)) weights = nullptr;
+  if (weights != nullptr) {
+    *weights = {};
+    around.weights = weights;
+  } else if (std::ranges::all_of(brick.neighbour, is_full)) {
+    return around.add_all();
+  }
   for (int n = 0; n < neighbourhood; ++n) {
     const Slot from = brick.neighbour[static_cast<std::size_t>(n)];
     if (from == no_slot) continue;
@@ -166,11 +308,19 @@ void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around) co
       for (int j = lowest(d.y); j <= highest(d.y); ++j) {
         const auto row = static_cast<unsigned>(there >> brick_cells * (j + brick_cells * k)) & 15u;
         const unsigned within = d.x < 0 ? row >> 3 : d.x > 0 ? (row & 1u) << 5 : row << 1;
-        around.add_row(j + brick_cells * d.y, k + brick_cells * d.z, within);
+        const int at_j = j + brick_cells * d.y, at_k = k + brick_cells * d.z;
+        around.add_row(at_j, at_k, within);
+        if (weights == nullptr) continue;
+        double* const to = weights->row[CellsAround::index(at_j, at_k)];
+        for (int i = lowest(d.x); i <= highest(d.x); ++i) {
+          const int number = i + brick_cells * (j + brick_cells * k);
+          to[i + brick_cells * d.x + 1] = weight_of(from, component, static_cast<std::size_t>(number));
+        }
       }
     }
   }
-  add_mirror_images(grid.geometry(), brick.coord, around);
+  add_mirror_images(grid.geometry(), brick.coord, around, weights);
+  if (weights != nullptr && all_alike(*weights)) around.weights = nullptr;
 }
 
 std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo, std::vector<int> without) {

@@ -1,9 +1,11 @@
 // The cells that hold particles at the beginning of a step: for every brick, its own and one layer around it
 // (core/grid/cells_around.hpp), stored in the grid; where components have velocity fields of their own
 // (contact), also those of each field. A brick's 64 cells are the bits of a word; other ranks get them as a
-// nodal field, in the record of each cell's lowest node.
+// nodal field, in the record of each cell's lowest node. In scenes of several materials cells are weighted by
+// density (core/shape/ddmp.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -20,11 +22,18 @@ namespace mpm::core {
 std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = all_components,
                          std::span<const int> without = {});
 
+/// Weights of a brick's cells in means over cells, by the number of the cell's bit.
+using CellWeights = std::array<double, brick_cells * brick_cells * brick_cells>;
+/// The largest of its particles' densities, counted up to the density of reference rho_0 and fourfold: the
+/// least of rho_0 and 4 m/V. Solids thus weigh rho_0, and gases less once they have expanded that much. 0
+/// without particles. Particles as in find_cells().
+CellWeights find_cell_weights(const Model& model, Slot s, std::int32_t component = all_components,
+                              std::span<const int> without = {});
+
 class CellsInUse {
  public:
   /// `without`: bodies that use no cells.
-  CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without = {})
-      : model_(model), halo_(halo), without_(std::move(without)) {}
+  CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without = {});
 
   /// Finds the cells of the bricks; when it returns, the exchange is in progress. Collective.
   void find();
@@ -34,16 +43,27 @@ class CellsInUse {
  private:
   using Cells = std::uint64_t;
   void find_own(Slot s);
+  void find_field(Slot s, int field, std::int32_t component);
+  void take_weights(Slot s, int field, const CellWeights& found);
   void write_to_nodes(Slot s);
   void read_from_nodes(Slot s);
   Cells& cells(Slot s, int field) { return cells_[model_.grid->field_index(s, field)]; }
+  CellWeights& weights(Slot s, int field) { return weights_[model_.grid->field_index(s, field)]; }
+  template <class F>
+  void for_fields_of(Slot s, std::int32_t component, F f) const;
   Cells cells_of(Slot s, std::int32_t component) const;
-  void combine(Slot s, std::int32_t component, CellsAround& around) const;
+  double weight_of(Slot s, std::int32_t component, std::size_t cell) const;
+  bool weigh_alike(const Brick& brick, std::int32_t component) const;
+  void combine(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* weights) const;
 
   Model& model_;
   NodeHalo& halo_;
   const std::vector<int> without_;
-  std::vector<Cells> cells_;  ///< by BrickGrid::field_index()
+  const bool weighs_;                 ///< cells, in a scene of several materials
+  std::vector<Cells> cells_;          ///< by BrickGrid::field_index()
+  std::vector<CellWeights> weights_;  ///< alike, where it does
+  static constexpr double several = -1;
+  std::vector<double> common_weight_;  ///< of all cells in use of a field; 0: none; or several
 };
 
 /// Null for shape functions that do not depend on which cells are in use.

@@ -9,10 +9,12 @@ namespace mpm::tests {
 
 void ReferenceStepper::find_cells_in_use() {
   const auto& cells = case_.cells;
-  geometry_.in_use.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]), false);
+  geometry_.weight.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]), 0);
   for (const auto& particle : case_.particles) {
     const std::array<int, 3> c = cell_at(geometry_, particle.x);
-    geometry_.in_use[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))] = true;
+    double& weight = geometry_.weight[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))];
+    const double density = std::min(case_.material.density, 4 * particle.m / particle.V);
+    weight = case_.weigh_cells ? std::max(weight, density) : 1;
   }
   average_gradients(geometry_);
 }

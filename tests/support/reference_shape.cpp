@@ -217,16 +217,16 @@ WideSupport corner_support(const ReferenceGrid& grid, const Vector& x) {
   return result;
 }
 
-/// Whether a cell counts for ddmp: beyond a wall, as its mirror image does.
-bool in_use(const ReferenceGrid& grid, std::array<int, 3> cell) {
-  if (grid.in_use.empty()) return true;
+/// Of a cell in the means of ddmp: beyond a wall, that of its mirror image.
+double weight_of(const ReferenceGrid& grid, std::array<int, 3> cell) {
+  if (grid.weight.empty()) return 1;
   for (std::size_t a = 0; a < 3; ++a) {
     const int last = grid.cells[a] - 1;
     if (cell[a] < 0 && grid.boundary[2 * a] != 0) cell[a] = -1 - cell[a];
     if (cell[a] > last && grid.boundary[2 * a + 1] != 0) cell[a] = 2 * last + 1 - cell[a];
-    if (cell[a] < 0 || cell[a] > last) return false;
+    if (cell[a] < 0 || cell[a] > last) return 0;
   }
-  return grid.in_use[static_cast<std::size_t>(cell[0] + grid.cells[0] * (cell[1] + grid.cells[1] * cell[2]))];
+  return grid.weight[static_cast<std::size_t>(cell[0] + grid.cells[0] * (cell[1] + grid.cells[1] * cell[2]))];
 }
 
 /// Trilinear function of node `i`, or its gradient, at x in `cell`.
@@ -240,7 +240,7 @@ double trilinear(const ReferenceGrid& grid, const std::array<int, 3>& i, const V
   return product;
 }
 
-/// Mean of grad S_i over the cells in use around node j, weighted with S_j: products over the axes of the
+/// Mean of grad S_i over the cells around node j, with their weights and S_j: products over the axes of the
 /// integrals over a cell of hat_j hat_i (h/3 or h/6) and hat_j hat_i' (+-1/2).
 Vector averaged_gradient(const ReferenceGrid& grid, const std::array<int, 3>& i,
                          const std::array<int, 3>& j) {
@@ -248,13 +248,13 @@ Vector averaged_gradient(const ReferenceGrid& grid, const std::array<int, 3>& i,
   double weight = 0;
   for (int c = 0; c < 8; ++c) {
     const std::array<int, 3> cell = {j[0] - (c & 1), j[1] - (c >> 1 & 1), j[2] - (c >> 2)};
-    if (!in_use(grid, cell)) continue;
-    weight += grid.cell[0] * grid.cell[1] * grid.cell[2] / 8;
+    const double of_cell = weight_of(grid, cell);
+    weight += of_cell * grid.cell[0] * grid.cell[1] * grid.cell[2] / 8;
     bool corner = true;
     for (std::size_t a = 0; a < 3; ++a) corner = corner && (i[a] == cell[a] || i[a] == cell[a] + 1);
     if (!corner) continue;
     for (std::size_t b = 0; b < 3; ++b) {
-      double integral = 1;
+      double integral = of_cell;
       for (std::size_t a = 0; a < 3; ++a)
         integral *= a == b ? (i[a] == cell[a] ? -0.5 : 0.5) : grid.cell[a] / (i[a] == j[a] ? 3 : 6);
       sum[b] += integral;

@@ -81,9 +81,9 @@ struct ReferenceGrid {
   std::array<int, 6> boundary{};  ///< as ReferenceCase's
   Vector half_size{};             ///< ugimp, length
   DomainCorners corner{};         ///< cpdi and cpdi2, from the particle; at most a cell from it on each axis
-  /// ddmp: the cells, i + cells[0] (j + cells[1] k), that hold particles; none beyond free faces. Empty: all
-  /// are in use, those beyond the faces, too.
-  std::vector<bool> in_use{};
+  /// ddmp: weights of the cells, i + cells[0] (j + cells[1] k), in means; 0 where they hold no particles, and
+  /// beyond free faces. Empty: all weigh 1, those beyond the faces, too.
+  std::vector<double> weight{};
   /// ddmp: of every node j, <grad S_i>_j of the nodes i around it; found when needed where this is empty.
   std::vector<std::array<Vector, 27>> averaged{};
 };

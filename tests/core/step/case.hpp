@@ -281,6 +281,7 @@ struct SmallRun {
       core::Body& body = model.bodies.emplace_back();
       body.name = "body";
       body.component = b;
+      body.material = c.weigh_cells ? b : 0;  // cells weigh where there are two
       body.model = model.materials[0].get();
       body.pool = std::make_shared<core::BlockPool>(core::ColumnLayout(columns));
     }

@@ -1,6 +1,9 @@
 // Which cells are in use, against a count over all particles; and what DDMP makes of it at a symmetry face.
 #include "core/step/cells_in_use.hpp"
 
+#include <algorithm>
+#include <limits>
+#include <map>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -64,12 +67,53 @@ TEST_CASE("A brick knows the cells in use in it and around it, and their images 
         wrong += has != in_use.contains(cell) ? 1 : 0;
         beyond += mirrored && has ? 1 : 0;
       }
-      CHECK(around.beside(2, 2, 2) == around.has(1, 1, 1) + around.has(2, 1, 1) + around.has(1, 2, 1) +
-                                          around.has(2, 2, 1) + around.has(1, 1, 2) + around.has(2, 1, 2) +
-                                          around.has(1, 2, 2) + around.has(2, 2, 2));
+      CHECK(around.weight_beside(2, 2, 2) ==
+            around.has(1, 1, 1) + around.has(2, 1, 1) + around.has(1, 2, 1) + around.has(2, 2, 1) +
+                around.has(1, 1, 2) + around.has(2, 1, 2) + around.has(1, 2, 2) + around.has(2, 2, 2));
     }
     CHECK(wrong == 0);
     CHECK((beyond > 0) == (boundary != 0 && boundary != 3));
+  }
+}
+
+TEST_CASE(
+    "Cells of two materials weigh as much as their densest particles, those beyond walls as their images") {
+  for (const int boundary : {0, 2}) {
+    CAPTURE(boundary);
+    ReferenceCase c = in_a_corner(boundary);
+    c.weigh_cells = true;
+    const std::size_t half = c.particles.size() / 2;
+    for (std::size_t n = half; n < c.particles.size(); ++n)
+      c.particles[n].m *= n % 3 == 0 ? 0.3 : 0.01 * static_cast<double>(n % 7);
+    SmallRun run(c, half);
+    const GridGeometry& g = run.model.grid->geometry();
+    std::map<Cell, double> weight;
+    for (const ReferenceParticle& p : c.particles) {
+      double& w = weight[{g.cell_index(p.x[0], 0), g.cell_index(p.x[1], 1), g.cell_index(p.x[2], 2)}];
+      w = std::max({w, std::min(c.material.density, 4 * p.m / p.V), std::numeric_limits<double>::min()});
+    }
+    const auto cells = mpm::core::make_cells_in_use(run.model, run.solo.halo);
+    cells->find();
+    cells->finish_exchange();
+    int wrong = 0, light = 0;
+    for (Slot s = 0; s < run.model.grid->owned(); ++s) {
+      const CellsAround& around = *run.model.grid->cells_in_use(s);
+      const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
+      for (int n = 0; n < 216; ++n) {
+        const int at[3] = {n % 6 - 1, n / 6 % 6 - 1, n / 36 - 1};
+        Cell cell{4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]};
+        for (std::size_t a = 0; a < 3 && boundary != 0; ++a) {
+          if (cell[a] == -1) cell[a] = 0;
+          if (cell[a] == g.cells[a]) cell[a] = g.cells[a] - 1;
+        }
+        const auto found = weight.find(cell);
+        const double expected = found == weight.end() ? 0 : around.weights == nullptr ? 1 : found->second;
+        wrong += around.weight(at[0], at[1], at[2]) != expected ? 1 : 0;
+        light += expected > 0 && expected < 0.5 * c.material.density ? 1 : 0;
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(light > 0);
   }
 }
 

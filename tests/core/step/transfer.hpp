@@ -155,6 +155,7 @@ struct TransferCase {
   core::BlockPool pool{core::ColumnLayout(columns())};
   core::ParticleTile tile;
   core::CellsAround cells;
+  core::CellWeightsAround weights;
   std::vector<std::vector<double>> particles;  ///< their columns, in the order of ColumnSet::mechanics()
 
   TransferCase(core::BrickCoord b, int count, unsigned seed) : brick(b) {
@@ -187,6 +188,7 @@ struct TransferCase {
       append(pool, tile, p.data());
     }
     use_cells(count, random);
+    if (random() % 2 == 0) weigh_cells(random);
   }
 
   core::BrickFrame frame() const {
@@ -300,6 +302,19 @@ struct TransferCase {
       }
     }
   }
+  /// By weights of any scale that differ up to a hundredfold.
+  template <class Random>
+  void weigh_cells(Random& random) {
+    std::uniform_real_distribution<double> exponent(-2, 0);
+    for (auto& row : weights.row)
+      for (double& weight : row) weight = 1e-9 * std::pow(10, exponent(random));
+    for (int n = 0; n < core::CellsAround::side * core::CellsAround::side; ++n)
+      for (int i = 0; i < core::CellWeightsAround::row_doubles; ++i)
+        if (i >= core::CellsAround::side ||
+            !cells.has(i - 1, n % core::CellsAround::side - 1, n / core::CellsAround::side - 1))
+          weights.row[n][i] = 0;
+    cells.weights = &weights;
+  }
   template <class F>
   void for_each_node_of_cells(const std::vector<double>& p, F f) const {
     constexpr int n = core::CellsAround::side;
@@ -309,7 +324,7 @@ struct TransferCase {
       grid.origin[static_cast<std::size_t>(a)] = geometry.origin[a] + geometry.cell[a] * (first_node(a) - 1);
     }
     for (int c = 0; c < n * n * n; ++c)
-      grid.in_use.push_back(cells.has(c % n - 1, c / n % n - 1, c / (n * n) - 1));
+      grid.weight.push_back(cells.weight(c % n - 1, c / n % n - 1, c / (n * n) - 1));
     const WideSupport support = wide_support(grid, {p[0], p[1], p[2]});
     for (std::size_t i = 0; i < support.count; ++i) {
       const WideSupport::Entry& entry = support.entry[i];
