@@ -69,7 +69,8 @@ def measure(name, method, steps=STEPS, factor=FACTOR):
         if done.code == 0:
             drift = np.array(_mpm.table(folder / "case.sta")["relative_drift"])[1:]  # without the start
             tenth = len(drift) // 10
-            row["drift"] = float(drift[-tenth:].mean() - drift[:tenth].mean())
+            if tenth > 0:  # else all particles have left the grid
+                row["drift"] = float(drift[-tenth:].mean() - drift[:tenth].mean())
         return row
 
 
@@ -89,7 +90,9 @@ def table(rows):
     def of(name, key, scale):
         def value(method):
             row = method[1].get(name)
-            return None if row is None else "stops" if row["code"] != 0 else scale * row[key]
+            if row is None:
+                return None
+            return "stops" if row["code"] != 0 else "leaves" if row["drift"] == "" else scale * row[key]
         return value
 
     for name in SCENES:

@@ -128,6 +128,7 @@ std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene
   note_linear_functions(root, scene, notes);
   note_soft_drivers(scene, notes);
   note_free_axes(scene, notes);
+  note_scheme(root, scene, notes);
   note_no_bodies(scene, notes);
   std::ranges::stable_sort(notes, {}, &core::Diagnostic::line);
   return notes;

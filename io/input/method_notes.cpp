@@ -56,7 +56,7 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
   double cell = std::numeric_limits<double>::infinity();
   for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
   const double cells = VelocityRange(scene).largest_difference() * scene.solution.end_time / cell;
-  constexpr double notable = 2;
+  constexpr double notable = 1;
   if (!(cells >= notable) && scene.detonations.empty()) return;
   const std::string who =
       scene.detonations.empty()
@@ -72,6 +72,21 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
                    "particles cross cells, and finer cells do not help: shape=\"SGMP\" avoids this at "
                    "about the same cost (docs/choosing.md)",
                    who)});
+}
+
+void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const core::SolutionInput& solution = scene.solution;
+  const std::optional<Node> node = root.child("Solution");
+  if (!node || solution.integration != core::Integration::explicit_dynamics ||
+      solution.scheme != core::Scheme::usl || solution.transfer != core::Transfer::aflip)
+    return;
+  notes.push_back({scene.provenance.path,
+                   node->line(),
+                   "Solution",
+                   {},
+                   {},
+                   "with algorithm USL and transfer AFLIP the energy grows at steps of any length: choose "
+                   "MUSL, USAVG or USF (docs/stability.md)"});
 }
 
 void note_soft_drivers(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {

@@ -9,9 +9,12 @@
 
 namespace mpm::io {
 
-/// Explicit scenes in which bodies strike each other or a wall, or a detonation runs, over several cells,
+/// Explicit scenes in which bodies move towards each other or a wall by a cell or more, or a detonation runs,
 /// where the input does not choose the shape functions.
 void note_linear_functions(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
+/// USL with a transfer that has no stable step with it.
+void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
 /// Deformable bodies of prescribed velocity beside other bodies, in explicit steps.
 void note_soft_drivers(const core::Scene& scene, std::vector<core::Diagnostic>& notes);

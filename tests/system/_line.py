@@ -11,7 +11,7 @@ import numpy as np
 # Share of a full node's mass below which USL's strain leaves out part of its increment: usl_mass_floor of
 # core/step/passes_with.hpp. A full node has the mass of a cell, on the wall half of it.
 USL_MASS_FLOOR = 0.2
-# wave_limit of core/step/speeds.hpp for linear functions.
+# wave_limit of core/step/wave_limit.hpp for linear functions.
 WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.24, "USAVG": 0.85}
 
 

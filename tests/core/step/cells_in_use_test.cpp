@@ -19,6 +19,15 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
+/// The cell whose image a cell beyond a wall is; itself elsewhere, and beyond free faces (boundary 0).
+Cell image(Cell cell, const GridGeometry& g, int boundary) {
+  for (std::size_t a = 0; a < 3 && boundary != 0; ++a) {
+    if (cell[a] == -1) cell[a] = 0;
+    if (cell[a] == g.cells[a]) cell[a] = g.cells[a] - 1;
+  }
+  return cell;
+}
+
 /// The block of the oracle's tests in the corner of the lower y and the upper x and z, some particles on the
 /// upper faces of the grid.
 ReferenceCase in_a_corner(int boundary) {
@@ -55,17 +64,11 @@ TEST_CASE("A brick knows the cells in use in it and around it, and their images 
       const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
       for (int n = 0; n < 216; ++n) {
         const int at[3] = {n % 6 - 1, n / 6 % 6 - 1, n / 36 - 1};
-        Cell cell{4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]};
-        bool mirrored = false;
-        for (std::size_t a = 0; a < 3 && boundary != 0 && boundary != 3; ++a) {
-          const std::int64_t before = cell[a];
-          if (cell[a] == -1) cell[a] = 0;
-          if (cell[a] == g.cells[a]) cell[a] = g.cells[a] - 1;
-          mirrored = mirrored || cell[a] != before;
-        }
+        const Cell cell{4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]};
+        const Cell inside = boundary == 3 ? cell : image(cell, g, boundary);
         const bool has = around.has(at[0], at[1], at[2]);
-        wrong += has != in_use.contains(cell) ? 1 : 0;
-        beyond += mirrored && has ? 1 : 0;
+        wrong += has != in_use.contains(inside) ? 1 : 0;
+        beyond += inside != cell && has ? 1 : 0;
       }
       CHECK(around.weight_beside(2, 2, 2) ==
             around.has(1, 1, 1) + around.has(2, 1, 1) + around.has(1, 2, 1) + around.has(2, 2, 1) +
@@ -101,12 +104,8 @@ TEST_CASE(
       const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
       for (int n = 0; n < 216; ++n) {
         const int at[3] = {n % 6 - 1, n / 6 % 6 - 1, n / 36 - 1};
-        Cell cell{4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]};
-        for (std::size_t a = 0; a < 3 && boundary != 0; ++a) {
-          if (cell[a] == -1) cell[a] = 0;
-          if (cell[a] == g.cells[a]) cell[a] = g.cells[a] - 1;
-        }
-        const auto found = weight.find(cell);
+        const auto found =
+            weight.find(image({4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]}, g, boundary));
         const double expected = found == weight.end() ? 0 : around.weights == nullptr ? 1 : found->second;
         wrong += around.weight(at[0], at[1], at[2]) != expected ? 1 : 0;
         light += expected > 0 && expected < 0.5 * c.material.density ? 1 : 0;

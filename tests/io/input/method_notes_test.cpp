@@ -26,7 +26,7 @@ TEST_CASE("linear functions by default, where bodies move over several cells") {
   CHECK(notes_of(unchosen) == Notes{linear("bodies approach each other or a wall by up to 20 cells")});
   CHECK(notes_of(bar).empty());
   CHECK(notes_of(replaced(bar, "linear", "SGMP")).empty());
-  CHECK(notes_of(replaced(unchosen, "-190", "-18")).empty());  // 1.9 cells
+  CHECK(notes_of(replaced(unchosen, "-190", "-9")).empty());  // 0.95 cells
   const std::string alone =
       replaced(replaced(replaced(unchosen, "\"0\" boundary=\"2\"", "\"0\" boundary=\"0\""),
                         "\"0\" boundary=\"2\"", "\"0\" boundary=\"0\""),
@@ -38,6 +38,16 @@ TEST_CASE("linear functions by default, where bodies move over several cells") {
   const Notes notes = notes_of(lit);
   CHECK(std::count(notes.begin(), notes.end(), linear("explosives move what is around them across cells")) ==
         1);
+}
+
+TEST_CASE("USL with a transfer that has no stable step with it") {
+  const std::string usl = replaced(replaced(bar, "linear", "uGIMP"), "<Solution>",
+                                   "<Solution algorithm=\"USL\" transfer=\"AFLIP\">");
+  CHECK(notes_of(usl) ==
+        Notes{"line 25: <Solution>: with algorithm USL and transfer AFLIP the energy grows at "
+              "steps of any length: choose MUSL, USAVG or USF (docs/stability.md)"});
+  CHECK(notes_of(replaced(usl, "AFLIP", "APIC")).empty());
+  CHECK(notes_of(replaced(usl, "USL", "USAVG")).empty());
 }
 
 TEST_CASE("a deformable body of prescribed velocity beside another one") {
