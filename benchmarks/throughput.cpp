@@ -146,9 +146,10 @@ Json measure(const BarInput& input, const Options& o) {
 Json measure_reference(const BarInput& input) {
   core::flush_denormals_to_zero();
   tests::ReferenceCase setup = tests::taylor_bar(bar_spacing(input.particles));
-  setup.scheme = input.scheme == "USF"   ? tests::ReferenceScheme::usf
-                 : input.scheme == "USL" ? tests::ReferenceScheme::usl
-                                         : tests::ReferenceScheme::musl;
+  setup.scheme = input.scheme == "USF"     ? tests::ReferenceScheme::usf
+                 : input.scheme == "USL"   ? tests::ReferenceScheme::usl
+                 : input.scheme == "USAVG" ? tests::ReferenceScheme::usavg
+                                           : tests::ReferenceScheme::musl;
   setup.dt_factor = 0.4;
   tests::ReferenceStepper stepper(std::move(setup));
   stepper.step();  // the first one touches the memory

@@ -120,7 +120,7 @@ struct BarRun {
   double node_bytes_per_brick() const {
     int doubles = core::record_doubles(core::NodeArray::first) +
                   core::record_doubles(core::NodeArray::second) +
-                  (scene->solution.scheme == core::Scheme::musl ? core::motion_width : 0);
+                  (core::maps_back(scene->solution.scheme) ? core::motion_width : 0);
     if (model.grid->arrays().has(core::NodeArray::third))
       doubles += core::record_doubles(core::NodeArray::third) + core::node_doubles;
     return static_cast<double>(doubles) * sizeof(double) * model.grid->shape().nodes();

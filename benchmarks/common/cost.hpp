@@ -151,6 +151,20 @@ inline std::vector<PhaseCost> phase_costs(core::Scheme scheme, const Filling& fi
       add("velocities and motion", last, fill.first + fill.second, 0, 1.5 * node_operations);
       break;
     }
+    case Scheme::usavg: {
+      add("particles to grid", to_grid(true, true, false), 0, fill.second, 0);
+      Pass forces = stress(own_columns);
+      forces += {0, 0, to_grid(false, false, true).operations};
+      add("stress, second half, and forces to grid", forces, fill.second, fill.first, 0.5 * node_operations);
+      Pass back = kick();
+      back += {mass, 0, to_grid(true, false, false).operations};
+      add("velocities, and back to grid", back, fill.first + fill.second, fill.second + fill.motion,
+          1.5 * node_operations);
+      Pass last = stress(own_columns);
+      last += drift();
+      add("stress, first half, and motion", last, fill.motion + fill.second, 0, 0.5 * node_operations);
+      break;
+    }
     case Scheme::usl: {
       add("particles to grid", to_grid(true, true, true), 0, fill.first, 0);
       Pass all = stress(own_columns);

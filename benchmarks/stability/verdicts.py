@@ -150,6 +150,8 @@ SOFT = elastic("soft", 1.0, 1000.0)
 SCENES = {
     "stiffness": collision("stiffness 1e6 : 1, met in a cell", elastic("first", 1.0, 1e7), elastic("second", 1.0, 10.0), 0.3, 10.0),
     "density": collision("density 1e4 : 1, met in a cell", elastic("first", 1e4, 1e6), elastic("second", 1.0, 1e3), 1.0, 10.0),
+    "both": collision("density 100 : 1 and stiffness 1000 : 1, met in a cell", elastic("first", 100.0, 1e6), elastic("second", 1.0, 1e3),
+                      0.6, 12.0),
     "poisson": wave("Poisson's ratio 0.4999", elastic("soft", 1.0, 1000.0, 0.4999, "NeoHookean"), 4.0),
     "lone": lone_particle(),
     "impact": impact(),
@@ -177,7 +179,7 @@ def speed(folder):
     import h5py
     with h5py.File(folder / "case.h5part") as file:
         last = _mpm.pictures(file)[-1]
-        return float(np.sqrt(sum(last[f"velocity_{a}"][:].astype(float) ** 2 for a in range(3))).max())
+        return float(np.sqrt(sum(last[f"velocity_{a}"][:].astype(float) ** 2 for a in range(3))).max(initial=0.0))
 
 
 def judge(name, shape, scheme, averaging, folder):

@@ -5,9 +5,10 @@
 // G_ji is the mean gradient of S_i at node j. Here it is a mean over the cells around j that are in use,
 //   G_ji = sum_c w_c int_c S_j grad S_i dV / (sum_c w_c V/8),   V the volume of a cell,
 // so that no force reaches a node without mass at a free surface, and linear fields stay exact there. The
-// weight w_c is 1 or, in scenes of several materials, the density in the cell (core/step/cells_in_use.hpp).
-// Else the stresses of a heavy body would act, through nodes at its surface, on nodes that have their mass of
-// light particles alone, whose accelerations would take steps shorter by the root of the ratio of densities.
+// weight w_c is 1 or, beside material more than ten times as dense, follows the density in the cell
+// (core/step/cells_in_use.hpp). Else the stresses of a heavy body would act, through nodes at its surface, on
+// nodes that have their mass of light particles alone, whose accelerations would take steps shorter by the
+// root of the ratio of densities.
 // Particles to grid is the adjoint: f_i = -sum_p V_p alpha sigma_p grad S_i - sum_j G_ji T_j, with T_j =
 // sum_p (1 - alpha) S_j V_p sigma_p.
 //

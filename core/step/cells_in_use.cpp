@@ -101,7 +101,13 @@ std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component, std
   return found.cells();
 }
 
-CellWeights find_cell_weights(const Model& model, Slot s, std::int32_t component,
+double largest_cell_weight(const Model& model) {
+  double densest = 0;
+  for (const Body& body : model.bodies) densest = std::max(densest, body.model->reference_density());
+  return densest / 10;
+}
+
+CellWeights find_cell_weights(const Model& model, Slot s, double largest, std::int32_t component,
                               std::span<const int> without) {
   using Block = Lanes<block_lanes>;
   constexpr double least = std::numeric_limits<double>::min();
@@ -111,7 +117,7 @@ CellWeights find_cell_weights(const Model& model, Slot s, std::int32_t component
   for_each_tile(brick, component, without, [&](const ParticleTile& tile, std::size_t c) {
     const Body& body = model.bodies[static_cast<std::size_t>(tile.body)];
     const ColumnLayout& layout = body.pool->layout();
-    const double reference = std::max(body.model->reference_density(), least);
+    const double most = std::max(std::min(body.model->reference_density(), largest), least);
     const BlockPrefetch prefetch(model, s, c);
     CellsOfParticles found;  // of blocks without thin particles
     const auto add = [&](int cell, double weight) {
@@ -125,19 +131,18 @@ CellWeights find_cell_weights(const Model& model, Slot s, std::int32_t component
       const double *x = block + layout.offset(Column::position_x),
                    *mass = block + layout.offset(Column::mass),
                    *volume = block + layout.offset(Column::volume);
-      if (all(Block(4.0) * load<Block>(mass) >= Block(reference) * load<Block>(volume))) {
+      if (all(Block(4.0) * load<Block>(mass) >= Block(most) * load<Block>(volume))) {
         found.add(frame, layout, block, (1u << used) - 1);
         continue;
       }
       const auto place = locate_in_sites<Block, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
       for (int l = 0; l < used; ++l) {
-        const bool dense =
-            4 * mass[l] >= reference * volume[l];  // as above: blocks differ by their other lanes
-        add(place.node[l], dense ? reference : std::max(least, 4 * mass[l] / volume[l]));
+        const bool dense = 4 * mass[l] >= most * volume[l];  // as above: blocks differ by their other lanes
+        add(place.node[l], dense ? most : std::max(least, 4 * mass[l] / volume[l]));
       }
     }
     for (std::uint64_t cells = found.cells(); cells != 0; cells &= cells - 1)
-      add(std::countr_zero(cells), reference);
+      add(std::countr_zero(cells), most);
   });
   return weights;
 }
@@ -147,7 +152,8 @@ CellsInUse::CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without)
       halo_(halo),
       without_(std::move(without)),
       weighs_(std::ranges::any_of(
-          model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })) {}
+          model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })),
+      largest_weight_(largest_cell_weight(model)) {}
 
 void CellsInUse::find_own(Slot s) {
   BrickGrid& grid = *model_.grid;
@@ -170,7 +176,7 @@ void CellsInUse::find_field(Slot s, int field, std::int32_t component) {
     cells(s, field) = find_cells(model_, s, component, without_);
     return;
   }
-  take_weights(s, field, find_cell_weights(model_, s, component, without_));
+  take_weights(s, field, find_cell_weights(model_, s, largest_weight_, component, without_));
 }
 
 void CellsInUse::take_weights(Slot s, int field, const CellWeights& found) {

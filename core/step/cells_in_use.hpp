@@ -24,11 +24,13 @@ std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = al
 
 /// Weights of a brick's cells in means over cells, by the number of the cell's bit.
 using CellWeights = std::array<double, brick_cells * brick_cells * brick_cells>;
-/// The largest of its particles' densities, counted up to the density of reference rho_0 and fourfold: the
-/// least of rho_0 and 4 m/V. Solids thus weigh rho_0, and gases less once they have expanded that much. 0
-/// without particles. Particles as in find_cells().
-CellWeights find_cell_weights(const Model& model, Slot s, std::int32_t component = all_components,
-                              std::span<const int> without = {});
+/// The largest density of its particles, each the least of its material's density of reference, 4 m/V and
+/// `largest`; 0 without particles. So materials whose densities differ up to tenfold weigh alike, solids
+/// always the same, and gases less once they have expanded much. Particles as in find_cells().
+CellWeights find_cell_weights(const Model& model, Slot s, double largest,
+                              std::int32_t component = all_components, std::span<const int> without = {});
+/// A tenth of the bodies' largest density of reference.
+double largest_cell_weight(const Model& model);
 
 class CellsInUse {
  public:
@@ -59,7 +61,8 @@ class CellsInUse {
   Model& model_;
   NodeHalo& halo_;
   const std::vector<int> without_;
-  const bool weighs_;                 ///< cells, in a scene of several materials
+  const bool weighs_;  ///< cells, in a scene of several materials
+  const double largest_weight_;
   std::vector<Cells> cells_;          ///< by BrickGrid::field_index()
   std::vector<CellWeights> weights_;  ///< alike, where it does
   static constexpr double several = -1;

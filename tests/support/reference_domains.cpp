@@ -13,7 +13,7 @@ void ReferenceStepper::find_cells_in_use() {
   for (const auto& particle : case_.particles) {
     const std::array<int, 3> c = cell_at(geometry_, particle.x);
     double& weight = geometry_.weight[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))];
-    const double density = std::min(case_.material.density, 4 * particle.m / particle.V);
+    const double density = std::min(case_.material.density / 10, 4 * particle.m / particle.V);
     weight = case_.weigh_cells ? std::max(weight, density) : 1;
   }
   average_gradients(geometry_);

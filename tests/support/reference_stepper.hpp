@@ -48,8 +48,8 @@ struct ReferenceCase {
   /// S_j. With MUSL particles then move with the velocity of the strain rate.
   bool consistent = false;
   double mass_blend = 0.2;
-  /// ddmp: means over cells weighted with the largest of a cell's densities, each the least of the material's
-  /// and four times the particle's.
+  /// ddmp: means over cells weighted with the largest of a cell's densities, each the least of a tenth of the
+  /// material's and four times the particle's.
   bool weigh_cells = false;
   /// The critical step, in units of a wave's crossing time of a cell.
   double wave_limit = 1;
