@@ -87,7 +87,7 @@ void note_contrast(const core::Scene& scene, std::vector<core::Diagnostic>& note
     if (light == nullptr || density(body) < density(*light)) light = &body;
     if (heavy == nullptr || density(body) > density(*heavy)) heavy = &body;
   });
-  constexpr double notable = 30;
+  constexpr double notable = 10;
   if (light == nullptr || !(density(*heavy) > notable * density(*light))) return;
   notes.push_back(
       {scene.provenance.path,
