@@ -97,7 +97,8 @@ void note_contrast(const core::Scene& scene, std::vector<core::Diagnostic>& note
        {},
        fmt::format("linear shape functions: body '{}' is {:.3g} times as dense as '{}'; where they meet, "
                    "its stresses drive nodes that have their mass of the light body, and energy may "
-                   "grow: shape=\"SGMP\" avoids this at about the same cost (docs/stability.md)",
+                   "grow: shape=\"SGMP\" avoids this at about the same cost, and so does Contact between "
+                   "components of their own (docs/stability.md)",
                    heavy->name, density(*heavy) / density(*light), light->name)});
 }
 
