@@ -14,7 +14,7 @@ namespace mpm::core {
 
 namespace {
 
-constexpr NodeFields field = mapped::cells_in_use;
+constexpr NodeFields node_fields = mapped::cells_in_use;
 
 constexpr std::uint64_t bit_of(int i, int j, int k) {
   return std::uint64_t{1} << (i + brick_cells * (j + brick_cells * k));
@@ -196,9 +196,9 @@ void CellsInUse::take_weights(Slot s, int field, const CellWeights& found) {
 
 void CellsInUse::write_to_nodes(Slot s) {
   BrickGrid& grid = *model_.grid;
-  constexpr int width = record_doubles(field.array);
+  constexpr int width = record_doubles(node_fields.array);
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
-    double* at = grid.contributions(field.array, s, f) + field.first;
+    double* at = grid.contributions(node_fields.array, s, f) + node_fields.first;
     for (int n = 0; n < grid.shape().nodes(); ++n) at[width * n] = 0;
     const Cells own = cells(s, f);
     for_each_cell_of(grid.shape(), [&](Cells bit, int node) {
@@ -210,9 +210,9 @@ void CellsInUse::write_to_nodes(Slot s) {
 
 void CellsInUse::read_from_nodes(Slot s) {
   const BrickGrid& grid = *model_.grid;
-  constexpr int width = record_doubles(field.array);
+  constexpr int width = record_doubles(node_fields.array);
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
-    const double* at = grid.contributions(field.array, s, f) + field.first;
+    const double* at = grid.contributions(node_fields.array, s, f) + node_fields.first;
     Cells found = 0;
     CellWeights weights;
     for_each_cell_of(grid.shape(), [&](Cells bit, int node) {
@@ -233,7 +233,7 @@ void CellsInUse::find() {
     find_own(s);
     write_to_nodes(s);
   });
-  halo_.begin(grid, field);
+  halo_.begin(grid, node_fields);
   for_each_by_threads(grid.boundary(), grid.owned(), 4, [&](int s) { find_own(s); });
 }
 
