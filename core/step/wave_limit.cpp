@@ -51,8 +51,8 @@ double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) {
     case ShapeFunction::ddmp: return by_scheme(1, 0.62, 0.42);
     case ShapeFunction::uniform_gimp: return by_scheme(1, 0.75, 0.55);
     case ShapeFunction::contiguous_particle_gimp: return by_scheme(1, 0.6, 0.55);
-    case ShapeFunction::cpdi:
-    case ShapeFunction::cpdi2: return by_scheme(1, 0.75, 0.7);
+    case ShapeFunction::cpdi: return by_scheme(1, 0.75, 0.7);
+    case ShapeFunction::cpdi2: return by_scheme(transfer == Transfer::fmpm ? 0.8 : 1, 0.75, 0.7);
     case ShapeFunction::quadratic_bspline: return by_scheme(1.2, 0.95, 0.7);
     case ShapeFunction::cubic_bspline: return by_scheme(1.25, 1.1, 0.95);
     default: return by_scheme(1, 0.5, 0.24);
