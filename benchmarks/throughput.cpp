@@ -347,7 +347,7 @@ Options parse(int argc, char** argv) {
   CLI::App app("Particle-steps per second of the copper Taylor bar, against what the machine allows.",
                "throughput");
   app.add_option("--sizes", o.sizes, "particles")->delimiter(',')->capture_default_str();
-  app.add_option("--schemes", o.schemes, "MUSL, USF, USL")->delimiter(',')->capture_default_str();
+  app.add_option("--schemes", o.schemes, "MUSL, USF, USL, USAVG")->delimiter(',')->capture_default_str();
   app.add_option("--threads", o.threads)->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--warm-up", o.warm_up, "steps before the first that counts")->capture_default_str();
   app.add_option("--repeats", o.repeats, "at least so many, of 20 steps")

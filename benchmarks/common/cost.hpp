@@ -116,6 +116,24 @@ inline Pass stress(double own_columns) {
           locating + gradient_from_nodes + law + critical_speed};
 }
 
+inline Pass stress_and_forces(double own_columns) {
+  Pass p = stress(own_columns);
+  p += {0, 0, to_grid(false, false, true).operations};
+  return p;
+}
+inline Pass stress_and_motion(double own_columns) {
+  Pass p = stress(own_columns);
+  p += drift();
+  return p;
+}
+
+/// The velocities, and their momentum back to the grid: mass joins the columns of the kick.
+inline Pass kick_and_map_back() {
+  Pass p = kick();
+  p += {mass, 0, to_grid(true, false, false).operations};
+  return p;
+}
+
 }  // namespace detail
 
 /// The phases that touch particles or nodes, in the order of the step. `own_columns`: beyond the mechanics.
@@ -131,21 +149,17 @@ inline std::vector<PhaseCost> phase_costs(core::Scheme scheme, const Filling& fi
   switch (scheme) {
     case Scheme::musl: {
       add("particles to grid", to_grid(true, true, true), 0, fill.first, 0);
-      // The first array is summed, and the nodes' motion kept, half a record each; mass joins the columns of
-      // the kick.
-      Pass back = kick();
-      back += {mass, 0, to_grid(true, false, false).operations};
-      add("velocities, and back to grid", back, fill.first, fill.second + fill.motion, node_operations);
-      Pass last = stress(own_columns);
-      last += drift();
-      add("stress and motion", last, fill.motion + fill.second, 0, 0.5 * node_operations);
+      // The first array is summed, and the nodes' motion kept, half a record each.
+      add("velocities, and back to grid", kick_and_map_back(), fill.first, fill.second + fill.motion,
+          node_operations);
+      add("stress and motion", stress_and_motion(own_columns), fill.motion + fill.second, 0,
+          0.5 * node_operations);
       break;
     }
     case Scheme::usf: {
       add("particles to grid", to_grid(true, true, false), 0, fill.second, 0);
-      Pass forces = stress(own_columns);
-      forces += {0, 0, to_grid(false, false, true).operations};
-      add("stress, and forces to grid", forces, fill.second, fill.first, 0.5 * node_operations);
+      add("stress, and forces to grid", stress_and_forces(own_columns), fill.second, fill.first,
+          0.5 * node_operations);
       Pass last = kick();
       last += drift();
       add("velocities and motion", last, fill.first + fill.second, 0, 1.5 * node_operations);
@@ -153,16 +167,12 @@ inline std::vector<PhaseCost> phase_costs(core::Scheme scheme, const Filling& fi
     }
     case Scheme::usavg: {
       add("particles to grid", to_grid(true, true, false), 0, fill.second, 0);
-      Pass forces = stress(own_columns);
-      forces += {0, 0, to_grid(false, false, true).operations};
-      add("stress, second half, and forces to grid", forces, fill.second, fill.first, 0.5 * node_operations);
-      Pass back = kick();
-      back += {mass, 0, to_grid(true, false, false).operations};
-      add("velocities, and back to grid", back, fill.first + fill.second, fill.second + fill.motion,
-          1.5 * node_operations);
-      Pass last = stress(own_columns);
-      last += drift();
-      add("stress, first half, and motion", last, fill.motion + fill.second, 0, 0.5 * node_operations);
+      add("stress, second half, and forces to grid", stress_and_forces(own_columns), fill.second, fill.first,
+          0.5 * node_operations);
+      add("velocities, and back to grid", kick_and_map_back(), fill.first + fill.second,
+          fill.second + fill.motion, 1.5 * node_operations);
+      add("stress, first half, and motion", stress_and_motion(own_columns), fill.motion + fill.second, 0,
+          0.5 * node_operations);
       break;
     }
     case Scheme::usl: {

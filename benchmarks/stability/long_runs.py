@@ -3,8 +3,9 @@
 
   long_runs.py                     every scene with every method; a quarter of an hour on two cores
   long_runs.py --scene NAME ...    these scenes; --shape, --scheme, --transfer choose methods alike
-  long_runs.py --docs              everything, docs/stability/long_runs.csv and the table of docs/stability.md; with a choice
-                                   of scenes or methods, these rows anew
+  long_runs.py --docs              as above, and docs/stability/long_runs.csv and the table of docs/stability.md, where rows that
+                                   were not measured stay
+  long_runs.py --tables            the table of docs/stability.md from that file, without a run
 
 A free block of 4 x 4 x 4 cells with 8 particles in each, askew in the grid, vibrates in its longest modes along the three
 axes for 100,000 times 0.9 h/c, c the speed of longitudinal waves: with a limit k of the step (docs/stability.md) in 100,000/k
@@ -14,8 +15,8 @@ steps. The scenes differ in the speed of its ends and in artificial viscosity:
   large    3 % of c, without viscosity: particles cross faces of cells, some in every period
   viscous  3 % of c, with the default viscosity, whose heat counts as internal energy
 
-*drift*: of the energy balance, from the mean of the first tenth of the rows of the status file to that of the last tenth. What a
-dissipative transfer loses is part of it. The program's defaults otherwise, with a factor of 0.9."""
+*drift*: of the energy balance, over the initial energy, from the mean of the first tenth of the rows of the status file to that of
+the last tenth: what is lost within the first tenth is no part of it. The program's defaults otherwise, with a factor of 0.9."""
 
 import argparse
 import concurrent.futures
@@ -101,14 +102,23 @@ def table(rows):
     return results.markdown(list(by_method.items()), columns)
 
 
-def merged(rows):
-    """Those of the table on file, with these in the place of the same scenes and methods."""
-    def key(row):
-        return tuple(row[name] for name in ("scene", "shape", "scheme", "transfer"))
+KEYS = ("scheme", "transfer", "shape", "scene")
 
-    measured = {key(row): row for row in rows}
-    kept = [measured.pop(key(row), row) for row in (results.read(TABLE)[1] if TABLE.exists() else [])]
-    return [*kept, *measured.values()]
+
+def on_file():
+    return results.read(TABLE)[1] if TABLE.exists() else []
+
+
+def merged(old, new):
+    """The rows on file with these in the place of the same ones, in the order of the program's lists and of the scenes."""
+    rows = {tuple(row[key] for key in KEYS): row for row in [*old, *new]}
+    lists = methods.schemes(), methods.transfers(), methods.shapes(), list(SCENES)
+    return [rows[key] for key in sorted(rows, key=lambda key: [names.index(word) for names, word in zip(lists, key)])]
+
+
+def tables():
+    """The block of the page that the file keeps."""
+    return {"long runs": table(on_file())}
 
 
 def main():
@@ -122,7 +132,10 @@ def main():
     parser.add_argument("--factor", type=float, default=FACTOR, help="of the critical step; the time stays the same")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--docs", action="store_true", help="write docs/stability/long_runs.csv and the table of docs/stability.md")
+    parser.add_argument("--tables", action="store_true", help="write the table of docs/stability.md from the file")
     options = parser.parse_args()
+    if options.tables:
+        return results.refresh(PAGE, tables())
     points = [(name, method) for method in wanted(options) for name in options.scene]
     rows, refused = [], {}
 
@@ -140,10 +153,8 @@ def main():
     if not rows:
         parser.error("the program refuses all of these; " + "; ".join(f"{method}: {refusal}" for method, refusal in refused.items()))
     if options.docs:
-        chosen = options.shape or options.scheme or options.transfer or len(options.scene) < len(SCENES)
-        rows = merged(rows) if chosen else rows
-        results.write(TABLE, rows)
-        results.refresh(PAGE, {"long runs": table(rows)})
+        results.write(TABLE, merged(on_file(), rows))
+        results.refresh(PAGE, tables())
 
 
 if __name__ == "__main__":

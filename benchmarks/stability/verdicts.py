@@ -17,6 +17,7 @@ where the scene says nothing else."""
 import argparse
 import dataclasses
 import functools
+import itertools
 import pathlib
 import sys
 import tempfile
@@ -175,7 +176,7 @@ def finite(folder):
 
 
 def speed(folder):
-    """The largest of a particle at the end."""
+    """The largest of a particle at the end; 0 where all have left the grid."""
     import h5py
     with h5py.File(folder / "case.h5part") as file:
         last = _mpm.pictures(file)[-1]
@@ -301,14 +302,11 @@ def words(row):
 
 def table(rows):
     """Scenes and schemes in rows, shapes in columns."""
-    by_method = {}
-    for row in rows:
-        if row["averaging"] == "none":
-            by_method.setdefault((list(SCENES).index(row["scene"]), methods.schemes().index(row["scheme"])), {})[row["shape"]] = row
-    about = [scene.about for scene in SCENES.values()]
-    columns = {"scene": (lambda m: about[m[0][0]], ""), "scheme": (lambda m: methods.schemes()[m[0][1]], ""),
-               **{f"`{shape}`": (lambda m, shape=shape: words(m[1].get(shape)), "s") for shape in methods.shapes()}}
-    return results.markdown(sorted(by_method.items(), key=lambda m: m[0]), columns)
+    measured = {(row["scene"], row["scheme"], row["shape"]): row for row in rows if row["averaging"] == "none"}
+    known = {key[:2] for key in measured}
+    columns = {"scene": (lambda m: SCENES[m[0]].about, ""), "scheme": (lambda m: m[1], ""),
+               **{f"`{shape}`": (lambda m, shape=shape: words(measured.get((*m, shape))), "s") for shape in methods.shapes()}}
+    return results.markdown([m for m in itertools.product(SCENES, methods.schemes()) if m in known], columns)
 
 
 def tables():

@@ -16,11 +16,11 @@ namespace {
 
 constexpr NodeFields node_fields = mapped::cells_in_use;
 
-constexpr std::uint64_t bit_of(int i, int j, int k) {
-  return std::uint64_t{1} << (i + brick_cells * (j + brick_cells * k));
+double largest_density(const std::vector<Body>& bodies) {
+  double largest = 0;
+  for (const Body& body : bodies) largest = std::max(largest, body.model->reference_density());
+  return largest;
 }
-
-std::size_t number_of(std::uint64_t bit) { return static_cast<std::size_t>(std::countr_zero(bit)); }
 
 /// But for the zeros.
 bool all_alike(const CellWeightsAround& weights) {
@@ -34,12 +34,13 @@ bool all_alike(const CellWeightsAround& weights) {
   return true;
 }
 
-/// f(bit, node of the brick's node block) for each cell.
+/// f(number of its bit, node of the brick's node block) for each cell.
 template <class F>
 void for_each_cell_of(const NodeBlockShape& shape, F f) {
   for (int k = 0; k < brick_cells; ++k) {
     for (int j = 0; j < brick_cells; ++j) {
-      for (int i = 0; i < brick_cells; ++i) f(bit_of(i, j, k), shape.index(i, j, k));
+      for (int i = 0; i < brick_cells; ++i)
+        f(static_cast<std::size_t>(i + brick_cells * (j + brick_cells * k)), shape.index(i, j, k));
     }
   }
 }
@@ -101,24 +102,28 @@ std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component, std
   return found.cells();
 }
 
-double largest_cell_weight(const Model& model) {
-  double densest = 0;
-  for (const Body& body : model.bodies) densest = std::max(densest, body.model->reference_density());
-  return densest / 10;
-}
+CellsInUse::CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without)
+    : model_(model),
+      halo_(halo),
+      without_(std::move(without)),
+      weighs_(std::ranges::any_of(
+          model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })),
+      largest_weight_(largest_density(model.bodies) / 10) {}
 
-CellWeights find_cell_weights(const Model& model, Slot s, double largest, std::int32_t component,
-                              std::span<const int> without) {
+/// The largest density of a cell's particles, each the least of its material's density of reference, 4 m/V
+/// and the largest weight. So materials whose densities differ up to tenfold weigh alike, solids always the
+/// same, and gases less once they have expanded much.
+CellsInUse::Weights CellsInUse::find_weights(Slot s, std::int32_t component) const {
   using Block = Lanes<block_lanes>;
   constexpr double least = std::numeric_limits<double>::min();
-  const Brick& brick = model.grid->brick(s);
-  const BrickFrame frame(model.grid->geometry(), brick.coord);
-  CellWeights weights{};
-  for_each_tile(brick, component, without, [&](const ParticleTile& tile, std::size_t c) {
-    const Body& body = model.bodies[static_cast<std::size_t>(tile.body)];
+  const Brick& brick = model_.grid->brick(s);
+  const BrickFrame frame(model_.grid->geometry(), brick.coord);
+  Weights weights{};
+  for_each_tile(brick, component, without_, [&](const ParticleTile& tile, std::size_t c) {
+    const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
     const ColumnLayout& layout = body.pool->layout();
-    const double most = std::max(std::min(body.model->reference_density(), largest), least);
-    const BlockPrefetch prefetch(model, s, c);
+    const double most = std::max(std::min(body.model->reference_density(), largest_weight_), least);
+    const BlockPrefetch prefetch(model_, s, c);
     CellsOfParticles found;  // of blocks without thin particles
     const auto add = [&](int cell, double weight) {
       double& at = weights[static_cast<std::size_t>(cell)];
@@ -147,20 +152,11 @@ CellWeights find_cell_weights(const Model& model, Slot s, double largest, std::i
   return weights;
 }
 
-CellsInUse::CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without)
-    : model_(model),
-      halo_(halo),
-      without_(std::move(without)),
-      weighs_(std::ranges::any_of(
-          model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })),
-      largest_weight_(largest_cell_weight(model)) {}
-
 void CellsInUse::find_own(Slot s) {
   BrickGrid& grid = *model_.grid;
   prefetch_coming_bricks(grid, s);
   if (!grid.has_fields_by_component()) {
-    std::optional<Cells> known;
-    if (without_.empty() && !weighs_) known = grid.own_cells(s);
+    const std::optional<Cells> known = without_.empty() && !weighs_ ? grid.own_cells(s) : std::nullopt;
     if (known)
       cells(s, 0) = *known;
     else
@@ -172,14 +168,13 @@ void CellsInUse::find_own(Slot s) {
 }
 
 void CellsInUse::find_field(Slot s, int field, std::int32_t component) {
-  if (!weighs_) {
+  if (weighs_)
+    take(s, field, find_weights(s, component));
+  else
     cells(s, field) = find_cells(model_, s, component, without_);
-    return;
-  }
-  take_weights(s, field, find_cell_weights(model_, s, largest_weight_, component, without_));
 }
 
-void CellsInUse::take_weights(Slot s, int field, const CellWeights& found) {
+void CellsInUse::take(Slot s, int field, const Weights& found) {
   Cells in_use = 0;
   double common = 0;
   for (std::size_t c = 0; c < found.size(); ++c) {
@@ -190,6 +185,7 @@ void CellsInUse::take_weights(Slot s, int field, const CellWeights& found) {
   }
   const std::size_t at = model_.grid->field_index(s, field);
   cells_[at] = in_use;
+  if (!weighs_) return;
   weights_[at] = found;
   common_weight_[at] = common;
 }
@@ -200,10 +196,9 @@ void CellsInUse::write_to_nodes(Slot s) {
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
     double* at = grid.contributions(node_fields.array, s, f) + node_fields.first;
     for (int n = 0; n < grid.shape().nodes(); ++n) at[width * n] = 0;
-    const Cells own = cells(s, f);
-    for_each_cell_of(grid.shape(), [&](Cells bit, int node) {
-      const double weight = weighs_ ? weights(s, f)[number_of(bit)] : 1;
-      at[width * node] = (own & bit) != 0 ? weight : 0;
+    const std::size_t index = grid.field_index(s, f);
+    for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) {
+      at[width * node] = weighs_ ? weights_[index][cell] : static_cast<double>(cells_[index] >> cell & 1);
     });
   }
 }
@@ -213,14 +208,9 @@ void CellsInUse::read_from_nodes(Slot s) {
   constexpr int width = record_doubles(node_fields.array);
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
     const double* at = grid.contributions(node_fields.array, s, f) + node_fields.first;
-    Cells found = 0;
-    CellWeights weights;
-    for_each_cell_of(grid.shape(), [&](Cells bit, int node) {
-      found |= at[width * node] != 0 ? bit : 0;
-      weights[number_of(bit)] = at[width * node];
-    });
-    cells(s, f) = found;
-    if (weighs_) take_weights(s, f, weights);
+    Weights found;
+    for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) { found[cell] = at[width * node]; });
+    take(s, f, found);
   }
 }
 

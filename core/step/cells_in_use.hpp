@@ -22,16 +22,6 @@ namespace mpm::core {
 std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = all_components,
                          std::span<const int> without = {});
 
-/// Weights of a brick's cells in means over cells, by the number of the cell's bit.
-using CellWeights = std::array<double, brick_cells * brick_cells * brick_cells>;
-/// The largest density of its particles, each the least of its material's density of reference, 4 m/V and
-/// `largest`; 0 without particles. So materials whose densities differ up to tenfold weigh alike, solids
-/// always the same, and gases less once they have expanded much. Particles as in find_cells().
-CellWeights find_cell_weights(const Model& model, Slot s, double largest,
-                              std::int32_t component = all_components, std::span<const int> without = {});
-/// A tenth of the bodies' largest density of reference.
-double largest_cell_weight(const Model& model);
-
 class CellsInUse {
  public:
   /// `without`: bodies that use no cells.
@@ -44,13 +34,15 @@ class CellsInUse {
 
  private:
   using Cells = std::uint64_t;
+  /// In means over cells, by the number of the cell's bit; 0: not in use.
+  using Weights = std::array<double, brick_cells * brick_cells * brick_cells>;
   void find_own(Slot s);
   void find_field(Slot s, int field, std::int32_t component);
-  void take_weights(Slot s, int field, const CellWeights& found);
+  Weights find_weights(Slot s, std::int32_t component) const;
+  void take(Slot s, int field, const Weights& found);
   void write_to_nodes(Slot s);
   void read_from_nodes(Slot s);
   Cells& cells(Slot s, int field) { return cells_[model_.grid->field_index(s, field)]; }
-  CellWeights& weights(Slot s, int field) { return weights_[model_.grid->field_index(s, field)]; }
   template <class F>
   void for_fields_of(Slot s, std::int32_t component, F f) const;
   Cells cells_of(Slot s, std::int32_t component) const;
@@ -61,10 +53,10 @@ class CellsInUse {
   Model& model_;
   NodeHalo& halo_;
   const std::vector<int> without_;
-  const bool weighs_;  ///< cells, in a scene of several materials
-  const double largest_weight_;
-  std::vector<Cells> cells_;          ///< by BrickGrid::field_index()
-  std::vector<CellWeights> weights_;  ///< alike, where it does
+  const bool weighs_;             ///< cells, in a scene of several materials
+  const double largest_weight_;   ///< a tenth of the bodies' largest density of reference
+  std::vector<Cells> cells_;      ///< by BrickGrid::field_index()
+  std::vector<Weights> weights_;  ///< alike, where it weighs them
   static constexpr double several = -1;
   std::vector<double> common_weight_;  ///< of all cells in use of a field; 0: none; or several
 };

@@ -58,6 +58,7 @@ double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) {
     default: return by_scheme(1, 0.5, 0.24);
   }
 }
+
 double wave_limit(const Scene& scene) {
   if (scene.solution.mass == MassMatrix::consistent) return consistent_wave_limit(scene.grid.shape);
   return wave_limit(scene.grid.shape, scene.solution.scheme, scene.solution.transfer);

@@ -32,7 +32,7 @@ namespace mpm::core {
 /// USAVG: 1.18; not linear with FMPM: fluid 0.87, stable at factor 1 by the weight of tension, below; with
 /// USAVG FMPM has MUSL's limits: 1.04 in the fluid with GIMP), affine transfers shorter ones, with USAVG as
 /// with MUSL; fluid, the smaller of APIC and TPIC | AFLIP:
-///   uGIMP, cpGIMP 0.73 | 0.67         0.64 | 0.67         0.23 | none
+///   uGIMP, cpGIMP 0.73 | 0.67         0.64 | 0.67         0.23 | none, 0.23
 ///   quadratic     0.87 | 0.62         0.91 | 0.62         0.42 | none
 ///   cubic         1.1  | 0.77         1.1  | 0.77         0.44 | none
 double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer);

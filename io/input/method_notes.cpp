@@ -106,7 +106,8 @@ void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::D
   const core::SolutionInput& solution = scene.solution;
   const std::optional<Node> node = root.child("Solution");
   if (!node || solution.integration != core::Integration::explicit_dynamics ||
-      solution.scheme != core::Scheme::usl || solution.transfer != core::Transfer::aflip)
+      solution.scheme != core::Scheme::usl || solution.transfer != core::Transfer::aflip ||
+      scene.grid.shape == core::ShapeFunction::contiguous_particle_gimp)
     return;
   notes.push_back({scene.provenance.path,
                    node->line(),

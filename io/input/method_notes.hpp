@@ -13,11 +13,10 @@ namespace mpm::io {
 /// where the input does not choose the shape functions.
 void note_linear_functions(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
-/// Linear functions in explicit steps where bodies in one velocity field differ more than thirtyfold in
-/// density.
+/// Linear functions in explicit steps where bodies in one velocity field differ more than tenfold in density.
 void note_contrast(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
-/// USL with a transfer that has no stable step with it.
+/// USL with AFLIP, which has no stable step with it but for cpGIMP.
 void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
 /// Deformable bodies of prescribed velocity beside other bodies, in explicit steps.

@@ -22,7 +22,7 @@ class Page(_mpm.Case):
         for blocks, remedy in ((limits.tables(results.read(limits.TABLE)[1]), "limits.py --tables"),
                                (verdicts.tables(), "verdicts.py --tables"),
                                (user_inputs.tables(results.read(user_inputs.TABLE)[1]), "user_inputs.py --tables"),
-                               ({"long runs": long_runs.table(results.read(long_runs.TABLE)[1])}, "long_runs.py --docs")):
+                               (long_runs.tables(), "long_runs.py --tables")):
             results.refresh(path, blocks)
             self.assertEqual(path.read_text(), page, f"run {remedy}")
 

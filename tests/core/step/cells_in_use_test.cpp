@@ -28,6 +28,18 @@ Cell image(Cell cell, const GridGeometry& g, int boundary) {
   return cell;
 }
 
+/// f(the cells around a brick, a cell in them, its place in the grid) for all of them.
+template <class F>
+void for_each_cell_around(const SmallRun& run, F f) {
+  for (Slot s = 0; s < run.model.grid->owned(); ++s) {
+    const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
+    for (int n = 0; n < 216; ++n) {
+      const std::array<int, 3> at{n % 6 - 1, n / 6 % 6 - 1, n / 36 - 1};
+      f(*run.model.grid->cells_in_use(s), at, Cell{4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]});
+    }
+  }
+}
+
 /// The block of the oracle's tests in the corner of the lower y and the upper x and z, some particles on the
 /// upper faces of the grid.
 ReferenceCase in_a_corner(int boundary) {
@@ -59,17 +71,14 @@ TEST_CASE("A brick knows the cells in use in it and around it, and their images 
     cells->find();
     cells->finish_exchange();
     int wrong = 0, beyond = 0;
+    for_each_cell_around(run, [&](const CellsAround& around, const auto& at, const Cell& cell) {
+      const Cell inside = boundary == 3 ? cell : image(cell, g, boundary);
+      const bool has = around.has(at[0], at[1], at[2]);
+      wrong += has != in_use.contains(inside) ? 1 : 0;
+      beyond += inside != cell && has ? 1 : 0;
+    });
     for (Slot s = 0; s < run.model.grid->owned(); ++s) {
       const CellsAround& around = *run.model.grid->cells_in_use(s);
-      const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
-      for (int n = 0; n < 216; ++n) {
-        const int at[3] = {n % 6 - 1, n / 6 % 6 - 1, n / 36 - 1};
-        const Cell cell{4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]};
-        const Cell inside = boundary == 3 ? cell : image(cell, g, boundary);
-        const bool has = around.has(at[0], at[1], at[2]);
-        wrong += has != in_use.contains(inside) ? 1 : 0;
-        beyond += inside != cell && has ? 1 : 0;
-      }
       CHECK(around.weight_beside(2, 2, 2) ==
             around.has(1, 1, 1) + around.has(2, 1, 1) + around.has(1, 2, 1) + around.has(2, 2, 1) +
                 around.has(1, 1, 2) + around.has(2, 1, 2) + around.has(1, 2, 2) + around.has(2, 2, 2));
@@ -99,18 +108,12 @@ TEST_CASE(
     cells->find();
     cells->finish_exchange();
     int wrong = 0, light = 0;
-    for (Slot s = 0; s < run.model.grid->owned(); ++s) {
-      const CellsAround& around = *run.model.grid->cells_in_use(s);
-      const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
-      for (int n = 0; n < 216; ++n) {
-        const int at[3] = {n % 6 - 1, n / 6 % 6 - 1, n / 36 - 1};
-        const auto found =
-            weight.find(image({4 * b.x + at[0], 4 * b.y + at[1], 4 * b.z + at[2]}, g, boundary));
-        const double expected = found == weight.end() ? 0 : around.weights == nullptr ? 1 : found->second;
-        wrong += around.weight(at[0], at[1], at[2]) != expected ? 1 : 0;
-        light += expected > 0 && expected < 0.05 * c.material.density ? 1 : 0;
-      }
-    }
+    for_each_cell_around(run, [&](const CellsAround& around, const auto& at, const Cell& cell) {
+      const auto found = weight.find(image(cell, g, boundary));
+      const double expected = found == weight.end() ? 0 : around.weights == nullptr ? 1 : found->second;
+      wrong += around.weight(at[0], at[1], at[2]) != expected ? 1 : 0;
+      light += expected > 0 && expected < 0.05 * c.material.density ? 1 : 0;
+    });
     CHECK(wrong == 0);
     CHECK(light > 0);
   }
