@@ -1,5 +1,5 @@
 // Which of the cells in a brick and one layer around it are in use, for shape functions that need to know
-// (core/shape/ddmp.hpp).
+// (core/shape/ddmp.hpp, and core/shape/linear.hpp where densities differ much).
 #pragma once
 
 #include <array>
@@ -46,6 +46,8 @@ class CellsAround {
     return static_cast<std::size_t>(j + 1 + side * (k + 1));
   }
   const CellWeightsAround* weights = nullptr;
+  /// Of the brick's own cells, those beside a much lighter one, by the bits of core/step/cells_in_use.hpp.
+  std::uint64_t beside_lighter = 0;
 
  private:
   using Rows = std::array<std::uint8_t, side * side>;

@@ -7,6 +7,11 @@
 // Particles are stored in approximate cell order, so this happens about once in eight. Shown against a plain
 // loop by tests/core/step.
 //
+// Beside much lighter material a particle acts from the nearest point that is `inset` of an edge or more from
+// the faces of its cell: S_i and their gradients are those of this point. A heavy particle that comes into a
+// cell else brings its whole stress to nodes that have their mass of light particles, before it brings mass,
+// and a step would have to be shorter by (rho_light/rho_heavy)^(1/2) (docs/stability.md).
+//
 // These kernels also serve shape functions that pass through values at other points of a lattice of cells of
 // this size, such as the cells' centres (sgmp.hpp): the points around a brick's sites take the nodes' place.
 #pragma once
@@ -68,6 +73,31 @@ struct LinearPlace {
       store(f[1] + l, p.fy);
       store(f[2] + l, p.fz);
       for (int i = 0; i < real_width; ++i) node[l + i] = p.node[i];
+    }
+  }
+};
+
+/// Least distance from the faces of a cell beside lighter ones, over the edge.
+inline constexpr double inset = 0.15;
+
+/// Of particles in cells, in some of them away from the faces (CellsAround::beside_lighter).
+struct InsetPlace : LinearPlace {
+  InsetPlace() = default;
+  InsetPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {
+    find(frame, layout, block, used);
+  }
+  void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {
+    LinearPlace::find(frame, layout, block, used);
+    if (frame.cells != nullptr && frame.cells->beside_lighter != 0)
+      move_inside(frame.cells->beside_lighter, used);
+  }
+
+ private:
+  void move_inside(std::uint64_t cells, int used) {
+    for (int l = 0; l < used; ++l) {
+      const auto [i, j, k] = lattice_points.node(node[l]);
+      if ((cells >> (i + brick_cells * (j + brick_cells * k)) & 1) == 0) continue;
+      for (auto& along : f) along[l] = std::clamp(along[l], inset, 1 - inset);
     }
   }
 };
@@ -324,7 +354,8 @@ struct Linear {
   static constexpr NodeBlockShape node_block = lattice_points;
   static constexpr int nodes_per_axis = 2;
   static ColumnSet columns() { return {}; }
-  using Place = LinearPlace;
+  static constexpr bool needs_lighter_cells = true;
+  using Place = InsetPlace;
   using Interpolation = LinearInterpolation;
   template <NodeFields what>
   using Scatter = CellScatter<CellSums<what>, NodeStore<what>>;
@@ -346,7 +377,8 @@ struct Linear {
   };
 
   template <class Rows>
-  static void gradient(const BrickFrame& frame, const Place& place, const Field& field, Rows& rows, int at) {
+  static void gradient(const BrickFrame& frame, const LinearPlace& place, const Field& field, Rows& rows,
+                       int at) {
     const double* nodes = field.nodes + Motion::strain_velocity_at;
     using R = Lanes<8>;
     const R x = load<R>(place.f[0]), y = load<R>(place.f[1]), z = load<R>(place.f[2]);
@@ -365,8 +397,8 @@ struct Linear {
     }
   }
 
-  static void cell_divergence(const BrickFrame& frame, const Place& place, const Field& field, double factor,
-                              double* row, int at) {
+  static void cell_divergence(const BrickFrame& frame, const LinearPlace& place, const Field& field,
+                              double factor, double* row, int at) {
     const double* nodes = field.nodes + Motion::strain_velocity_at;
     for_each_cell(place, [&](int node, auto here) {
       const double divergence = mean_divergence<node_block>(frame, nodes + node_doubles * node);
@@ -375,11 +407,11 @@ struct Linear {
   }
 
   /// In the brick's node block, of the particle of a lane.
-  static int lowest_of(const Place& place, int lane) { return place.node[lane]; }
+  static int lowest_of(const LinearPlace& place, int lane) { return place.node[lane]; }
   /// f(node, S, gradient of S) for the nodes of the cell that holds the particle of a lane: for terms
   /// too infrequent to vectorise.
   template <class F>
-  static void for_each_node(const Place& place, int lane, const Vec3<double>& inverse_cell, F f) {
+  static void for_each_node(const LinearPlace& place, int lane, const Vec3<double>& inverse_cell, F f) {
     const double fraction[3] = {place.f[0][lane], place.f[1][lane], place.f[2][lane]};
     for (int n = 0; n < 8; ++n) {
       const int offset[3] = {n & 1, n >> 1 & 1, n >> 2};

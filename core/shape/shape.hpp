@@ -26,6 +26,8 @@
 //   for_each_weight     optional: the same without the gradient, where that costs much
 //   momentum_block      optional: the nodes that momentum and mass reach, where forces reach more
 //   needs_cells         optional: whether BrickFrame::cells must be there
+//   needs_lighter_cells optional: whether it must be there with CellsAround::beside_lighter, in scenes whose
+//                       materials differ much in density; null in others
 //
 // Kernels identify a node by its number in the brick's node block and read records of node_doubles.
 #pragma once
@@ -58,6 +60,12 @@ concept ShapePolicy = requires(const BrickFrame& frame, const ColumnLayout& layo
 template <class S>
 inline constexpr bool needs_cells = requires {
   requires S::needs_cells;
+};
+
+/// Whether particles beside much lighter ones act differently.
+template <class S>
+inline constexpr bool needs_lighter_cells = requires {
+  requires S::needs_lighter_cells;
 };
 
 /// The nodes that the momentum and mass of a brick's particles reach.

@@ -22,6 +22,26 @@ double largest_density(const std::vector<Body>& bodies) {
   return largest;
 }
 
+double least_density(const std::vector<Body>& bodies) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Body& body : bodies) least = std::min(least, body.model->reference_density());
+  return least;
+}
+
+/// Whether particles that share nodes may differ much in density, in explicit steps.
+bool may_be_much_lighter(const Model& model) {
+  const Scene& scene = *model.scene;
+  if (scene.solution.integration != Integration::explicit_dynamics) return false;
+  const bool by_component = scene.contact.enable && !has_failed_component(scene);
+  const auto differ = [&](const Body& a, const Body& b) {
+    return (!by_component || a.component == b.component) &&
+           a.model->reference_density() > much_lighter * b.model->reference_density();
+  };
+  return std::ranges::any_of(model.bodies, [&](const Body& a) {
+    return std::ranges::any_of(model.bodies, [&](const Body& b) { return differ(a, b); });
+  });
+}
+
 /// But for the zeros.
 bool all_alike(const CellWeightsAround& weights) {
   double first = 0;
@@ -102,33 +122,35 @@ std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component, std
   return found.cells();
 }
 
-CellsInUse::CellsInUse(Model& model, NodeHalo& halo, std::vector<int> without)
+CellsInUse::CellsInUse(Model& model, NodeHalo& halo, CellUse use, std::vector<int> without)
     : model_(model),
       halo_(halo),
       without_(std::move(without)),
-      weighs_(std::ranges::any_of(
-          model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })),
-      largest_weight_(largest_density(model.bodies) / 10) {}
+      use_(use),
+      weighs_(use == CellUse::lighter ||
+              std::ranges::any_of(
+                  model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })),
+      largest_weight_(use == CellUse::lighter ? std::numeric_limits<double>::infinity()
+                                              : largest_density(model.bodies) / 10),
+      // USL's remedy for light nodes at free surfaces (core/step/node_update.hpp) is one for the lightest
+      // material.
+      empty_density_(model.scene->solution.scheme == Scheme::usl ? least_density(model.bodies) : 0) {}
 
-/// The largest density of a cell's particles, each the least of its material's density of reference, 4 m/V
-/// and the largest weight. So materials whose densities differ up to tenfold weigh alike, solids always the
-/// same, and gases less once they have expanded much.
-CellsInUse::Weights CellsInUse::find_weights(Slot s, std::int32_t component) const {
+/// f(number of its bit, density) for the cells of the particles. A particle's density is the least of its
+/// material's density of reference, 4 m/V and the largest weight. So solids always have the same, materials
+/// weigh alike whose densities differ up to tenfold, and gases weigh less once they have expanded much.
+template <class F>
+void CellsInUse::for_each_density(Slot s, std::int32_t component, F f) const {
   using Block = Lanes<block_lanes>;
   constexpr double least = std::numeric_limits<double>::min();
   const Brick& brick = model_.grid->brick(s);
   const BrickFrame frame(model_.grid->geometry(), brick.coord);
-  Weights weights{};
   for_each_tile(brick, component, without_, [&](const ParticleTile& tile, std::size_t c) {
     const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
     const ColumnLayout& layout = body.pool->layout();
     const double most = std::max(std::min(body.model->reference_density(), largest_weight_), least);
     const BlockPrefetch prefetch(model_, s, c);
     CellsOfParticles found;  // of blocks without thin particles
-    const auto add = [&](int cell, double weight) {
-      double& at = weights[static_cast<std::size_t>(cell)];
-      at = std::max(at, weight);
-    };
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
       prefetch.request<Linear>(b, layout, static_cast<int>(Column::volume) + 1);
       const double* block = body.pool->block(tile.blocks[b]);
@@ -143,13 +165,30 @@ CellsInUse::Weights CellsInUse::find_weights(Slot s, std::int32_t component) con
       const auto place = locate_in_sites<Block, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
       for (int l = 0; l < used; ++l) {
         const bool dense = 4 * mass[l] >= most * volume[l];  // as above: blocks differ by their other lanes
-        add(place.node[l], dense ? most : std::max(least, 4 * mass[l] / volume[l]));
+        f(static_cast<std::size_t>(place.node[l]), dense ? most : std::max(least, 4 * mass[l] / volume[l]));
       }
     }
     for (std::uint64_t cells = found.cells(); cells != 0; cells &= cells - 1)
-      add(std::countr_zero(cells), most);
+      f(static_cast<std::size_t>(std::countr_zero(cells)), most);
   });
-  return weights;
+}
+
+CellsInUse::Weights CellsInUse::find_heaviest(Slot s, std::int32_t component) const {
+  Weights heaviest{};
+  for_each_density(s, component, [&](std::size_t cell, double density) {
+    heaviest[cell] = std::max(heaviest[cell], density);
+  });
+  return heaviest;
+}
+
+CellsInUse::Weights CellsInUse::find_lightest(Slot s, std::int32_t component, Weights& heaviest) const {
+  Weights lightest{};
+  heaviest = {};
+  for_each_density(s, component, [&](std::size_t cell, double density) {
+    if (lightest[cell] == 0 || density < lightest[cell]) lightest[cell] = density;
+    heaviest[cell] = std::max(heaviest[cell], density);
+  });
+  return lightest;
 }
 
 void CellsInUse::find_own(Slot s) {
@@ -168,8 +207,10 @@ void CellsInUse::find_own(Slot s) {
 }
 
 void CellsInUse::find_field(Slot s, int field, std::int32_t component) {
-  if (weighs_)
-    take(s, field, find_weights(s, component));
+  if (use_ == CellUse::lighter)
+    take(s, field, find_lightest(s, component, heaviest_[model_.grid->field_index(s, field)]));
+  else if (weighs_)
+    take(s, field, find_heaviest(s, component));
   else
     cells(s, field) = find_cells(model_, s, component, without_);
 }
@@ -219,6 +260,7 @@ void CellsInUse::find() {
   cells_.resize(grid.field_count());
   weights_.resize(weighs_ ? grid.field_count() : 0);
   common_weight_.resize(weights_.size());
+  heaviest_.resize(use_ == CellUse::lighter ? grid.field_count() : 0);
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
     find_own(s);
     write_to_nodes(s);
@@ -231,13 +273,14 @@ void CellsInUse::finish_exchange() {
   BrickGrid& grid = *model_.grid;
   halo_.end(grid);
   for (int g = 0; g < grid.ghosts(); ++g) read_from_nodes(grid.owned() + g);
-  grid.reset_cells_around(weighs_);
+  const bool keeps_weights = weighs_ && use_ == CellUse::means;
+  grid.reset_cells_around(keeps_weights);
   for_each_by_threads(0, grid.owned(), 16, [&](int slot) {
     const auto s = static_cast<Slot>(slot);
-    combine(s, all_components, grid.cells_around(s), weighs_ ? &grid.cell_weights(s) : nullptr);
+    combine(s, all_components, grid.cells_around(s), keeps_weights ? &grid.cell_weights(s) : nullptr);
     if (!grid.has_fields_by_component()) return;
     for (int f = 0; const std::int32_t component : grid.components(s)) {
-      combine(s, component, grid.cells_around(s, f), weighs_ ? &grid.cell_weights(s, f) : nullptr);
+      combine(s, component, grid.cells_around(s, f), keeps_weights ? &grid.cell_weights(s, f) : nullptr);
       ++f;
     }
   });
@@ -261,9 +304,15 @@ CellsInUse::Cells CellsInUse::cells_of(Slot s, std::int32_t component) const {
 }
 
 double CellsInUse::weight_of(Slot s, std::int32_t component, std::size_t cell) const {
-  double largest = 0;
-  for_fields_of(s, component, [&](std::size_t field) { largest = std::max(largest, weights_[field][cell]); });
-  return largest;
+  double weight = 0;
+  for_fields_of(s, component, [&](std::size_t field) {
+    const double of_field = weights_[field][cell];
+    if (use_ == CellUse::means || weight == 0)
+      weight = std::max(weight, of_field);
+    else if (of_field != 0)
+      weight = std::min(weight, of_field);
+  });
+  return weight;
 }
 
 /// Of those in use in a brick and its neighbours.
@@ -282,15 +331,69 @@ bool CellsInUse::weigh_alike(const Brick& brick, std::int32_t component) const {
 
 void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around,
                          CellWeightsAround* weights) const {
-  const BrickGrid& grid = *model_.grid;
-  const Brick& brick = grid.brick(s);
+  if (use_ == CellUse::lighter) {
+    around.beside_lighter = find_beside_lighter(s, component);
+    return;
+  }
+  const Brick& brick = model_.grid->brick(s);
   const auto is_full = [&](Slot from) { return from != no_slot && cells_of(from, component) == ~Cells{0}; };
   if (weights != nullptr && weigh_alike(brick, component)) weights = nullptr;
+  if (weights == nullptr && std::ranges::all_of(brick.neighbour, is_full)) return around.add_all();
+  collect(s, component, around, weights);
+  if (weights != nullptr && all_alike(*weights)) around.weights = nullptr;
+}
+
+/// A brick's own cells whose densest particles are much denser than the thinnest ones of the 27 cells around.
+CellsInUse::Cells CellsInUse::find_beside_lighter(Slot s, std::int32_t component) const {
+  const Brick& brick = model_.grid->brick(s);
+  Weights heaviest{};
+  double largest = 0;
+  for_fields_of(s, component, [&](std::size_t field) {
+    for (std::size_t cell = 0; cell < heaviest.size(); ++cell) {
+      heaviest[cell] = std::max(heaviest[cell], heaviest_[field][cell]);
+      largest = std::max(largest, heaviest[cell]);
+    }
+  });
+  if (empty_density_ > 0) {
+    if (!(largest > much_lighter * empty_density_)) return 0;
+  } else if (weigh_alike(brick, component)) {
+    double lightest = std::numeric_limits<double>::infinity();
+    for_fields_of(s, component, [&](std::size_t field) {
+      if (common_weight_[field] != 0) lightest = common_weight_[field];
+    });
+    if (!(largest > much_lighter * lightest)) return 0;
+  }
+  CellsAround around;
+  CellWeightsAround lightest;
+  collect(s, component, around, &lightest);
+  const auto is_much_lighter = [&](double density, double than) {
+    const double light = density == 0 ? empty_density_ : density;
+    return light > 0 && than > much_lighter * light;
+  };
+  Cells beside = 0;
+  for (std::size_t cell = 0; cell < heaviest.size(); ++cell) {
+    if (heaviest[cell] == 0) continue;
+    const auto number = static_cast<int>(cell);
+    const int i = number % brick_cells, j = number / brick_cells % brick_cells,
+              k = number / (brick_cells * brick_cells);
+    bool found = false;
+    for (int n = 0; n < neighbourhood && !found; ++n) {
+      const BrickCoord d = neighbour_offset(n);
+      found = is_much_lighter(around.weight(i + d.x, j + d.y, k + d.z), heaviest[cell]);
+    }
+    if (found) beside |= Cells{1} << cell;
+  }
+  return beside;
+}
+
+/// The cells of a brick and its neighbours, and their weights, if asked for.
+void CellsInUse::collect(Slot s, std::int32_t component, CellsAround& around,
+                         CellWeightsAround* weights) const {
+  const BrickGrid& grid = *model_.grid;
+  const Brick& brick = grid.brick(s);
   if (weights != nullptr) {
     *weights = {};
     around.weights = weights;
-  } else if (std::ranges::all_of(brick.neighbour, is_full)) {
-    return around.add_all();
   }
   for (int n = 0; n < neighbourhood; ++n) {
     const Slot from = brick.neighbour[static_cast<std::size_t>(n)];
@@ -316,13 +419,17 @@ void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around,
     }
   }
   add_mirror_images(grid.geometry(), brick.coord, around, weights);
-  if (weights != nullptr && all_alike(*weights)) around.weights = nullptr;
 }
 
 std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo, std::vector<int> without) {
   using Made = std::unique_ptr<CellsInUse>;
+  const auto make = [&](CellUse use) {
+    return std::make_unique<CellsInUse>(model, halo, use, std::move(without));
+  };
   return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> Made {
-    if constexpr (needs_cells<S>) return std::make_unique<CellsInUse>(model, halo, std::move(without));
+    if constexpr (needs_cells<S>) return make(CellUse::means);
+    if constexpr (needs_lighter_cells<S>)
+      if (may_be_much_lighter(model)) return make(CellUse::lighter);
     return nullptr;
   });
 }

@@ -126,7 +126,6 @@ std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene
   note_blocks(scene, notes);
   note_wide_spacings(scene, notes);
   note_linear_functions(root, scene, notes);
-  note_contrast(scene, notes);
   note_soft_drivers(scene, notes);
   note_free_axes(scene, notes);
   note_scheme(root, scene, notes);

@@ -74,34 +74,6 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
                    who)});
 }
 
-void note_contrast(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
-  if (scene.solution.integration != core::Integration::explicit_dynamics ||
-      scene.grid.shape != core::ShapeFunction::linear || scene.contact.enable || !core::has_shape("SGMP"))
-    return;
-  const core::BodyInput *light = nullptr, *heavy = nullptr;
-  const auto density = [&](const core::BodyInput& body) {
-    return scene.materials[body.material].reference_density;
-  };
-  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
-    if (core::is_rigid(scene.materials[body.material])) return;
-    if (light == nullptr || density(body) < density(*light)) light = &body;
-    if (heavy == nullptr || density(body) > density(*heavy)) heavy = &body;
-  });
-  constexpr double notable = 10;
-  if (light == nullptr || !(density(*heavy) > notable * density(*light))) return;
-  notes.push_back(
-      {scene.provenance.path,
-       scene.grid.source.line,
-       "Grid",
-       {},
-       {},
-       fmt::format("linear shape functions: body '{}' is {:.3g} times as dense as '{}'; where they meet, "
-                   "its stresses drive nodes that have their mass of the light body, and energy may "
-                   "grow: shape=\"SGMP\" avoids this at about the same cost, and so does Contact between "
-                   "components of their own (docs/stability.md)",
-                   heavy->name, density(*heavy) / density(*light), light->name)});
-}
-
 void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   const core::SolutionInput& solution = scene.solution;
   const std::optional<Node> node = root.child("Solution");

@@ -13,9 +13,6 @@ namespace mpm::io {
 /// where the input does not choose the shape functions.
 void note_linear_functions(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
-/// Linear functions in explicit steps where bodies in one velocity field differ more than tenfold in density.
-void note_contrast(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
-
 /// USL with AFLIP, which has no stable step with it but for cpGIMP.
 void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 

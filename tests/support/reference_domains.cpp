@@ -1,6 +1,8 @@
 // What the oracle's shape functions need beyond a particle's position: its domain, whose corners may move
 // with the grid, and the cells in use.
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "tests/support/reference_stepper.hpp"
@@ -17,6 +19,42 @@ void ReferenceStepper::find_cells_in_use() {
     weight = case_.weigh_cells ? std::max(weight, density) : 1;
   }
   average_gradients(geometry_);
+}
+
+/// Which particles act from inside their cells. With USL cells without particles count as cells of the light
+/// material, but for those beyond walls, which are images.
+void ReferenceStepper::find_inset() {
+  using Cell = std::array<int, 3>;
+  struct Densities {
+    double thinnest = std::numeric_limits<double>::infinity(), densest = 0;
+  };
+  const double light = 1e-3 * case_.material.density;
+  std::map<Cell, Densities> cells;
+  for (std::size_t n = 0; n < case_.particles.size(); ++n) {
+    const ReferenceParticle& p = case_.particles[n];
+    const double density = std::min(n < case_.light_from ? case_.material.density : light, 4 * p.m / p.V);
+    Densities& of = cells[cell_at(geometry_, p.x)];
+    of.thinnest = std::min(of.thinnest, density);
+    of.densest = std::max(of.densest, density);
+  }
+  inset_.clear();
+  for (const ReferenceParticle& p : case_.particles) {
+    const Cell own = cell_at(geometry_, p.x);
+    double thinnest = std::numeric_limits<double>::infinity();
+    for (int d = 0; d < 27; ++d) {
+      Cell cell = {own[0] + d % 3 - 1, own[1] + d / 3 % 3 - 1, own[2] + d / 9 - 1};
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (cell[a] < 0 && case_.boundary[2 * a] != 0) cell[a] = 0;
+        if (cell[a] >= case_.cells[a] && case_.boundary[2 * a + 1] != 0) cell[a] = case_.cells[a] - 1;
+      }
+      const auto found = cells.find(cell);
+      if (found != cells.end())
+        thinnest = std::min(thinnest, found->second.thinnest);
+      else if (case_.scheme == ReferenceScheme::usl)
+        thinnest = std::min(thinnest, light);
+    }
+    inset_.push_back(cells[own].densest > 10 * thinnest);
+  }
 }
 
 /// With the particle's domain.

@@ -80,6 +80,7 @@ void ReferenceStepper::step_with() {
   const double velocity_dt = one_length ? dt : 0.5 * (last_dt_ + dt);
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
   if (case_.shape == ReferenceShape::ddmp) find_cells_in_use();
+  if (case_.light_from < case_.particles.size()) find_inset();
   find_supports<Support>();
   particles_to_grid<Support>();
   const bool averages = case_.scheme == ReferenceScheme::usavg;
@@ -132,6 +133,8 @@ ReferenceStepper::CellSupport ReferenceStepper::find_support(const ReferencePart
     const double below = std::min(std::floor(scaled), cells - 1);  // the upper face belongs to the last cell
     first[a] = static_cast<std::size_t>(below);
     N[a][1] = scaled - below;
+    if (!inset_.empty() && inset_[static_cast<std::size_t>(&particle - case_.particles.data())])
+      N[a][1] = std::clamp(N[a][1], case_.inset, 1 - case_.inset);
     N[a][0] = 1 - N[a][1];
     dN[a][1] = inverse_cell_[a];
     dN[a][0] = -dN[a][1];
@@ -235,7 +238,9 @@ void ReferenceStepper::initial_velocities(double dt) {
 /// force on light nodes is divided by m_floor instead of m. Not the external one: a body that falls freely
 /// stays unstrained.
 void ReferenceStepper::integrate_momentum(double dt) {
-  const double floor = case_.scheme == ReferenceScheme::usl ? case_.usl_mass_floor * node_mass_unit_ : 0.0;
+  const double lightest = case_.light_from < case_.particles.size() ? 1e-3 : 1;
+  const double floor =
+      case_.scheme == ReferenceScheme::usl ? case_.usl_mass_floor * lightest * node_mass_unit_ : 0.0;
   for_active_nodes([&](const Index& index, Node& node) {
     double full = 1;  // share of the node's surroundings inside the walls
     for (std::size_t a = 0; a < 3; ++a)

@@ -51,6 +51,12 @@ struct ReferenceCase {
   /// ddmp: means over cells weighted with the largest of a cell's densities, each the least of a tenth of the
   /// material's and four times the particle's.
   bool weigh_cells = false;
+  /// linear: particles from this one on are of a thousandth of the material's density; they share its law.
+  /// Particles in cells whose densest ones are more than ten times as dense as the thinnest ones of the 27
+  /// cells around act from `inset` of an edge or more from the cell's faces. A particle's density is at most
+  /// 4 m/V.
+  std::size_t light_from = std::numeric_limits<std::size_t>::max();
+  double inset = 0.15;
   /// The critical step, in units of a wave's crossing time of a cell.
   double wave_limit = 1;
   bool average = false;    ///< volume changes and pressures over the particles of a site
@@ -58,7 +64,8 @@ struct ReferenceCase {
   double dt_factor = 0.5;  ///< of the critical step
   double mass_cutoff = std::numeric_limits<double>::epsilon();  ///< times rho_0 * cell volume
   /// USL only: for the strain rate a node's internal force is divided by at least this times rho_0 * cell
-  /// volume. On the Taylor bar 0.02 diverges and 0.05 is marginal; towards 1 it becomes an unstable Euler.
+  /// volume, rho_0 that of the lightest material. On the Taylor bar 0.02 diverges and 0.05 is marginal;
+  /// towards 1 it becomes an unstable Euler.
   double usl_mass_floor = 0.2;
   ReferenceMaterial material;
   std::vector<ReferenceParticle> particles;
@@ -136,6 +143,7 @@ class ReferenceStepper {
   }
   /// By their particles at the start of the step.
   void find_cells_in_use();
+  void find_inset();
   ReferenceGrid grid_of(const ReferenceParticle& particle) const;
   std::size_t number(const std::array<int, 3>& node) const;
   Stop stop(const Index& node, std::size_t axis, double velocity) const;
@@ -215,6 +223,7 @@ class ReferenceStepper {
   double node_mass_unit_ = 0;  ///< rho_0 * cell volume
   std::vector<Node> grid_;
   std::tuple<std::vector<CellSupport>, std::vector<AnySupport>> supports_;  ///< one of them is empty
+  std::vector<bool> inset_;     ///< by particle, whether it acts from inside its cell; or empty
   std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
   std::vector<DomainCorners> next_corner_;  ///< for cpdi2
   double time_ = 0, last_dt_ = 0, impulse_time_ = 0;

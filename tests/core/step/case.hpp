@@ -48,8 +48,9 @@ using FailsAt = std::function<bool(const ReferenceParticle&, double time)>;
 /// Failed particles, if there are to be any, carry a mark, and stress as before.
 class OracleLaw final : public core::ConstitutiveModel {
  public:
-  explicit OracleLaw(const ReferenceMaterial& material, FailsAt fails = {})
-      : material_(material), fails_(std::move(fails)) {}
+  /// `lightness`: times which its density of reference is less than the one that its stress depends on.
+  explicit OracleLaw(const ReferenceMaterial& material, FailsAt fails = {}, double lightness = 1)
+      : material_(material), fails_(std::move(fails)), lightness_(lightness) {}
 
   const std::string& name() const override { return name_; }
   double initial_sound_speed() const override {
@@ -58,7 +59,7 @@ class OracleLaw final : public core::ConstitutiveModel {
   double initial_shear_speed() const override {
     return std::sqrt(material_.young / (2 * (1 + material_.poisson)) / material_.density);
   }
-  double reference_density() const override { return material_.density; }
+  double reference_density() const override { return material_.density / lightness_; }
   core::ColumnSet columns(const core::UpdateOptions&) const override {
     core::ColumnSet set{core::Column::effective_plastic_strain, core::Column::history_0,
                         core::Column::history_1};
@@ -144,6 +145,7 @@ class OracleLaw final : public core::ConstitutiveModel {
   std::string name_ = "oracle";
   ReferenceMaterial material_;
   FailsAt fails_;
+  double lightness_;
 };
 
 inline core::Scheme scheme_of(ReferenceScheme s) {
@@ -258,6 +260,11 @@ struct SmallRun {
     }
     model.scene = scene;
     model.materials.push_back(std::make_unique<OracleLaw>(c.material, std::move(fails)));
+    const bool has_light = c.light_from < c.particles.size();
+    if (has_light) {
+      if (split != c.light_from) throw std::logic_error("light particles that are not the second body's");
+      model.materials.push_back(std::make_unique<OracleLaw>(c.material, FailsAt{}, 1000));
+    }
     core::GridGeometry g;
     for (int a = 0; a < 3; ++a) {
       const auto i = static_cast<std::size_t>(a);
@@ -281,8 +288,8 @@ struct SmallRun {
       core::Body& body = model.bodies.emplace_back();
       body.name = "body";
       body.component = b;
-      body.material = c.weigh_cells ? b : 0;  // cells weigh where there are two
-      body.model = model.materials[0].get();
+      body.material = c.weigh_cells || has_light ? b : 0;  // cells weigh where there are two
+      body.model = model.materials[has_light ? static_cast<std::size_t>(b) : 0].get();
       body.pool = std::make_shared<core::BlockPool>(core::ColumnLayout(columns));
     }
     model.ledger.body_eroded.resize(model.bodies.size());

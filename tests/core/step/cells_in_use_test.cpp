@@ -119,6 +119,66 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("Cells beside much lighter ones are found, of linear functions") {
+  for (const int boundary : {0, 2}) {
+    CAPTURE(boundary);
+    ReferenceCase c = in_a_corner(boundary);
+    c.shape = ReferenceShape::linear;
+    c.light_from = c.particles.size() / 2;
+    for (std::size_t n = 0; n < c.particles.size(); ++n)  // some thin ones among the heavy, as of gases
+      if (n % 97 == 5) c.particles[n].m *= 0.01;
+    SmallRun run(c, c.light_from);
+    const GridGeometry& g = run.model.grid->geometry();
+    std::map<Cell, std::pair<double, double>> densities;  // least and largest
+    for (std::size_t n = 0; n < c.particles.size(); ++n) {
+      const ReferenceParticle& p = c.particles[n];
+      const double most = n < c.light_from ? c.material.density : c.material.density / 1000;
+      const double density = std::min(most, 4 * p.m / p.V);
+      const Cell cell{g.cell_index(p.x[0], 0), g.cell_index(p.x[1], 1), g.cell_index(p.x[2], 2)};
+      auto& [least, largest] = densities.try_emplace(cell, density, density).first->second;
+      least = std::min(least, density);
+      largest = std::max(largest, density);
+    }
+    const auto cells = mpm::core::make_cells_in_use(run.model, run.solo.halo);
+    REQUIRE(cells != nullptr);
+    cells->find();
+    cells->finish_exchange();
+    int wrong = 0, beside = 0;
+    for (Slot s = 0; s < run.model.grid->owned(); ++s) {
+      const mpm::core::BrickCoord b = run.model.grid->brick(s).coord;
+      for (int n = 0; n < 64; ++n) {
+        const Cell cell{4 * b.x + n % 4, 4 * b.y + n / 4 % 4, 4 * b.z + n / 16};
+        const auto own = densities.find(cell);
+        bool expected = false;
+        for (int d = 0; d < 27 && own != densities.end(); ++d) {
+          const auto at = densities.find({cell[0] + d % 3 - 1, cell[1] + d / 3 % 3 - 1, cell[2] + d / 9 - 1});
+          expected |= at != densities.end() && own->second.second > 10 * at->second.first;
+        }
+        const bool found = (run.model.grid->cells_in_use(s)->beside_lighter >> n & 1) != 0;
+        wrong += found != expected ? 1 : 0;
+        beside += expected ? 1 : 0;
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(beside > 20);
+    CHECK(beside < static_cast<int>(densities.size()) / 2);
+  }
+}
+
+TEST_CASE(
+    "Scenes without much lighter materials in a velocity field look for no cells, with linear functions") {
+  ReferenceCase c = in_a_corner(0);
+  c.shape = ReferenceShape::linear;
+  SmallRun alike(c, c.particles.size() / 2);
+  CHECK(mpm::core::make_cells_in_use(alike.model, alike.solo.halo) == nullptr);
+  c.light_from = c.particles.size() / 2;
+  SmallRun apart(c, c.light_from, true);
+  CHECK(mpm::core::make_cells_in_use(apart.model, apart.solo.halo) == nullptr);
+  SmallRun implicit(c, c.light_from);
+  implicit.scene->solution.integration = mpm::core::Integration::implicit;
+  CHECK(mpm::core::make_cells_in_use(implicit.model, implicit.solo.halo) == nullptr);
+}
+
 TEST_CASE("The pass that moves the particles of a brick finds the cells that a later count finds") {
   for (const ReferenceScheme scheme :
        {ReferenceScheme::usf, ReferenceScheme::usl, ReferenceScheme::musl, ReferenceScheme::usavg}) {

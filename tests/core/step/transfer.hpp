@@ -189,6 +189,8 @@ struct TransferCase {
     }
     use_cells(count, random);
     if (random() % 2 == 0) weigh_cells(random);
+    if (core::needs_lighter_cells<S> && random() % 2 == 0)
+      cells.beside_lighter = std::uint64_t{random()} << 32 | random();
   }
 
   core::BrickFrame frame() const {
@@ -236,8 +238,13 @@ struct TransferCase {
   }
   template <class F>
   void for_each_node_of_axes(const std::vector<double>& p, F f) const {
-    const Place at = place(p);
+    Place at = place(p);
     constexpr int n = S::nodes_per_axis;
+    if (const auto& c = at.cell;
+        cells.beside_lighter >> (c[0] + core::brick_cells * (c[1] + core::brick_cells * c[2])) & 1) {
+      for (std::size_t a = 0; a < 3; ++a)
+        at.position[a] = c[a] + std::clamp(at.position[a] - c[a], core::inset, 1 - core::inset);
+    }
     for (int i = 0; i < n * n * n; ++i) {
       const int d[3] = {i % n, i / n % n, i / (n * n)};
       double w[3], dw[3];

@@ -41,30 +41,6 @@ TEST_CASE("linear functions by default, where bodies move over several cells") {
         1);
 }
 
-TEST_CASE("linear functions where densities differ much") {
-  const std::string light = replaced(
-      replaced(bar, "</Component>",
-               "<Body name='foam' material='light' type='Block'><Geometry dp='0.38' x0='0' y0='0' z0='20' "
-               "lx='3.8' ly='3.8' lz='0.76'/></Body></Component>"),
-      "<WorkPlane",
-      "<Material name='light'><ReferenceDensity value='8.93e-5'/><StrengthModel type='IsoElastic' "
-      "Young='100' "
-      "Poisson='0'/></Material><WorkPlane");
-  CHECK(notes_of(light) ==
-        Notes{"line 17: <Grid>: linear shape functions: body 'rod' is 100 times as dense "
-              "as 'foam'; where they meet, "
-              "its stresses drive nodes that have their mass of the light body, and "
-              "energy may grow: shape=\"SGMP\" "
-              "avoids this at about the same cost, and so does Contact between components of "
-              "their own (docs/stability.md)"});
-  CHECK(notes_of(replaced(light, "8.93e-5", "9e-4")).empty());
-  CHECK(notes_of(replaced(light, "linear", "SGMP")).empty());
-  const std::vector<std::string> apart = notes_of(
-      replaced(replaced(light, "<Body name='foam'", "</Component><Component name='other'><Body name='foam'"),
-               "<Solution>", "<Contact enable=\"1\"/><Solution>"));
-  CHECK(std::ranges::none_of(apart, [](const std::string& note) { return note.find("dense") != note.npos; }));
-}
-
 TEST_CASE("USL with a transfer that has no stable step with it") {
   const std::string usl = replaced(replaced(bar, "linear", "uGIMP"), "<Solution>",
                                    "<Solution algorithm=\"USL\" transfer=\"AFLIP\">");
