@@ -56,7 +56,7 @@ inline constexpr int sum_doubles = 16;
 
 }  // namespace ddmp
 
-struct DdmpPlace : LinearPlace {
+struct DdmpPlace : InsetPlace {
   const CellsAround* cells = nullptr;
 
   DdmpPlace() = default;
@@ -64,7 +64,7 @@ struct DdmpPlace : LinearPlace {
     find(frame, layout, block, used);
   }
   void find(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {
-    LinearPlace::find(frame, layout, block, used);
+    InsetPlace::find(frame, layout, block, used);
     cells = frame.cells;
   }
   Lanes<8> alpha() const {
@@ -186,7 +186,7 @@ struct Ddmp {
   static constexpr NodeBlockShape node_block = ddmp::node_block;
   static constexpr NodeBlockShape momentum_block = lattice_points;
   static constexpr int nodes_per_axis = 4;
-  static constexpr bool needs_cells = true;
+  static constexpr bool needs_cells = true, needs_lighter_cells = true;
   static ColumnSet columns() { return {}; }
   using NodeRows = ddmp::NodeRows;
   using Place = DdmpPlace;

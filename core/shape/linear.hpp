@@ -10,7 +10,7 @@
 // Beside much lighter material a particle acts from the nearest point that is `inset` of an edge or more from
 // the faces of its cell: S_i and their gradients are those of this point. A heavy particle that comes into a
 // cell else brings its whole stress to nodes that have their mass of light particles, before it brings mass,
-// and a step would have to be shorter by (rho_light/rho_heavy)^(1/2) (docs/stability.md).
+// and a step would have to be shorter by (rho_light/rho_heavy)^(1/2) (docs/stability.md). DDMP does the same.
 //
 // These kernels also serve shape functions that pass through values at other points of a lattice of cells of
 // this size, such as the cells' centres (sgmp.hpp): the points around a brick's sites take the nodes' place.
@@ -80,7 +80,7 @@ struct LinearPlace {
 /// Least distance from the faces of a cell beside lighter ones, over the edge.
 inline constexpr double inset = 0.15;
 
-/// Of particles in cells, in some of them away from the faces (CellsAround::beside_lighter).
+/// Of particles that act from inside some of the cells, CellsAround::beside_lighter.
 struct InsetPlace : LinearPlace {
   InsetPlace() = default;
   InsetPlace(const BrickFrame& frame, const ColumnLayout& layout, const double* block, int used) {

@@ -14,8 +14,6 @@ namespace mpm::core {
 
 namespace {
 
-constexpr NodeFields node_fields = mapped::cells_in_use;
-
 double largest_density(const std::vector<Body>& bodies) {
   double largest = 0;
   for (const Body& body : bodies) largest = std::max(largest, body.model->reference_density());
@@ -122,33 +120,34 @@ std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component, std
   return found.cells();
 }
 
-CellsInUse::CellsInUse(Model& model, NodeHalo& halo, CellUse use, std::vector<int> without)
+CellsInUse::CellsInUse(Model& model, NodeHalo& halo, CellNeeds needs, std::vector<int> without)
     : model_(model),
       halo_(halo),
       without_(std::move(without)),
-      use_(use),
-      weighs_(use == CellUse::lighter ||
-              std::ranges::any_of(
-                  model.bodies, [&](const Body& body) { return body.material != model.bodies[0].material; })),
-      largest_weight_(use == CellUse::lighter ? std::numeric_limits<double>::infinity()
-                                              : largest_density(model.bodies) / 10),
+      needs_(needs),
+      largest_weight_(largest_density(model.bodies) / 10),
       // USL's remedy for light nodes at free surfaces (core/step/node_update.hpp) is one for the lightest
       // material.
       empty_density_(model.scene->solution.scheme == Scheme::usl ? least_density(model.bodies) : 0) {}
 
-/// f(number of its bit, density) for the cells of the particles. A particle's density is the least of its
-/// material's density of reference, 4 m/V and the largest weight. So solids always have the same, materials
-/// weigh alike whose densities differ up to tenfold, and gases weigh less once they have expanded much.
-template <class F>
-void CellsInUse::for_each_density(Slot s, std::int32_t component, F f) const {
+/// A particle's density is the less of its material's density of reference and 4 m/V: solids always have the
+/// same, gases a lesser one once they have expanded much.
+CellsInUse::Densities CellsInUse::find_densities(Slot s, std::int32_t component) const {
   using Block = Lanes<block_lanes>;
   constexpr double least = std::numeric_limits<double>::min();
   const Brick& brick = model_.grid->brick(s);
   const BrickFrame frame(model_.grid->geometry(), brick.coord);
+  Densities densities;
+  const auto add = [&](int cell, double density) {
+    const auto at = static_cast<std::size_t>(cell);
+    double& thinnest = densities.thinnest[at];
+    if (thinnest == 0 || density < thinnest) thinnest = density;
+    densities.densest[at] = std::max(densities.densest[at], density);
+  };
   for_each_tile(brick, component, without_, [&](const ParticleTile& tile, std::size_t c) {
     const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
     const ColumnLayout& layout = body.pool->layout();
-    const double most = std::max(std::min(body.model->reference_density(), largest_weight_), least);
+    const double most = std::max(body.model->reference_density(), least);
     const BlockPrefetch prefetch(model_, s, c);
     CellsOfParticles found;  // of blocks without thin particles
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
@@ -165,37 +164,21 @@ void CellsInUse::for_each_density(Slot s, std::int32_t component, F f) const {
       const auto place = locate_in_sites<Block, brick_cells>(frame, x, x + block_lanes, x + 2 * block_lanes);
       for (int l = 0; l < used; ++l) {
         const bool dense = 4 * mass[l] >= most * volume[l];  // as above: blocks differ by their other lanes
-        f(static_cast<std::size_t>(place.node[l]), dense ? most : std::max(least, 4 * mass[l] / volume[l]));
+        add(place.node[l], dense ? most : std::max(least, 4 * mass[l] / volume[l]));
       }
     }
     for (std::uint64_t cells = found.cells(); cells != 0; cells &= cells - 1)
-      f(static_cast<std::size_t>(std::countr_zero(cells)), most);
+      add(std::countr_zero(cells), most);
   });
-}
-
-CellsInUse::Weights CellsInUse::find_heaviest(Slot s, std::int32_t component) const {
-  Weights heaviest{};
-  for_each_density(s, component, [&](std::size_t cell, double density) {
-    heaviest[cell] = std::max(heaviest[cell], density);
-  });
-  return heaviest;
-}
-
-CellsInUse::Weights CellsInUse::find_lightest(Slot s, std::int32_t component, Weights& heaviest) const {
-  Weights lightest{};
-  heaviest = {};
-  for_each_density(s, component, [&](std::size_t cell, double density) {
-    if (lightest[cell] == 0 || density < lightest[cell]) lightest[cell] = density;
-    heaviest[cell] = std::max(heaviest[cell], density);
-  });
-  return lightest;
+  return densities;
 }
 
 void CellsInUse::find_own(Slot s) {
   BrickGrid& grid = *model_.grid;
   prefetch_coming_bricks(grid, s);
   if (!grid.has_fields_by_component()) {
-    const std::optional<Cells> known = without_.empty() && !weighs_ ? grid.own_cells(s) : std::nullopt;
+    const std::optional<Cells> known =
+        without_.empty() && !has_densities() ? grid.own_cells(s) : std::nullopt;
     if (known)
       cells(s, 0) = *known;
     else
@@ -207,65 +190,82 @@ void CellsInUse::find_own(Slot s) {
 }
 
 void CellsInUse::find_field(Slot s, int field, std::int32_t component) {
-  if (use_ == CellUse::lighter)
-    take(s, field, find_lightest(s, component, heaviest_[model_.grid->field_index(s, field)]));
-  else if (weighs_)
-    take(s, field, find_heaviest(s, component));
+  if (has_densities())
+    take(s, field, find_densities(s, component));
   else
     cells(s, field) = find_cells(model_, s, component, without_);
 }
 
-void CellsInUse::take(Slot s, int field, const Weights& found) {
-  Cells in_use = 0;
-  double common = 0;
-  for (std::size_t c = 0; c < found.size(); ++c) {
-    if (found[c] == 0) continue;
-    in_use |= Cells{1} << c;
-    if (common == 0) common = found[c];
-    if (found[c] != common) common = several;
-  }
+void CellsInUse::take(Slot s, int field, const Densities& found) {
   const std::size_t at = model_.grid->field_index(s, field);
+  Cells in_use = 0;
+  Range range;
+  for (std::size_t c = 0; c < found.densest.size(); ++c) {
+    if (found.densest[c] == 0) continue;
+    const double weight = weight_of(found.densest[c]);
+    range.thinnest = in_use == 0 ? found.thinnest[c] : std::min(range.thinnest, found.thinnest[c]);
+    range.densest = std::max(range.densest, found.densest[c]);
+    range.weight = in_use == 0 || weight == range.weight ? weight : several;
+    in_use |= Cells{1} << c;
+  }
   cells_[at] = in_use;
-  if (!weighs_) return;
-  weights_[at] = found;
-  common_weight_[at] = common;
+  densities_[at] = found;
+  ranges_[at] = range;
 }
 
 void CellsInUse::write_to_nodes(Slot s) {
   BrickGrid& grid = *model_.grid;
-  constexpr int width = record_doubles(node_fields.array);
+  constexpr NodeFields fields = mapped::densities_of_cells;
+  constexpr int width = record_doubles(fields.array);
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
-    double* at = grid.contributions(node_fields.array, s, f) + node_fields.first;
-    for (int n = 0; n < grid.shape().nodes(); ++n) at[width * n] = 0;
+    double* at = grid.contributions(fields.array, s, f);
+    for (int n = 0; n < grid.shape().nodes(); ++n)
+      for (int i = fields.first; i < fields.end(); ++i) at[width * n + i] = 0;
     const std::size_t index = grid.field_index(s, f);
     for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) {
-      at[width * node] = weighs_ ? weights_[index][cell] : static_cast<double>(cells_[index] >> cell & 1);
+      double* record = at + width * node;
+      double& in_use = record[node_field::cells_in_use.first];
+      if (has_densities()) {
+        in_use = densities_[index].densest[cell];
+        record[node_field::thinnest_of_cells.first] = densities_[index].thinnest[cell];
+      } else {
+        in_use = static_cast<double>(cells_[index] >> cell & 1);
+      }
     });
   }
 }
 
 void CellsInUse::read_from_nodes(Slot s) {
   const BrickGrid& grid = *model_.grid;
-  constexpr int width = record_doubles(node_fields.array);
+  constexpr NodeFields fields = mapped::densities_of_cells;
+  constexpr int width = record_doubles(fields.array);
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
-    const double* at = grid.contributions(node_fields.array, s, f) + node_fields.first;
-    Weights found;
-    for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) { found[cell] = at[width * node]; });
-    take(s, f, found);
+    const double* at = grid.contributions(fields.array, s, f);
+    Cells in_use = 0;
+    Densities found;
+    for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) {
+      const double* record = at + width * node;
+      found.densest[cell] = record[node_field::cells_in_use.first];
+      if (found.densest[cell] != 0) in_use |= Cells{1} << cell;
+      found.thinnest[cell] = record[node_field::thinnest_of_cells.first];
+    });
+    if (has_densities())
+      take(s, f, found);
+    else
+      cells_[grid.field_index(s, f)] = in_use;
   }
 }
 
 void CellsInUse::find() {
   BrickGrid& grid = *model_.grid;
   cells_.resize(grid.field_count());
-  weights_.resize(weighs_ ? grid.field_count() : 0);
-  common_weight_.resize(weights_.size());
-  heaviest_.resize(use_ == CellUse::lighter ? grid.field_count() : 0);
+  densities_.resize(has_densities() ? grid.field_count() : 0);
+  ranges_.resize(densities_.size());
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
     find_own(s);
     write_to_nodes(s);
   });
-  halo_.begin(grid, node_fields);
+  halo_.begin(grid, has_densities() ? mapped::densities_of_cells : mapped::cells_in_use);
   for_each_by_threads(grid.boundary(), grid.owned(), 4, [&](int s) { find_own(s); });
 }
 
@@ -273,14 +273,13 @@ void CellsInUse::finish_exchange() {
   BrickGrid& grid = *model_.grid;
   halo_.end(grid);
   for (int g = 0; g < grid.ghosts(); ++g) read_from_nodes(grid.owned() + g);
-  const bool keeps_weights = weighs_ && use_ == CellUse::means;
-  grid.reset_cells_around(keeps_weights);
+  grid.reset_cells_around(needs_.weights);
   for_each_by_threads(0, grid.owned(), 16, [&](int slot) {
     const auto s = static_cast<Slot>(slot);
-    combine(s, all_components, grid.cells_around(s), keeps_weights ? &grid.cell_weights(s) : nullptr);
+    combine(s, all_components, grid.cells_around(s), needs_.weights ? &grid.cell_weights(s) : nullptr);
     if (!grid.has_fields_by_component()) return;
     for (int f = 0; const std::int32_t component : grid.components(s)) {
-      combine(s, component, grid.cells_around(s, f), keeps_weights ? &grid.cell_weights(s, f) : nullptr);
+      combine(s, component, grid.cells_around(s, f), needs_.weights ? &grid.cell_weights(s, f) : nullptr);
       ++f;
     }
   });
@@ -303,16 +302,20 @@ CellsInUse::Cells CellsInUse::cells_of(Slot s, std::int32_t component) const {
   return all;
 }
 
-double CellsInUse::weight_of(Slot s, std::int32_t component, std::size_t cell) const {
-  double weight = 0;
+double CellsInUse::thinnest_of(Slot s, std::int32_t component, std::size_t cell) const {
+  double thinnest = 0;
   for_fields_of(s, component, [&](std::size_t field) {
-    const double of_field = weights_[field][cell];
-    if (use_ == CellUse::means || weight == 0)
-      weight = std::max(weight, of_field);
-    else if (of_field != 0)
-      weight = std::min(weight, of_field);
+    const double density = densities_[field].thinnest[cell];
+    if (thinnest == 0 || (density != 0 && density < thinnest)) thinnest = density;
   });
-  return weight;
+  return thinnest;
+}
+
+double CellsInUse::densest_of(Slot s, std::int32_t component, std::size_t cell) const {
+  double densest = 0;
+  for_fields_of(s, component,
+                [&](std::size_t field) { densest = std::max(densest, densities_[field].densest[cell]); });
+  return densest;
 }
 
 /// Of those in use in a brick and its neighbours.
@@ -321,7 +324,7 @@ bool CellsInUse::weigh_alike(const Brick& brick, std::int32_t component) const {
   for (const Slot from : brick.neighbour) {
     if (from == no_slot) continue;
     for_fields_of(from, component, [&](std::size_t field) {
-      const double weight = common_weight_[field];
+      const double weight = ranges_[field].weight;
       if (common == 0) common = weight;
       if (weight != 0 && weight != common) common = several;
     });
@@ -331,69 +334,68 @@ bool CellsInUse::weigh_alike(const Brick& brick, std::int32_t component) const {
 
 void CellsInUse::combine(Slot s, std::int32_t component, CellsAround& around,
                          CellWeightsAround* weights) const {
-  if (use_ == CellUse::lighter) {
-    around.beside_lighter = find_beside_lighter(s, component);
-    return;
-  }
+  if (needs_.use) combine_use(s, component, around, weights);
+  if (needs_.lighter) around.beside_lighter = find_beside_lighter(s, component);
+}
+
+void CellsInUse::combine_use(Slot s, std::int32_t component, CellsAround& around,
+                             CellWeightsAround* weights) const {
   const Brick& brick = model_.grid->brick(s);
   const auto is_full = [&](Slot from) { return from != no_slot && cells_of(from, component) == ~Cells{0}; };
   if (weights != nullptr && weigh_alike(brick, component)) weights = nullptr;
   if (weights == nullptr && std::ranges::all_of(brick.neighbour, is_full)) return around.add_all();
-  collect(s, component, around, weights);
+  collect(s, component, around, weights,
+          [&](Slot from, std::size_t cell) { return weight_of(densest_of(from, component, cell)); });
   if (weights != nullptr && all_alike(*weights)) around.weights = nullptr;
 }
 
 /// A brick's own cells whose densest particles are much denser than the thinnest ones of the 27 cells around.
 CellsInUse::Cells CellsInUse::find_beside_lighter(Slot s, std::int32_t component) const {
-  const Brick& brick = model_.grid->brick(s);
-  Weights heaviest{};
-  double largest = 0;
-  for_fields_of(s, component, [&](std::size_t field) {
-    for (std::size_t cell = 0; cell < heaviest.size(); ++cell) {
-      heaviest[cell] = std::max(heaviest[cell], heaviest_[field][cell]);
-      largest = std::max(largest, heaviest[cell]);
-    }
-  });
-  if (empty_density_ > 0) {
-    if (!(largest > much_lighter * empty_density_)) return 0;
-  } else if (weigh_alike(brick, component)) {
-    double lightest = std::numeric_limits<double>::infinity();
-    for_fields_of(s, component, [&](std::size_t field) {
-      if (common_weight_[field] != 0) lightest = common_weight_[field];
+  double densest = 0,
+         thinnest = empty_density_ > 0 ? empty_density_ : std::numeric_limits<double>::infinity();
+  for_fields_of(s, component,
+                [&](std::size_t field) { densest = std::max(densest, ranges_[field].densest); });
+  for (const Slot from : model_.grid->brick(s).neighbour) {
+    if (from == no_slot) continue;
+    for_fields_of(from, component, [&](std::size_t field) {
+      if (ranges_[field].thinnest != 0) thinnest = std::min(thinnest, ranges_[field].thinnest);
     });
-    if (!(largest > much_lighter * lightest)) return 0;
   }
+  if (!(densest > much_lighter * thinnest)) return 0;
+
   CellsAround around;
-  CellWeightsAround lightest;
-  collect(s, component, around, &lightest);
+  CellWeightsAround densities;
+  collect(s, component, around, &densities,
+          [&](Slot from, std::size_t cell) { return thinnest_of(from, component, cell); });
   const auto is_much_lighter = [&](double density, double than) {
     const double light = density == 0 ? empty_density_ : density;
     return light > 0 && than > much_lighter * light;
   };
   Cells beside = 0;
-  for (std::size_t cell = 0; cell < heaviest.size(); ++cell) {
-    if (heaviest[cell] == 0) continue;
-    const auto number = static_cast<int>(cell);
-    const int i = number % brick_cells, j = number / brick_cells % brick_cells,
-              k = number / (brick_cells * brick_cells);
-    bool found = false;
-    for (int n = 0; n < neighbourhood && !found; ++n) {
+  for (Cells own = cells_of(s, component); own != 0; own &= own - 1) {
+    const int cell = std::countr_zero(own);
+    const double dense = densest_of(s, component, static_cast<std::size_t>(cell));
+    const int i = cell % brick_cells, j = cell / brick_cells % brick_cells,
+              k = cell / (brick_cells * brick_cells);
+    for (int n = 0; n < neighbourhood; ++n) {
       const BrickCoord d = neighbour_offset(n);
-      found = is_much_lighter(around.weight(i + d.x, j + d.y, k + d.z), heaviest[cell]);
+      if (!is_much_lighter(around.weight(i + d.x, j + d.y, k + d.z), dense)) continue;
+      beside |= Cells{1} << cell;
+      break;
     }
-    if (found) beside |= Cells{1} << cell;
   }
   return beside;
 }
 
-/// The cells of a brick and its neighbours, and their weights, if asked for.
-void CellsInUse::collect(Slot s, std::int32_t component, CellsAround& around,
-                         CellWeightsAround* weights) const {
+/// The cells of a brick and its neighbours, and value(brick, number of the cell's bit) of each, if asked for.
+template <class F>
+void CellsInUse::collect(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* values,
+                         F value) const {
   const BrickGrid& grid = *model_.grid;
   const Brick& brick = grid.brick(s);
-  if (weights != nullptr) {
-    *weights = {};
-    around.weights = weights;
+  if (values != nullptr) {
+    *values = {};
+    around.weights = values;
   }
   for (int n = 0; n < neighbourhood; ++n) {
     const Slot from = brick.neighbour[static_cast<std::size_t>(n)];
@@ -409,29 +411,29 @@ void CellsInUse::collect(Slot s, std::int32_t component, CellsAround& around,
         const unsigned within = d.x < 0 ? row >> 3 : d.x > 0 ? (row & 1u) << 5 : row << 1;
         const int at_j = j + brick_cells * d.y, at_k = k + brick_cells * d.z;
         around.add_row(at_j, at_k, within);
-        if (weights == nullptr) continue;
-        double* const to = weights->row[CellsAround::index(at_j, at_k)];
+        if (values == nullptr) continue;
+        double* const to = values->row[CellsAround::index(at_j, at_k)];
         for (int i = lowest(d.x); i <= highest(d.x); ++i) {
           const int number = i + brick_cells * (j + brick_cells * k);
-          to[i + brick_cells * d.x + 1] = weight_of(from, component, static_cast<std::size_t>(number));
+          to[i + brick_cells * d.x + 1] = value(from, static_cast<std::size_t>(number));
         }
       }
     }
   }
-  add_mirror_images(grid.geometry(), brick.coord, around, weights);
+  add_mirror_images(grid.geometry(), brick.coord, around, values);
 }
 
 std::unique_ptr<CellsInUse> make_cells_in_use(Model& model, NodeHalo& halo, std::vector<int> without) {
-  using Made = std::unique_ptr<CellsInUse>;
-  const auto make = [&](CellUse use) {
-    return std::make_unique<CellsInUse>(model, halo, use, std::move(without));
-  };
-  return with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> Made {
-    if constexpr (needs_cells<S>) return make(CellUse::means);
-    if constexpr (needs_lighter_cells<S>)
-      if (may_be_much_lighter(model)) return make(CellUse::lighter);
-    return nullptr;
-  });
+  const auto is_of_another_material = [&](const Body& b) { return b.material != model.bodies[0].material; };
+  const bool several = std::ranges::any_of(model.bodies, is_of_another_material);
+  const CellNeeds needs =
+      with_shape(model.scene->grid.shape, [&]<class S>(std::type_identity<S>) -> CellNeeds {
+        return {.use = needs_cells<S>,
+                .weights = needs_cells<S> && several,
+                .lighter = needs_lighter_cells<S> && may_be_much_lighter(model)};
+      });
+  if (!needs.use && !needs.lighter) return nullptr;
+  return std::make_unique<CellsInUse>(model, halo, needs, std::move(without));
 }
 
 }  // namespace mpm::core

@@ -5,6 +5,7 @@
 // density (core/shape/ddmp.hpp), or those beside much lighter ones are found (core/shape/linear.hpp).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -22,14 +23,17 @@ namespace mpm::core {
 std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = all_components,
                          std::span<const int> without = {});
 
-/// What of the cells: whether they hold particles, and in scenes of several materials their weights in means;
-/// or which of them are beside lighter ones.
-enum class CellUse { means, lighter };
+/// What shape functions need to know of the cells.
+struct CellNeeds {
+  bool use = false;      ///< which hold particles
+  bool weights = false;  ///< in means over cells
+  bool lighter = false;  ///< which are beside much lighter ones
+};
 
 class CellsInUse {
  public:
   /// `without`: bodies that use no cells.
-  CellsInUse(Model& model, NodeHalo& halo, CellUse use, std::vector<int> without = {});
+  CellsInUse(Model& model, NodeHalo& halo, CellNeeds needs, std::vector<int> without = {});
 
   /// Finds the cells of the bricks; when it returns, the exchange is in progress. Collective.
   void find();
@@ -38,39 +42,47 @@ class CellsInUse {
 
  private:
   using Cells = std::uint64_t;
-  /// By the number of the cell's bit; 0: not in use.
-  using Weights = std::array<double, brick_cells * brick_cells * brick_cells>;
+  /// Of a field's particles in each cell, by the number of its bit; 0: not in use.
+  struct Densities {
+    std::array<double, brick_cells * brick_cells * brick_cells> thinnest{}, densest{};
+  };
+  /// Of a field's cells in use; 0 if there are none.
+  struct Range {
+    double thinnest = 0, densest = 0;
+    double weight = 0;  ///< of all of them; or `several`
+  };
+  static constexpr double several = -1;
+
+  bool has_densities() const { return needs_.weights || needs_.lighter; }
   void find_own(Slot s);
   void find_field(Slot s, int field, std::int32_t component);
-  template <class F>
-  void for_each_density(Slot s, std::int32_t component, F f) const;
-  Weights find_heaviest(Slot s, std::int32_t component) const;
-  Weights find_lightest(Slot s, std::int32_t component, Weights& heaviest) const;
-  void take(Slot s, int field, const Weights& found);
+  Densities find_densities(Slot s, std::int32_t component) const;
+  void take(Slot s, int field, const Densities& found);
   void write_to_nodes(Slot s);
   void read_from_nodes(Slot s);
   Cells& cells(Slot s, int field) { return cells_[model_.grid->field_index(s, field)]; }
   template <class F>
   void for_fields_of(Slot s, std::int32_t component, F f) const;
   Cells cells_of(Slot s, std::int32_t component) const;
-  double weight_of(Slot s, std::int32_t component, std::size_t cell) const;
+  double thinnest_of(Slot s, std::int32_t component, std::size_t cell) const;
+  double densest_of(Slot s, std::int32_t component, std::size_t cell) const;
+  double weight_of(double density) const { return std::min(density, largest_weight_); }
   bool weigh_alike(const Brick& brick, std::int32_t component) const;
   void combine(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* weights) const;
-  void collect(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* weights) const;
+  void combine_use(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* weights) const;
+  template <class F>
+  void collect(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* values, F value) const;
   Cells find_beside_lighter(Slot s, std::int32_t component) const;
 
   Model& model_;
   NodeHalo& halo_;
   const std::vector<int> without_;
-  const CellUse use_;
-  const bool weighs_;              ///< cells, in a scene of several materials
-  const double largest_weight_;    ///< a tenth of the bodies' largest density of reference; lighter: infinite
-  const double empty_density_;     ///< lighter: as which cells without particles count; or 0
-  std::vector<Cells> cells_;       ///< by BrickGrid::field_index()
-  std::vector<Weights> weights_;   ///< alike, where it weighs them: in means; lighter: the least densities
-  std::vector<Weights> heaviest_;  ///< lighter: the largest densities; of owned bricks
-  static constexpr double several = -1;
-  std::vector<double> common_weight_;  ///< of all cells in use of a field; 0: none; or several
+  const CellNeeds needs_;
+  const double largest_weight_;       ///< a tenth of the bodies' largest density of reference
+  const double empty_density_;        ///< of cells without particles, where these count; or 0
+  std::vector<Cells> cells_;          ///< by BrickGrid::field_index()
+  std::vector<Densities> densities_;  ///< alike, where they are needed
+  std::vector<Range> ranges_;         ///< alike
 };
 
 /// Densities of a cell and of one beside it differ much where their ratio exceeds this.

@@ -15,10 +15,16 @@ void ReferenceStepper::find_cells_in_use() {
   for (const auto& particle : case_.particles) {
     const std::array<int, 3> c = cell_at(geometry_, particle.x);
     double& weight = geometry_.weight[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))];
-    const double density = std::min(case_.material.density / 10, 4 * particle.m / particle.V);
-    weight = case_.weigh_cells ? std::max(weight, density) : 1;
+    const double density = std::min(case_.material.density / 10, density_of(particle));
+    weight = case_.weigh_cells || has_light() ? std::max(weight, density) : 1;
   }
   average_gradients(geometry_);
+}
+
+/// In which cells count.
+double ReferenceStepper::density_of(const ReferenceParticle& particle) const {
+  const double most = case_.material.density * (index_of(particle) < case_.light_from ? 1 : 1e-3);
+  return std::min(most, 4 * particle.m / particle.V);
 }
 
 /// Which particles act from inside their cells. With USL cells without particles count as cells of the light
@@ -30,12 +36,10 @@ void ReferenceStepper::find_inset() {
   };
   const double light = 1e-3 * case_.material.density;
   std::map<Cell, Densities> cells;
-  for (std::size_t n = 0; n < case_.particles.size(); ++n) {
-    const ReferenceParticle& p = case_.particles[n];
-    const double density = std::min(n < case_.light_from ? case_.material.density : light, 4 * p.m / p.V);
+  for (const ReferenceParticle& p : case_.particles) {
     Densities& of = cells[cell_at(geometry_, p.x)];
-    of.thinnest = std::min(of.thinnest, density);
-    of.densest = std::max(of.densest, density);
+    of.thinnest = std::min(of.thinnest, density_of(p));
+    of.densest = std::max(of.densest, density_of(p));
   }
   inset_.clear();
   for (const ReferenceParticle& p : case_.particles) {
@@ -55,6 +59,17 @@ void ReferenceStepper::find_inset() {
     }
     inset_.push_back(cells[own].densest > 10 * thinnest);
   }
+}
+
+Vector ReferenceStepper::acting_point(const ReferenceParticle& particle) const {
+  Vector x = particle.x;
+  if (inset_.empty() || !inset_[index_of(particle)]) return x;
+  const std::array<int, 3> cell = cell_at(geometry_, x);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double lowest = case_.origin[a] + case_.cell[a] * cell[a], margin = case_.inset * case_.cell[a];
+    x[a] = std::clamp(x[a], lowest + margin, lowest + case_.cell[a] - margin);
+  }
+  return x;
 }
 
 /// With the particle's domain.

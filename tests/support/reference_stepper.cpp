@@ -80,7 +80,7 @@ void ReferenceStepper::step_with() {
   const double velocity_dt = one_length ? dt : 0.5 * (last_dt_ + dt);
   if (!(dt > 0) || std::isinf(dt)) throw std::runtime_error("the time step is " + std::to_string(dt));
   if (case_.shape == ReferenceShape::ddmp) find_cells_in_use();
-  if (case_.light_from < case_.particles.size()) find_inset();
+  if (has_light()) find_inset();
   find_supports<Support>();
   particles_to_grid<Support>();
   const bool averages = case_.scheme == ReferenceScheme::usavg;
@@ -123,7 +123,7 @@ void ReferenceStepper::step_with() {
 
 template <>
 ReferenceStepper::CellSupport ReferenceStepper::find_support(const ReferenceParticle& particle) const {
-  const Vector& x = particle.x;
+  const Vector x = acting_point(particle);
   std::array<std::size_t, 3> first{};
   double N[3][2], dN[3][2];
   for (std::size_t a = 0; a < 3; ++a) {
@@ -133,8 +133,6 @@ ReferenceStepper::CellSupport ReferenceStepper::find_support(const ReferencePart
     const double below = std::min(std::floor(scaled), cells - 1);  // the upper face belongs to the last cell
     first[a] = static_cast<std::size_t>(below);
     N[a][1] = scaled - below;
-    if (!inset_.empty() && inset_[static_cast<std::size_t>(&particle - case_.particles.data())])
-      N[a][1] = std::clamp(N[a][1], case_.inset, 1 - case_.inset);
     N[a][0] = 1 - N[a][1];
     dN[a][1] = inverse_cell_[a];
     dN[a][0] = -dN[a][1];
@@ -160,8 +158,9 @@ ReferenceStepper::AnySupport ReferenceStepper::find_support(const ReferenceParti
     if (!(position >= 0 && position <= case_.cells[a])) report_outside(x);
   }
   AnySupport result;
-  result.wide = case_.shape == ReferenceShape::ddmp ? wide_support(geometry_, x)  // no copy of its tables
-                                                    : wide_support(grid_of(particle), x);
+  result.wide = case_.shape == ReferenceShape::ddmp
+                    ? wide_support(geometry_, acting_point(particle))  // no copy of its tables
+                    : wide_support(grid_of(particle), x);
   result.count = result.wide.count;
   for (std::size_t n = 0; n < result.count; ++n) result.node[n] = number(result.wide.entry[n].node);
   return result;
@@ -238,7 +237,7 @@ void ReferenceStepper::initial_velocities(double dt) {
 /// force on light nodes is divided by m_floor instead of m. Not the external one: a body that falls freely
 /// stays unstrained.
 void ReferenceStepper::integrate_momentum(double dt) {
-  const double lightest = case_.light_from < case_.particles.size() ? 1e-3 : 1;
+  const double lightest = has_light() ? 1e-3 : 1;
   const double floor =
       case_.scheme == ReferenceScheme::usl ? case_.usl_mass_floor * lightest * node_mass_unit_ : 0.0;
   for_active_nodes([&](const Index& index, Node& node) {

@@ -51,10 +51,10 @@ struct ReferenceCase {
   /// ddmp: means over cells weighted with the largest of a cell's densities, each the least of a tenth of the
   /// material's and four times the particle's.
   bool weigh_cells = false;
-  /// linear: particles from this one on are of a thousandth of the material's density; they share its law.
-  /// Particles in cells whose densest ones are more than ten times as dense as the thinnest ones of the 27
-  /// cells around act from `inset` of an edge or more from the cell's faces. A particle's density is at most
-  /// 4 m/V.
+  /// linear and ddmp: particles from this one on are of a thousandth of the material's density; they share
+  /// its law. Particles in cells whose densest ones are more than ten times as dense as the thinnest ones of
+  /// the 27 cells around act from `inset` of an edge or more from the cell's faces. A particle's density is
+  /// at most 4 m/V.
   std::size_t light_from = std::numeric_limits<std::size_t>::max();
   double inset = 0.15;
   /// The critical step, in units of a wave's crossing time of a cell.
@@ -138,12 +138,17 @@ class ReferenceStepper {
   /// At the start of the step.
   template <class Support>
   const Support& support(const ReferenceParticle& particle) const {
-    return std::get<std::vector<Support>>(
-        supports_)[static_cast<std::size_t>(&particle - case_.particles.data())];
+    return std::get<std::vector<Support>>(supports_)[index_of(particle)];
   }
   /// By their particles at the start of the step.
   void find_cells_in_use();
   void find_inset();
+  Vector acting_point(const ReferenceParticle& particle) const;
+  double density_of(const ReferenceParticle& particle) const;
+  std::size_t index_of(const ReferenceParticle& particle) const {
+    return static_cast<std::size_t>(&particle - case_.particles.data());
+  }
+  bool has_light() const { return case_.light_from < case_.particles.size(); }
   ReferenceGrid grid_of(const ReferenceParticle& particle) const;
   std::size_t number(const std::array<int, 3>& node) const;
   Stop stop(const Index& node, std::size_t axis, double velocity) const;

@@ -26,12 +26,12 @@ BODIES = [_mpm.block("left", (0.2, 5.2, 0.4), (3, 3, 3), (-2, 3, -4), of="warm")
 GRID = _mpm.grid((0, 0, 0), (12, 9, 8), "200140")
 
 
-def scene(shape, transfer, algorithm, end=END, bodies=BODIES, gravity=-9.8, grid=GRID, averaging="none"):
+def scene(shape, transfer, algorithm, end=END, bodies=BODIES, gravity=-9.8, grid=GRID, averaging="none", materials=MATERIALS):
     word, _, more = transfer.partition(" ")
     attributes = f'transfer="{word}" {more}'
     volumetric = f'<Volumetric averaging="{averaging}" relaxation="{0.5 if averaging == "cell" else 0}"/>'
     return _mpm.scene(bodies, grid.replace("<Grid>", f'<Grid shape="{shape}">'),
-                      _mpm.solution(end, algorithm, 0.4, attributes, f'<Gravity ax="0" ay="0" az="{gravity}"/>{volumetric}'), MATERIALS,
+                      _mpm.solution(end, algorithm, 0.4, attributes, f'<Gravity ax="0" ay="0" az="{gravity}"/>{volumetric}'), materials,
                       f'<Console print_time="{END / 2}"/><Restart time_interval="{END / 2}"/>')
 
 
@@ -52,6 +52,19 @@ class Methods(Case):
                     self.assertEqual(self.run_in(f"other{n}", [path], **how).state, alone)
                     halfway, how = _mpm.restarts(self.folder / f"other{n}")[0], {}
                 self.assertEqual(self.run_in(f"again{n}", [halfway], **how).state, alone)
+
+    def test_same_bits_beside_lighter_material(self):
+        """In cells beside lighter ones particles act from inside, also where these are in bricks of other ranks."""
+        heavy = [_mpm.material("warm", 100.0, 'type="IsoElastic" Young="1e6" Poisson="0.3" ' + HEAT.format(400)), MATERIALS[1]]
+        for shape in ("linear", "DDMP"):
+            for algorithm in SCHEMES:
+                with self.subTest(shape=shape, algorithm=algorithm):
+                    path = self.write(scene(shape, "FLIP", algorithm, end=0.1, materials=heavy))
+                    alone = self.run_in(f"alone {shape} {algorithm}", [path]).state
+                    other = self.run_in(f"other {shape} {algorithm}", [path], ranks=3, threads=2)
+                    self.assertEqual(other.state, alone)
+                    halfway = _mpm.restarts(self.folder / f"other {shape} {algorithm}")[0]
+                    self.assertEqual(self.run_in(f"again {shape} {algorithm}", [halfway], ranks=2).state, alone)
 
     def test_restarts_between_corrections(self):
         """Wherever a run stops between two steps that correct, it goes on to the same bits."""

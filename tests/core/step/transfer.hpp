@@ -226,6 +226,16 @@ struct TransferCase {
     }
     return at;
   }
+  /// Inside a cell beside lighter ones.
+  Place acting_place(const std::vector<double>& p) const {
+    Place at = place(p);
+    const auto& c = at.cell;
+    if ((cells.beside_lighter >> (c[0] + core::brick_cells * (c[1] + core::brick_cells * c[2])) & 1) != 0) {
+      for (std::size_t a = 0; a < 3; ++a)
+        at.position[a] = c[a] + std::clamp(at.position[a] - c[a], core::inset, 1 - core::inset);
+    }
+    return at;
+  }
   /// f(node, S, gradient of S) for the nodes of a particle.
   template <class F>
   void for_each_node(const std::vector<double>& p, F f) const {
@@ -238,13 +248,8 @@ struct TransferCase {
   }
   template <class F>
   void for_each_node_of_axes(const std::vector<double>& p, F f) const {
-    Place at = place(p);
+    const Place at = acting_place(p);
     constexpr int n = S::nodes_per_axis;
-    if (const auto& c = at.cell;
-        cells.beside_lighter >> (c[0] + core::brick_cells * (c[1] + core::brick_cells * c[2])) & 1) {
-      for (std::size_t a = 0; a < 3; ++a)
-        at.position[a] = c[a] + std::clamp(at.position[a] - c[a], core::inset, 1 - core::inset);
-    }
     for (int i = 0; i < n * n * n; ++i) {
       const int d[3] = {i % n, i / n % n, i / (n * n)};
       double w[3], dw[3];
@@ -332,7 +337,14 @@ struct TransferCase {
     }
     for (int c = 0; c < n * n * n; ++c)
       grid.weight.push_back(cells.weight(c % n - 1, c / n % n - 1, c / (n * n) - 1));
-    const WideSupport support = wide_support(grid, {p[0], p[1], p[2]});
+    Vector x = {p[0], p[1], p[2]};
+    if (cells.beside_lighter != 0) {
+      const Place at = acting_place(p);
+      for (std::size_t a = 0; a < 3; ++a)
+        x[a] = geometry.origin[static_cast<int>(a)] +
+               geometry.cell[static_cast<int>(a)] * (first_node(static_cast<int>(a)) + at.position[a]);
+    }
+    const WideSupport support = wide_support(grid, x);
     for (std::size_t i = 0; i < support.count; ++i) {
       const WideSupport::Entry& entry = support.entry[i];
       const Vector& g = entry.slope[0];
