@@ -59,7 +59,7 @@ class Methods(Case):
         for shape in ("linear", "DDMP"):
             for algorithm in SCHEMES:
                 with self.subTest(shape=shape, algorithm=algorithm):
-                    path = self.write(scene(shape, "FLIP", algorithm, end=0.1, materials=heavy))
+                    path = self.write(scene(shape, "FLIP", algorithm, materials=heavy))
                     alone = self.run_in(f"alone {shape} {algorithm}", [path]).state
                     other = self.run_in(f"other {shape} {algorithm}", [path], ranks=3, threads=2)
                     self.assertEqual(other.state, alone)
