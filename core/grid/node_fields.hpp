@@ -58,7 +58,8 @@ inline constexpr NodeFields second_mass{NodeArray::second, 3, 1};
 inline constexpr NodeFields start_momentum{NodeArray::sixth, 0, 3};
 inline constexpr NodeFields start_mass{NodeArray::sixth, 3, 1};
 inline constexpr NodeFields start_force{NodeArray::seventh, 4, 3};
-// Cells in use or their densest particles, and their thinnest (core/step/cells_in_use.hpp).
+// Cells in use or their weights in means, and densities of their thinnest material
+// (core/step/cells_in_use.hpp).
 inline constexpr NodeFields thinnest_of_cells{NodeArray::first, 6, 1};
 inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
 // Implicit steps: sum of S + h |grad S|, positive where a node is active; volumes, those of bodies of
@@ -134,7 +135,9 @@ inline constexpr NodeFields start_force = node_field::start_force;   ///< moment
 inline constexpr NodeFields momentum = node_field::second_momentum;  ///< mass stays zero
 inline constexpr NodeFields correction = node_field::correction;
 inline constexpr NodeFields cells_in_use = node_field::cells_in_use;
-inline constexpr NodeFields densities_of_cells = node_field::thinnest_of_cells | node_field::cells_in_use;
+inline constexpr NodeFields thinnest_of_cells = node_field::thinnest_of_cells;
+inline constexpr NodeFields cells_in_use_and_thinnest =
+    node_field::thinnest_of_cells | node_field::cells_in_use;
 inline constexpr NodeFields surface = node_field::surface | node_field::surface_mass;
 inline constexpr NodeFields reach = node_field::reach;
 inline constexpr NodeFields heat = node_field::heat_capacity | node_field::heat;

@@ -130,34 +130,65 @@ CellsInUse::CellsInUse(Model& model, NodeHalo& halo, CellNeeds needs, std::vecto
       // material.
       empty_density_(model.scene->solution.scheme == Scheme::usl ? least_density(model.bodies) : 0) {}
 
-/// A particle's density is the less of its material's density of reference and 4 m/V: solids always have the
-/// same, gases a lesser one once they have expanded much.
-CellsInUse::Densities CellsInUse::find_densities(Slot s, std::int32_t component) const {
+NodeFields CellsInUse::exchanged() const {
+  if (!needs_.lighter) return mapped::cells_in_use;
+  return needs_.use ? mapped::cells_in_use_and_thinnest : mapped::thinnest_of_cells;
+}
+
+CellsInUse::Range CellsInUse::range_of(Slot s) const {
+  Range range;
+  for_each_tile(model_.grid->brick(s), all_components, without_, [&](const ParticleTile& tile, std::size_t) {
+    if (tile.blocks.empty()) return;
+    const double density = model_.bodies[static_cast<std::size_t>(tile.body)].model->reference_density();
+    range.include({density, density});
+  });
+  return range;
+}
+
+/// By the bodies that have particles in the brick and around it, as far as this rank knows them.
+bool CellsInUse::may_be_beside_lighter(Slot s) const {
+  const BrickGrid& grid = *model_.grid;
+  Range range;
+  if (empty_density_ > 0) range.thinnest = empty_density_;
+  for (const Slot from : grid.brick(s).neighbour) {
+    if (from == no_slot) continue;
+    if (from >= grid.owned()) return true;
+    range.include(ranges_[static_cast<std::size_t>(from)]);
+  }
+  return range.differs_much();
+}
+
+/// A cell weighs as much as its densest particle, whose density is the least of its material's density of
+/// reference, 4 m/V and the largest weight. So solids always weigh the same, materials weigh alike whose
+/// densities differ up to tenfold, and gases weigh less once they have expanded much.
+CellsInUse::Found CellsInUse::find_densities(Slot s, std::int32_t component) const {
   using Block = Lanes<block_lanes>;
   constexpr double least = std::numeric_limits<double>::min();
   const Brick& brick = model_.grid->brick(s);
   const BrickFrame frame(model_.grid->geometry(), brick.coord);
-  Densities densities;
-  const auto add = [&](int cell, double density) {
-    const auto at = static_cast<std::size_t>(cell);
-    double& thinnest = densities.thinnest[at];
-    if (thinnest == 0 || density < thinnest) thinnest = density;
-    densities.densest[at] = std::max(densities.densest[at], density);
-  };
+  const int columns = static_cast<int>(needs_.weights ? Column::volume : Column::position_z) + 1;
+  Found to;
   for_each_tile(brick, component, without_, [&](const ParticleTile& tile, std::size_t c) {
     const Body& body = model_.bodies[static_cast<std::size_t>(tile.body)];
     const ColumnLayout& layout = body.pool->layout();
-    const double most = std::max(body.model->reference_density(), least);
+    const double density = std::max(body.model->reference_density(), least),
+                 most = std::min(density, largest_weight_);
     const BlockPrefetch prefetch(model_, s, c);
+    const auto add = [&](int cell, double weight) {
+      const auto at = static_cast<std::size_t>(cell);
+      to.weight[at] = std::max(to.weight[at], weight);
+      to.densest[at] = std::max(to.densest[at], density);
+      if (to.thinnest[at] == 0 || density < to.thinnest[at]) to.thinnest[at] = density;
+    };
     CellsOfParticles found;  // of blocks without thin particles
     for (std::size_t b = 0; b < tile.blocks.size(); ++b) {
-      prefetch.request<Linear>(b, layout, static_cast<int>(Column::volume) + 1);
+      prefetch.request<Linear>(b, layout, columns);
       const double* block = body.pool->block(tile.blocks[b]);
       const int used = tile.used_lanes(b);
       const double *x = block + layout.offset(Column::position_x),
                    *mass = block + layout.offset(Column::mass),
                    *volume = block + layout.offset(Column::volume);
-      if (all(Block(4.0) * load<Block>(mass) >= Block(most) * load<Block>(volume))) {
+      if (!needs_.weights || all(Block(4.0) * load<Block>(mass) >= Block(most) * load<Block>(volume))) {
         found.add(frame, layout, block, (1u << used) - 1);
         continue;
       }
@@ -170,7 +201,7 @@ CellsInUse::Densities CellsInUse::find_densities(Slot s, std::int32_t component)
     for (std::uint64_t cells = found.cells(); cells != 0; cells &= cells - 1)
       add(std::countr_zero(cells), most);
   });
-  return densities;
+  return to;
 }
 
 void CellsInUse::find_own(Slot s) {
@@ -178,7 +209,7 @@ void CellsInUse::find_own(Slot s) {
   prefetch_coming_bricks(grid, s);
   if (!grid.has_fields_by_component()) {
     const std::optional<Cells> known =
-        without_.empty() && !has_densities() ? grid.own_cells(s) : std::nullopt;
+        without_.empty() && !needs_.densities() ? grid.own_cells(s) : std::nullopt;
     if (known)
       cells(s, 0) = *known;
     else
@@ -190,82 +221,81 @@ void CellsInUse::find_own(Slot s) {
 }
 
 void CellsInUse::find_field(Slot s, int field, std::int32_t component) {
-  if (has_densities())
-    take(s, field, find_densities(s, component));
+  const std::size_t at = model_.grid->field_index(s, field);
+  if (!needs_.densities())
+    cells_[at] = find_cells(model_, s, component, without_);
+  else if (needs_.use || may_be_beside_lighter(s))
+    take(at, find_densities(s, component));
   else
-    cells(s, field) = find_cells(model_, s, component, without_);
+    take(at, {});
 }
 
-void CellsInUse::take(Slot s, int field, const Densities& found) {
-  const std::size_t at = model_.grid->field_index(s, field);
+void CellsInUse::take(std::size_t at, const Found& found) {
   Cells in_use = 0;
-  Range range;
-  for (std::size_t c = 0; c < found.densest.size(); ++c) {
-    if (found.densest[c] == 0) continue;
-    const double weight = weight_of(found.densest[c]);
-    range.thinnest = in_use == 0 ? found.thinnest[c] : std::min(range.thinnest, found.thinnest[c]);
-    range.densest = std::max(range.densest, found.densest[c]);
-    range.weight = in_use == 0 || weight == range.weight ? weight : several;
+  double common = 0;
+  for (std::size_t c = 0; c < found.weight.size(); ++c) {
+    const double weight = found.weight[c];
+    if (weight == 0 && found.thinnest[c] == 0) continue;
+    common = in_use == 0 || weight == common ? weight : several;
     in_use |= Cells{1} << c;
   }
   cells_[at] = in_use;
-  densities_[at] = found;
-  ranges_[at] = range;
+  found_[at] = found;
+  common_weight_[at] = common;
 }
 
 void CellsInUse::write_to_nodes(Slot s) {
   BrickGrid& grid = *model_.grid;
-  constexpr NodeFields fields = mapped::densities_of_cells;
-  constexpr int width = record_doubles(fields.array);
+  const NodeFields fields = exchanged();
+  const int width = record_doubles(fields.array);
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
-    double* at = grid.contributions(fields.array, s, f);
+    double* records = grid.contributions(fields.array, s, f);
     for (int n = 0; n < grid.shape().nodes(); ++n)
-      for (int i = fields.first; i < fields.end(); ++i) at[width * n + i] = 0;
-    const std::size_t index = grid.field_index(s, f);
+      std::fill_n(records + width * n + fields.first, fields.count, 0.0);
+    const std::size_t at = grid.field_index(s, f);
     for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) {
-      double* record = at + width * node;
-      double& in_use = record[node_field::cells_in_use.first];
-      if (has_densities()) {
-        in_use = densities_[index].densest[cell];
-        record[node_field::thinnest_of_cells.first] = densities_[index].thinnest[cell];
-      } else {
-        in_use = static_cast<double>(cells_[index] >> cell & 1);
-      }
+      double* record = records + width * node;
+      if (needs_.use)
+        record[node_field::cells_in_use.first] =
+            needs_.densities() ? found_[at].weight[cell] : static_cast<double>(cells_[at] >> cell & 1);
+      if (needs_.lighter) record[node_field::thinnest_of_cells.first] = found_[at].thinnest[cell];
     });
   }
 }
 
 void CellsInUse::read_from_nodes(Slot s) {
   const BrickGrid& grid = *model_.grid;
-  constexpr NodeFields fields = mapped::densities_of_cells;
-  constexpr int width = record_doubles(fields.array);
+  const int width = record_doubles(exchanged().array);
   for (int f = 0; f < grid.velocity_fields(s); ++f) {
-    const double* at = grid.contributions(fields.array, s, f);
+    const double* records = grid.contributions(exchanged().array, s, f);
     Cells in_use = 0;
-    Densities found;
+    Found found;
     for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) {
-      const double* record = at + width * node;
-      found.densest[cell] = record[node_field::cells_in_use.first];
-      if (found.densest[cell] != 0) in_use |= Cells{1} << cell;
-      found.thinnest[cell] = record[node_field::thinnest_of_cells.first];
+      const double* record = records + width * node;
+      if (needs_.use) found.weight[cell] = record[node_field::cells_in_use.first];
+      if (needs_.lighter) found.thinnest[cell] = record[node_field::thinnest_of_cells.first];
+      if (found.weight[cell] != 0) in_use |= Cells{1} << cell;
     });
-    if (has_densities())
-      take(s, f, found);
+    const std::size_t at = grid.field_index(s, f);
+    if (needs_.densities())
+      take(at, found);
     else
-      cells_[grid.field_index(s, f)] = in_use;
+      cells_[at] = in_use;
   }
 }
 
 void CellsInUse::find() {
   BrickGrid& grid = *model_.grid;
   cells_.resize(grid.field_count());
-  densities_.resize(has_densities() ? grid.field_count() : 0);
-  ranges_.resize(densities_.size());
+  found_.resize(needs_.densities() ? grid.field_count() : 0);
+  common_weight_.resize(found_.size());
+  ranges_.clear();
+  for (Slot s = 0; needs_.lighter && s < grid.owned(); ++s) ranges_.push_back(range_of(s));
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
     find_own(s);
     write_to_nodes(s);
   });
-  halo_.begin(grid, has_densities() ? mapped::densities_of_cells : mapped::cells_in_use);
+  halo_.begin(grid, exchanged());
   for_each_by_threads(grid.boundary(), grid.owned(), 4, [&](int s) { find_own(s); });
 }
 
@@ -302,20 +332,21 @@ CellsInUse::Cells CellsInUse::cells_of(Slot s, std::int32_t component) const {
   return all;
 }
 
+double CellsInUse::largest_of(const OfCells Found::*what, Slot s, std::int32_t component,
+                              std::size_t cell) const {
+  double largest = 0;
+  for_fields_of(s, component,
+                [&](std::size_t field) { largest = std::max(largest, (found_[field].*what)[cell]); });
+  return largest;
+}
+
 double CellsInUse::thinnest_of(Slot s, std::int32_t component, std::size_t cell) const {
   double thinnest = 0;
   for_fields_of(s, component, [&](std::size_t field) {
-    const double density = densities_[field].thinnest[cell];
+    const double density = found_[field].thinnest[cell];
     if (thinnest == 0 || (density != 0 && density < thinnest)) thinnest = density;
   });
   return thinnest;
-}
-
-double CellsInUse::densest_of(Slot s, std::int32_t component, std::size_t cell) const {
-  double densest = 0;
-  for_fields_of(s, component,
-                [&](std::size_t field) { densest = std::max(densest, densities_[field].densest[cell]); });
-  return densest;
 }
 
 /// Of those in use in a brick and its neighbours.
@@ -324,7 +355,7 @@ bool CellsInUse::weigh_alike(const Brick& brick, std::int32_t component) const {
   for (const Slot from : brick.neighbour) {
     if (from == no_slot) continue;
     for_fields_of(from, component, [&](std::size_t field) {
-      const double weight = ranges_[field].weight;
+      const double weight = common_weight_[field];
       if (common == 0) common = weight;
       if (weight != 0 && weight != common) common = several;
     });
@@ -345,24 +376,13 @@ void CellsInUse::combine_use(Slot s, std::int32_t component, CellsAround& around
   if (weights != nullptr && weigh_alike(brick, component)) weights = nullptr;
   if (weights == nullptr && std::ranges::all_of(brick.neighbour, is_full)) return around.add_all();
   collect(s, component, around, weights,
-          [&](Slot from, std::size_t cell) { return weight_of(densest_of(from, component, cell)); });
+          [&](Slot from, std::size_t cell) { return largest_of(&Found::weight, from, component, cell); });
   if (weights != nullptr && all_alike(*weights)) around.weights = nullptr;
 }
 
 /// A brick's own cells whose densest particles are much denser than the thinnest ones of the 27 cells around.
 CellsInUse::Cells CellsInUse::find_beside_lighter(Slot s, std::int32_t component) const {
-  double densest = 0,
-         thinnest = empty_density_ > 0 ? empty_density_ : std::numeric_limits<double>::infinity();
-  for_fields_of(s, component,
-                [&](std::size_t field) { densest = std::max(densest, ranges_[field].densest); });
-  for (const Slot from : model_.grid->brick(s).neighbour) {
-    if (from == no_slot) continue;
-    for_fields_of(from, component, [&](std::size_t field) {
-      if (ranges_[field].thinnest != 0) thinnest = std::min(thinnest, ranges_[field].thinnest);
-    });
-  }
-  if (!(densest > much_lighter * thinnest)) return 0;
-
+  if (!may_be_beside_lighter(s)) return 0;
   CellsAround around;
   CellWeightsAround densities;
   collect(s, component, around, &densities,
@@ -374,7 +394,7 @@ CellsInUse::Cells CellsInUse::find_beside_lighter(Slot s, std::int32_t component
   Cells beside = 0;
   for (Cells own = cells_of(s, component); own != 0; own &= own - 1) {
     const int cell = std::countr_zero(own);
-    const double dense = densest_of(s, component, static_cast<std::size_t>(cell));
+    const double dense = largest_of(&Found::densest, s, component, static_cast<std::size_t>(cell));
     const int i = cell % brick_cells, j = cell / brick_cells % brick_cells,
               k = cell / (brick_cells * brick_cells);
     for (int n = 0; n < neighbourhood; ++n) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -23,11 +24,15 @@ namespace mpm::core {
 std::uint64_t find_cells(const Model& model, Slot s, std::int32_t component = all_components,
                          std::span<const int> without = {});
 
+/// Densities of a cell and of one beside it differ much where their ratio exceeds this.
+inline constexpr double much_lighter = 10;
+
 /// What shape functions need to know of the cells.
 struct CellNeeds {
   bool use = false;      ///< which hold particles
   bool weights = false;  ///< in means over cells
-  bool lighter = false;  ///< which are beside much lighter ones
+  bool lighter = false;  ///< which are beside much lighter ones, by densities of reference
+  bool densities() const { return weights || lighter; }
 };
 
 class CellsInUse {
@@ -43,30 +48,37 @@ class CellsInUse {
  private:
   using Cells = std::uint64_t;
   /// Of a field's particles in each cell, by the number of its bit; 0: not in use.
-  struct Densities {
-    std::array<double, brick_cells * brick_cells * brick_cells> thinnest{}, densest{};
+  using OfCells = std::array<double, brick_cells * brick_cells * brick_cells>;
+  struct Found {
+    OfCells weight{};               ///< in means over cells
+    OfCells thinnest{}, densest{};  ///< densities of reference; the latter of owned bricks
   };
-  /// Of a field's cells in use; 0 if there are none.
+  /// Densities of reference of a brick's particles.
   struct Range {
-    double thinnest = 0, densest = 0;
-    double weight = 0;  ///< of all of them; or `several`
+    double thinnest = std::numeric_limits<double>::infinity(), densest = 0;
+    void include(const Range& other) {
+      thinnest = std::min(thinnest, other.thinnest);
+      densest = std::max(densest, other.densest);
+    }
+    bool differs_much() const { return densest > much_lighter * thinnest; }
   };
   static constexpr double several = -1;
 
-  bool has_densities() const { return needs_.weights || needs_.lighter; }
+  NodeFields exchanged() const;
   void find_own(Slot s);
   void find_field(Slot s, int field, std::int32_t component);
-  Densities find_densities(Slot s, std::int32_t component) const;
-  void take(Slot s, int field, const Densities& found);
+  Range range_of(Slot s) const;
+  bool may_be_beside_lighter(Slot s) const;
+  Found find_densities(Slot s, std::int32_t component) const;
+  void take(std::size_t at, const Found& found);
   void write_to_nodes(Slot s);
   void read_from_nodes(Slot s);
   Cells& cells(Slot s, int field) { return cells_[model_.grid->field_index(s, field)]; }
   template <class F>
   void for_fields_of(Slot s, std::int32_t component, F f) const;
   Cells cells_of(Slot s, std::int32_t component) const;
+  double largest_of(const OfCells Found::*what, Slot s, std::int32_t component, std::size_t cell) const;
   double thinnest_of(Slot s, std::int32_t component, std::size_t cell) const;
-  double densest_of(Slot s, std::int32_t component, std::size_t cell) const;
-  double weight_of(double density) const { return std::min(density, largest_weight_); }
   bool weigh_alike(const Brick& brick, std::int32_t component) const;
   void combine(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* weights) const;
   void combine_use(Slot s, std::int32_t component, CellsAround& around, CellWeightsAround* weights) const;
@@ -78,15 +90,13 @@ class CellsInUse {
   NodeHalo& halo_;
   const std::vector<int> without_;
   const CellNeeds needs_;
-  const double largest_weight_;       ///< a tenth of the bodies' largest density of reference
-  const double empty_density_;        ///< of cells without particles, where these count; or 0
-  std::vector<Cells> cells_;          ///< by BrickGrid::field_index()
-  std::vector<Densities> densities_;  ///< alike, where they are needed
-  std::vector<Range> ranges_;         ///< alike
+  const double largest_weight_;        ///< a tenth of the bodies' largest density of reference
+  const double empty_density_;         ///< of cells without particles, where these count; or 0
+  std::vector<Cells> cells_;           ///< by BrickGrid::field_index()
+  std::vector<Found> found_;           ///< alike, where more is needed
+  std::vector<double> common_weight_;  ///< alike, of all cells in use of a field; 0: none; or several
+  std::vector<Range> ranges_;          ///< by owned slot
 };
-
-/// Densities of a cell and of one beside it differ much where their ratio exceeds this.
-inline constexpr double much_lighter = 10;
 
 /// Null for shape functions that do not depend on which cells are in use, and where none can be much lighter
 /// than another one.

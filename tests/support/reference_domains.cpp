@@ -15,16 +15,16 @@ void ReferenceStepper::find_cells_in_use() {
   for (const auto& particle : case_.particles) {
     const std::array<int, 3> c = cell_at(geometry_, particle.x);
     double& weight = geometry_.weight[static_cast<std::size_t>(c[0] + cells[0] * (c[1] + cells[1] * c[2]))];
-    const double density = std::min(case_.material.density / 10, density_of(particle));
+    const double density =
+        std::min({case_.material.density / 10, density_of(particle), 4 * particle.m / particle.V});
     weight = case_.weigh_cells || has_light() ? std::max(weight, density) : 1;
   }
   average_gradients(geometry_);
 }
 
-/// In which cells count.
+/// Of reference.
 double ReferenceStepper::density_of(const ReferenceParticle& particle) const {
-  const double most = case_.material.density * (index_of(particle) < case_.light_from ? 1 : 1e-3);
-  return std::min(most, 4 * particle.m / particle.V);
+  return case_.material.density * (index_of(particle) < case_.light_from ? 1 : 1e-3);
 }
 
 /// Which particles act from inside their cells. With USL cells without particles count as cells of the light

@@ -53,8 +53,8 @@ struct ReferenceCase {
   bool weigh_cells = false;
   /// linear and ddmp: particles from this one on are of a thousandth of the material's density; they share
   /// its law. Particles in cells whose densest ones are more than ten times as dense as the thinnest ones of
-  /// the 27 cells around act from `inset` of an edge or more from the cell's faces. A particle's density is
-  /// at most 4 m/V.
+  /// the 27 cells around act from `inset` of an edge or more from the cell's faces; densities are those of
+  /// reference.
   std::size_t light_from = std::numeric_limits<std::size_t>::max();
   double inset = 0.15;
   /// The critical step, in units of a wave's crossing time of a cell.
