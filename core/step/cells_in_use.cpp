@@ -14,6 +14,8 @@ namespace mpm::core {
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 double largest_density(const std::vector<Body>& bodies) {
   double largest = 0;
   for (const Body& body : bodies) largest = std::max(largest, body.model->reference_density());
@@ -21,7 +23,7 @@ double largest_density(const std::vector<Body>& bodies) {
 }
 
 double least_density(const std::vector<Body>& bodies) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (const Body& body : bodies) least = std::min(least, body.model->reference_density());
   return least;
 }
@@ -50,6 +52,36 @@ bool all_alike(const CellWeightsAround& weights) {
     }
   }
   return true;
+}
+
+/// The least of the 27 values around each of a brick's cells, by the number of its bit; of cells without one,
+/// `none`. One axis after the other, in place.
+std::array<double, brick_cells * brick_cells * brick_cells> least_around(const CellWeightsAround& values,
+                                                                         double none) {
+  constexpr int side = CellsAround::side;
+  double v[side][side][side];
+  for (int k = 0; k < side; ++k) {
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        const double value = values.row[CellsAround::index(j - 1, k - 1)][i];
+        v[k][j][i] = value == 0 ? none : value;
+      }
+    }
+  }
+  for (auto& layer : v)
+    for (auto& row : layer)
+      for (int i = 0; i < brick_cells; ++i) row[i] = std::min({row[i], row[i + 1], row[i + 2]});
+  for (auto& layer : v)
+    for (int j = 0; j < brick_cells; ++j)
+      for (int i = 0; i < brick_cells; ++i)
+        layer[j][i] = std::min({layer[j][i], layer[j + 1][i], layer[j + 2][i]});
+  std::array<double, brick_cells * brick_cells * brick_cells> least;
+  for (std::size_t c = 0; c < least.size(); ++c) {
+    const std::size_t i = c % brick_cells, j = c / brick_cells % brick_cells,
+                      k = c / (brick_cells * brick_cells);
+    least[c] = std::min({v[k][j][i], v[k + 1][j][i], v[k + 2][j][i]});
+  }
+  return least;
 }
 
 /// f(number of its bit, node of the brick's node block) for each cell.
@@ -387,22 +419,12 @@ CellsInUse::Cells CellsInUse::find_beside_lighter(Slot s, std::int32_t component
   CellWeightsAround densities;
   collect(s, component, around, &densities,
           [&](Slot from, std::size_t cell) { return thinnest_of(from, component, cell); });
-  const auto is_much_lighter = [&](double density, double than) {
-    const double light = density == 0 ? empty_density_ : density;
-    return light > 0 && than > much_lighter * light;
-  };
+  const OfCells least = least_around(densities, empty_density_ > 0 ? empty_density_ : infinity);
   Cells beside = 0;
   for (Cells own = cells_of(s, component); own != 0; own &= own - 1) {
-    const int cell = std::countr_zero(own);
-    const double dense = largest_of(&Found::densest, s, component, static_cast<std::size_t>(cell));
-    const int i = cell % brick_cells, j = cell / brick_cells % brick_cells,
-              k = cell / (brick_cells * brick_cells);
-    for (int n = 0; n < neighbourhood; ++n) {
-      const BrickCoord d = neighbour_offset(n);
-      if (!is_much_lighter(around.weight(i + d.x, j + d.y, k + d.z), dense)) continue;
+    const auto cell = static_cast<std::size_t>(std::countr_zero(own));
+    if (largest_of(&Found::densest, s, component, cell) > much_lighter * least[cell])
       beside |= Cells{1} << cell;
-      break;
-    }
   }
   return beside;
 }
