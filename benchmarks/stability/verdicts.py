@@ -93,13 +93,26 @@ def impact():
                  _mpm.scene([ball, plate], box((20, 20, 20)), solution(8e-4), [COPPER]), 30000.0)
 
 
+EXPLOSIVE = _mpm.material("gas", 1.63e-3, 'type="HighExpBurn" D="6930" beta="2" PCJ="21e3"', JWL)
+
+
+def plates():
+    """Of 10 mm of steel, which 20 mm of explosive drive apart."""
+    steel = _mpm.material("steel", 7.85e-3, 'type="IsoHarden" Young="2e5" Poisson="0.3" Yield0="700" TangMod="0"',
+                          '<EquationOfState type="Gruneisen" C0="4569" S1="1.49" gamma0="2.17"/>')
+    lit = '<Detonation><Item type="point" x="250" y="1" z="1" time="0"/></Detonation>'
+    bodies = [_mpm.block("gas", (240, 0, 0), (20, 2, 2), dp=0.5, of="gas"), _mpm.block("lower", (230, 0, 0), (10, 2, 2), dp=0.5, of="steel"),
+              _mpm.block("upper", (260, 0, 0), (10, 2, 2), dp=0.5, of="steel")]
+    return Scene("an explosive that drives two plates of steel apart",
+                 _mpm.scene(bodies, box((500, 2, 2), faces="002222"), solution(0.1), [EXPLOSIVE, steel], more=lit), 4000.0)
+
+
 def products(about, ratio, speed, end, fastest):
     """Detonation products in a column that a linear velocity compresses or expands to the given ratio of volumes."""
-    law = _mpm.material("gas", 1.63e-3, 'type="HighExpBurn" D="6930" beta="2" PCJ="21e3"', JWL)
     lit = '<Detonation><Item type="point" x="0" y="0" z="0" time="-1"/></Detonation>'
     body = _mpm.block("gas", (0, 0, 0), (20, 2, 2), (f"{speed}*x/20", 0, 0), 0.5, "gas")
     length = max(20 * ratio + 40, 60)
-    return Scene(about, _mpm.scene([body], box((length, 2, 2), faces="202222"), solution(end), [law], more=lit), fastest)
+    return Scene(about, _mpm.scene([body], box((length, 2, 2), faces="202222"), solution(end), [EXPLOSIVE], more=lit), fastest)
 
 
 def torn():
@@ -158,6 +171,7 @@ SCENES = {
     "impact": impact(),
     "compressed": products("products compressed more than tenfold", 0.1, -25000, 8e-4, 40000.0),
     "expanded": products("products expanded more than a hundredfold", 100, 12000, 0.17, 20000.0),
+    "plates": plates(),
     "torn": torn(),
     "sparse": wave("1 particle in a cell", SOFT, 8.0, dp=1.0),
     "dense": wave("64 particles in a cell", SOFT, 8.0, dp=0.25),
