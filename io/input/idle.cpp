@@ -125,6 +125,7 @@ std::vector<core::Diagnostic> idle_settings(const Node& root, const Scene& scene
     note_no_contact(scene, notes);
   note_blocks(scene, notes);
   note_wide_spacings(scene, notes);
+  note_single_particles(scene, notes);
   note_linear_functions(root, scene, notes);
   note_soft_drivers(scene, notes);
   note_free_axes(scene, notes);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/contact/component_contact.hpp"
 #include "core/discretise/line.hpp"
 
 namespace mpm::io {
@@ -70,20 +71,29 @@ double largest_spacing(const core::Geometry& geometry) {
       geometry);
 }
 
+/// Of a body's particles; of a difference, those of what it is taken from.
+double largest_spacing(const core::Scene& scene, const core::BodyInput& body) {
+  const core::BodyInput* shape = &body;
+  while (const auto* difference = std::get_if<core::BoolGeometry>(&shape->geometry))
+    shape = &core::body_at(scene, difference->minuend);
+  return largest_spacing(shape->geometry);
+}
+
+double smallest_cell(const core::Scene& scene) {
+  double cell = std::numeric_limits<double>::infinity();
+  for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
+  return cell;
+}
+
+constexpr double wide = 1 + 1e-9;  // cells
+
 }  // namespace
 
 void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
-  double cell = std::numeric_limits<double>::infinity();
-  for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
+  const double cell = smallest_cell(scene);
   core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
-    const auto* difference = std::get_if<core::BoolGeometry>(&body.geometry);
-    const core::BodyInput* shape = &body;
-    while (difference != nullptr) {
-      shape = &core::body_at(scene, difference->minuend);
-      difference = std::get_if<core::BoolGeometry>(&shape->geometry);
-    }
-    const double spacing = largest_spacing(shape->geometry);
-    if (!(spacing > (1 + 1e-9) * cell)) return;
+    const double spacing = largest_spacing(scene, body);
+    if (!(spacing > wide * cell)) return;
     notes.push_back(
         {body.source.file,
          body.source.line,
@@ -95,6 +105,33 @@ void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>&
                      "of about half a cell",
                      body.name, spacing, cell)});
   });
+}
+
+void note_single_particles(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  using enum core::ShapeFunction;
+  if (scene.solution.integration != core::Integration::explicit_dynamics ||
+      scene.solution.scheme != core::Scheme::musl || (scene.grid.shape != linear && scene.grid.shape != ddmp))
+    return;
+  const double cell = smallest_cell(scene);
+  constexpr double single = 0.95;  // cells
+  const core::BodyInput* first = nullptr;
+  core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
+    const double spacing = largest_spacing(scene, body);
+    if (first == nullptr && spacing > single * cell && !(spacing > wide * cell) &&
+        !core::is_rigid(scene.materials[body.material]))
+      first = &body;
+  });
+  if (first == nullptr) return;
+  notes.push_back(
+      {first->source.file,
+       first->source.line,
+       "Body",
+       {},
+       {},
+       fmt::format("body '{}' has one particle in a cell: with these shape functions and MUSL its "
+                   "energy may grow where they cross cells (docs/stability.md). Use a dp of about "
+                   "half a cell, or algorithm=\"USAVG\"",
+                   first->name)});
 }
 
 void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {

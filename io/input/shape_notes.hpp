@@ -13,6 +13,9 @@ void note_blocks(const core::Scene& scene, std::vector<core::Diagnostic>& notes)
 /// Bodies whose particles are farther apart than the smallest cell is long.
 void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
+/// Deformable bodies with one particle in a cell, where the method gains energy from such.
+void note_single_particles(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
+
 /// A scene none of whose bodies takes part in the run.
 void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/has_shape.hpp"
 #include "io/input/idle_rules.hpp"
 #include "physics/material/material.hpp"
 #include "physics/strength/list.hpp"
@@ -470,6 +471,20 @@ TEST_CASE("a block whose spacing does not divide its edges") {
         "line 12: <Body>: body 'rod': its particles are 3 apart, more than a cell, 0.76: neighbours then "
         "share few "
         "nodes or none, and the body has little strength or none. Use a dp of about half a cell");
+}
+
+TEST_CASE("one particle in a cell") {
+  const std::string single = replaced(bar, "dp=\"0.38\"", "dp=\"0.76\"");
+  const auto about_one = [](std::string_view text) {
+    return std::ranges::count_if(notes_of(text), [](const std::string& note) {
+      return note.starts_with("line 12: <Body>: body 'rod' has one particle in a cell: with these shape");
+    });
+  };
+  CHECK(about_one(single) == 1);
+  CHECK(about_one(bar) == 0);
+  CHECK(about_one(replaced(single, "<Solution>", "<Solution algorithm=\"USAVG\">")) == 0);
+  if (core::has_shape("DDMP")) CHECK(about_one(replaced(single, "linear", "DDMP")) == 1);
+  if (core::has_shape("SGMP")) CHECK(about_one(replaced(single, "linear", "SGMP")) == 0);
 }
 
 TEST_CASE("outputs of nothing, and a run of nothing") {
