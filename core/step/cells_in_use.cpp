@@ -84,13 +84,15 @@ std::array<double, brick_cells * brick_cells * brick_cells> least_around(const C
   return least;
 }
 
-/// f(number of its bit, node of the brick's node block) for each cell.
+/// f(number of its bit, node of the brick's node block) for each cell. The outer cells, of which other bricks
+/// need to know, are at the outer nodes, which other ranks get.
 template <class F>
 void for_each_cell_of(const NodeBlockShape& shape, F f) {
   for (int k = 0; k < brick_cells; ++k) {
     for (int j = 0; j < brick_cells; ++j) {
       for (int i = 0; i < brick_cells; ++i)
-        f(static_cast<std::size_t>(i + brick_cells * (j + brick_cells * k)), shape.index(i, j, k));
+        f(static_cast<std::size_t>(i + brick_cells * (j + brick_cells * k)),
+          shape.index(i + i / 2, j + j / 2, k + k / 2));
     }
   }
 }
@@ -249,6 +251,7 @@ void CellsInUse::find_own(Slot s) {
     return;
   }
   cells(s, 0) = 0;
+  if (needs_.densities()) take(grid.field_index(s, 0), {});
   for (int f = 0; const std::int32_t component : grid.components(s)) find_field(s, f++, component);
 }
 
@@ -276,7 +279,9 @@ void CellsInUse::take(std::size_t at, const Found& found) {
   common_weight_[at] = common;
 }
 
-void CellsInUse::write_to_nodes(Slot s) {
+/// What is in a force's place would else act on nodes that a map of few particles does not clear
+/// (core/step/sparse_bricks.hpp).
+void CellsInUse::clear_nodes(Slot s) {
   BrickGrid& grid = *model_.grid;
   const NodeFields fields = exchanged();
   const int width = record_doubles(fields.array);
@@ -284,6 +289,15 @@ void CellsInUse::write_to_nodes(Slot s) {
     double* records = grid.contributions(fields.array, s, f);
     for (int n = 0; n < grid.shape().nodes(); ++n)
       std::fill_n(records + width * n + fields.first, fields.count, 0.0);
+  }
+}
+
+void CellsInUse::write_to_nodes(Slot s) {
+  BrickGrid& grid = *model_.grid;
+  const int width = record_doubles(exchanged().array);
+  clear_nodes(s);
+  for (int f = 0; f < grid.velocity_fields(s); ++f) {
+    double* records = grid.contributions(exchanged().array, s, f);
     const std::size_t at = grid.field_index(s, f);
     for_each_cell_of(grid.shape(), [&](std::size_t cell, int node) {
       double* record = records + width * node;
@@ -321,8 +335,11 @@ void CellsInUse::find() {
   cells_.resize(grid.field_count());
   found_.resize(needs_.densities() ? grid.field_count() : 0);
   common_weight_.resize(found_.size());
-  ranges_.clear();
-  for (Slot s = 0; needs_.lighter && s < grid.owned(); ++s) ranges_.push_back(range_of(s));
+  if (needs_.lighter) {
+    ranges_.resize(static_cast<std::size_t>(grid.owned()));
+    for_each_by_threads(0, grid.owned(), 64,
+                        [&](int s) { ranges_[static_cast<std::size_t>(s)] = range_of(s); });
+  }
   for_each_by_threads(0, grid.boundary(), 4, [&](int s) {
     find_own(s);
     write_to_nodes(s);
@@ -335,6 +352,8 @@ void CellsInUse::finish_exchange() {
   BrickGrid& grid = *model_.grid;
   halo_.end(grid);
   for (int g = 0; g < grid.ghosts(); ++g) read_from_nodes(grid.owned() + g);
+  for (Slot s = 0; s < grid.boundary(); ++s) clear_nodes(s);
+  for (int g = 0; g < grid.ghosts(); ++g) clear_nodes(grid.owned() + g);
   grid.reset_cells_around(needs_.weights);
   for_each_by_threads(0, grid.owned(), 16, [&](int slot) {
     const auto s = static_cast<Slot>(slot);

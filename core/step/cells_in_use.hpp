@@ -71,6 +71,7 @@ class CellsInUse {
   bool may_be_beside_lighter(Slot s) const;
   Found find_densities(Slot s, std::int32_t component) const;
   void take(std::size_t at, const Found& found);
+  void clear_nodes(Slot s);
   void write_to_nodes(Slot s);
   void read_from_nodes(Slot s);
   Cells& cells(Slot s, int field) { return cells_[model_.grid->field_index(s, field)]; }

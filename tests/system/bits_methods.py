@@ -66,6 +66,33 @@ class Methods(Case):
                     halfway = _mpm.restarts(self.folder / f"other {shape} {algorithm}")[0]
                     self.assertEqual(self.run_in(f"again {shape} {algorithm}", [halfway], ranks=2).state, alone)
 
+    def test_same_bits_where_light_cells_are_of_another_rank(self):
+        """A heavy body above and below the border of two bricks; one across it, with USL, for which empty cells count; and
+        bricks of few particles, whose nodes are not all cleared in every step."""
+        materials = [_mpm.material("heavy", 100.0, 'type="IsoElastic" Young="1e6" Poisson="0.3"'),
+                     _mpm.material("light", 1.0, 'type="IsoElastic" Young="1000" Poisson="0.3"')]
+
+        def check(name, shape, algorithm, bodies, end, upper, ranks):
+            text = _mpm.scene(bodies, _mpm.grid((0, 0, 0), upper, "000000").replace("<Grid>", f'<Grid shape="{shape}">'),
+                              _mpm.solution(end, algorithm, 0.4), materials)
+            with self.subTest(name=name, shape=shape, algorithm=algorithm):
+                path = self.write(text)
+                states = [self.run_in(f"{name} {shape} {algorithm} {n}", [path], ranks=n).state for n in (1, ranks)]
+                self.assertEqual(states[1], states[0])
+
+        for shape in ("linear", "DDMP"):
+            for name, lower, higher in (("above", "light", "heavy"), ("below", "heavy", "light")):
+                bodies = [_mpm.block("lower", (0.75, 0, 0), (3, 4, 4), (0, 0, 0), 0.5, lower),
+                          _mpm.block("higher", (3.82, 0, 0), (3, 4, 4), (-1, 0, 0), 0.5, higher)]
+                check(name, shape, "MUSL", bodies, 0.02, (8, 4, 4), 2)
+            bodies = [_mpm.block("across", (1.82, 0, 0), (4, 4, 4), ("0.3*x", 0, 0), 0.5, "heavy"),
+                      _mpm.block("far", (13, 0, 0), (2, 4, 4), (0, 0, 0), 0.5, "light")]
+            check("across", shape, "USL", bodies, 0.02, (16, 4, 4), 3)
+        single = [_mpm.block("moves", (2.2, 1.2, 1.2), (1, 1, 1), (-10, 0, 0), 1, "light"),
+                  _mpm.block("rests", (6.2, 1.2, 1.2), (1, 1, 1), (0, 0, 0), 1, "heavy")]
+        for algorithm in SCHEMES:
+            check("single", "linear", algorithm, single, 0.2, (8, 4, 4), 2)
+
     def test_restarts_between_corrections(self):
         """Wherever a run stops between two steps that correct, it goes on to the same bits."""
         for algorithm in SCHEMES:
