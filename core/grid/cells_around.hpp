@@ -9,7 +9,7 @@
 
 namespace mpm::core {
 
-/// Weights of the cells around a brick in means over cells; 0 of those that are not in use.
+/// A value of each of the cells around a brick, such as its weight in means; 0 of those that are not in use.
 struct CellWeightsAround {
   static constexpr int side = brick_cells + 2, row_doubles = 8;
   alignas(64) double row[side * side][row_doubles] = {};  ///< cell i in double i + 1
@@ -17,7 +17,8 @@ struct CellWeightsAround {
 
 /// Cells (i, j, k), -1 .. brick_cells, counted from the brick's first. Its own cells are in use where they
 /// hold particles, as are those of its neighbours; beyond a constrained face of the grid, the mirror images
-/// of cells in use. All weigh 1 in means, or what `weights` holds.
+/// of cells in use. All weigh 1 in means, or what `weights` holds. For shape functions that need the lighter
+/// cells alone none is in use.
 class CellsAround {
  public:
   static constexpr int side = CellWeightsAround::side;

@@ -59,7 +59,7 @@ inline constexpr NodeFields start_momentum{NodeArray::sixth, 0, 3};
 inline constexpr NodeFields start_mass{NodeArray::sixth, 3, 1};
 inline constexpr NodeFields start_force{NodeArray::seventh, 4, 3};
 // Cells in use or their weights in means, and densities of their thinnest material
-// (core/step/cells_in_use.hpp).
+// (core/step/cells_in_use.hpp), which are cleared before forces take their place.
 inline constexpr NodeFields thinnest_of_cells{NodeArray::first, 6, 1};
 inline constexpr NodeFields cells_in_use{NodeArray::first, 7, 1};
 // Implicit steps: sum of S + h |grad S|, positive where a node is active; volumes, those of bodies of

@@ -1,7 +1,8 @@
 // Dual domain material point method (DDMP; Zhang, Ma and Giguere, J. Comput. Phys. 230 (2011) 6379): values
 // with the trilinear S_i, gradients with a blend of two,
 //   grad w_i(x) = alpha grad S_i(x) + (1 - alpha) sum_j S_j(x) G_ji,   alpha = product of 4 f (1 - f) over
-// the axes, f the position in the cell. alpha vanishes on the cells' faces, so that forces are continuous.
+// the axes, f the position in the cell. alpha vanishes on the cells' faces, so that forces are continuous
+// (but beside much lighter material, where particles act from inside their cells: linear.hpp).
 // G_ji is the mean gradient of S_i at node j. Here it is a mean over the cells around j that are in use,
 //   G_ji = sum_c w_c int_c S_j grad S_i dV / (sum_c w_c V/8),   V the volume of a cell,
 // so that no force reaches a node without mass at a free surface, and linear fields stay exact there. The

@@ -14,6 +14,7 @@
 //   L_nn <- L_nn + s k/h,   L_an <- L_an + min(s, 1) k (t_a/t_n)/h,   s = max(u/k, 1/2) min(1, 2 - u/K)
 // s = u/k takes the face's own velocity out of the strain: kicks then neither add nor take energy, as if half
 // of the strain were that of the cell that has been left. Forces and velocities stay as they are.
+// In cells beside lighter ones particles act away from the faces (linear.hpp), and none counts as trapped.
 // Tested by tests/core/step/oracle_test.cpp and tests/system/physics_face_trap.py.
 #pragma once
 

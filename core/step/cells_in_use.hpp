@@ -1,8 +1,8 @@
 // The cells that hold particles at the beginning of a step: for every brick, its own and one layer around it
 // (core/grid/cells_around.hpp), stored in the grid; where components have velocity fields of their own
 // (contact), also those of each field. A brick's 64 cells are the bits of a word; other ranks get them as a
-// nodal field, in the record of each cell's lowest node. In scenes of several materials cells are weighted by
-// density (core/shape/ddmp.hpp), or those beside much lighter ones are found (core/shape/linear.hpp).
+// nodal field. In scenes of several materials cells are weighted by density (core/shape/ddmp.hpp), and those
+// beside much lighter ones are found (core/shape/linear.hpp).
 #pragma once
 
 #include <algorithm>

@@ -30,7 +30,7 @@ class ExplicitIntegrator final : public Integrator {
 
   Model& model_;
   Reductions& ranks_;
-  std::unique_ptr<CellsInUse> cells_;  ///< null for shape functions without them
+  std::unique_ptr<CellsInUse> cells_;  ///< null where no shape function needs them
   std::unique_ptr<Conduction> heat_;
   std::unique_ptr<RigidBodies> rigid_;  ///< null without any in contact
   std::unique_ptr<Passes> passes_;
