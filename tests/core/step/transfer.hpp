@@ -229,7 +229,8 @@ struct TransferCase {
   /// Inside a cell beside lighter ones.
   Place acting_place(const std::vector<double>& p) const {
     Place at = place(p);
-    const auto& c = at.cell;
+    if (!core::needs_lighter_cells<S>) return at;
+    const auto& c = at.cell;  // one of the brick's own, for such shape functions
     if ((cells.beside_lighter >> (c[0] + core::brick_cells * (c[1] + core::brick_cells * c[2])) & 1) != 0) {
       for (std::size_t a = 0; a < 3; ++a)
         at.position[a] = c[a] + std::clamp(at.position[a] - c[a], core::inset, 1 - core::inset);
