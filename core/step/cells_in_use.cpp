@@ -250,8 +250,10 @@ void CellsInUse::find_own(Slot s) {
       find_field(s, 0, all_components);
     return;
   }
-  cells(s, 0) = 0;
-  if (needs_.densities()) take(grid.field_index(s, 0), {});
+  if (needs_.densities())
+    take(grid.field_index(s, 0), {});
+  else
+    cells(s, 0) = 0;
   for (int f = 0; const std::int32_t component : grid.components(s)) find_field(s, f++, component);
 }
 
@@ -279,7 +281,7 @@ void CellsInUse::take(std::size_t at, const Found& found) {
   common_weight_[at] = common;
 }
 
-/// What is in a force's place would else act on nodes that a map of few particles does not clear
+/// Densities are in a force's place, and would act on nodes that a map of few particles does not clear
 /// (core/step/sparse_bricks.hpp).
 void CellsInUse::clear_nodes(Slot s) {
   BrickGrid& grid = *model_.grid;
@@ -352,8 +354,10 @@ void CellsInUse::finish_exchange() {
   BrickGrid& grid = *model_.grid;
   halo_.end(grid);
   for (int g = 0; g < grid.ghosts(); ++g) read_from_nodes(grid.owned() + g);
-  for (Slot s = 0; s < grid.boundary(); ++s) clear_nodes(s);
-  for (int g = 0; g < grid.ghosts(); ++g) clear_nodes(grid.owned() + g);
+  if (needs_.lighter) {
+    for_each_by_threads(0, grid.boundary(), 16, [&](int s) { clear_nodes(s); });
+    for_each_by_threads(grid.owned(), grid.owned() + grid.ghosts(), 16, [&](int s) { clear_nodes(s); });
+  }
   grid.reset_cells_around(needs_.weights);
   for_each_by_threads(0, grid.owned(), 16, [&](int slot) {
     const auto s = static_cast<Slot>(slot);
