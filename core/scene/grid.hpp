@@ -86,6 +86,7 @@ struct GridInput {
   bool has_face(Boundary of) const {
     return std::ranges::any_of(axes, [&](const GridAxis& a) { return a.lower == of || a.upper == of; });
   }
+  double smallest_cell() const { return std::ranges::min(axes, {}, &GridAxis::cell_size).cell_size; }
 };
 
 }  // namespace mpm::core

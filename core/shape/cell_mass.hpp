@@ -20,11 +20,7 @@ inline constexpr int in_use = 27;  ///< of a record: whether the cell has partic
 inline constexpr int cells = brick_cells * brick_cells * brick_cells;
 inline constexpr int brick_doubles = doubles * cells;
 
-/// Of a cell by its lowest point, and back.
-constexpr int cell_at(int point) {
-  const auto [i, j, k] = lattice_points.node(point);
-  return i + brick_cells * (j + brick_cells * k);
-}
+/// Of a cell by its number.
 constexpr int lowest_point(int cell) {
   constexpr int side = lattice_points.side();
   return cell % brick_cells +

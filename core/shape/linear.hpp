@@ -77,6 +77,12 @@ struct LinearPlace {
   }
 };
 
+/// The number i + 4 j + 16 k of a brick's cell, by its lowest point.
+constexpr int cell_at(int point) {
+  const auto [i, j, k] = lattice_points.node(point);
+  return i + brick_cells * (j + brick_cells * k);
+}
+
 /// Least distance from the faces of a cell beside lighter ones, over the edge.
 inline constexpr double inset = 0.15;
 
@@ -95,8 +101,7 @@ struct InsetPlace : LinearPlace {
  private:
   void move_inside(std::uint64_t cells, int used) {
     for (int l = 0; l < used; ++l) {
-      const auto [i, j, k] = lattice_points.node(node[l]);
-      if ((cells >> (i + brick_cells * (j + brick_cells * k)) & 1) == 0) continue;
+      if ((cells >> cell_at(node[l]) & 1) == 0) continue;
       for (auto& along : f) along[l] = std::clamp(along[l], inset, 1 - inset);
     }
   }

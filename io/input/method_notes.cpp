@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -53,9 +52,8 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
   if (!grid || grid->find("shape") != nullptr) return;
   // A build without others has nothing better to offer.
   if (!core::has_shape("SGMP")) return;
-  double cell = std::numeric_limits<double>::infinity();
-  for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
-  const double cells = VelocityRange(scene).largest_difference() * scene.solution.end_time / cell;
+  const double cells =
+      VelocityRange(scene).largest_difference() * scene.solution.end_time / scene.grid.smallest_cell();
   constexpr double notable = 1;
   if (!(cells >= notable) && scene.detonations.empty()) return;
   const std::string who =

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <variant>
 
 #include <fmt/format.h>
@@ -79,18 +78,12 @@ double largest_spacing(const core::Scene& scene, const core::BodyInput& body) {
   return largest_spacing(shape->geometry);
 }
 
-double smallest_cell(const core::Scene& scene) {
-  double cell = std::numeric_limits<double>::infinity();
-  for (const core::GridAxis& axis : scene.grid.axes) cell = std::min(cell, axis.cell_size);
-  return cell;
-}
-
 constexpr double wide = 1 + 1e-9;  // cells
 
 }  // namespace
 
 void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
-  const double cell = smallest_cell(scene);
+  const double cell = scene.grid.smallest_cell();
   core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {
     const double spacing = largest_spacing(scene, body);
     if (!(spacing > wide * cell)) return;
@@ -112,7 +105,7 @@ void note_single_particles(const core::Scene& scene, std::vector<core::Diagnosti
   if (scene.solution.integration != core::Integration::explicit_dynamics ||
       scene.solution.scheme != core::Scheme::musl || (scene.grid.shape != linear && scene.grid.shape != ddmp))
     return;
-  const double cell = smallest_cell(scene);
+  const double cell = scene.grid.smallest_cell();
   constexpr double single = 0.95;  // cells
   const core::BodyInput* first = nullptr;
   core::for_each_active_body(scene, [&](int, const core::BodyInput& body) {

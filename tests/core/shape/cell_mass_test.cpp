@@ -13,7 +13,7 @@ using namespace mpm::core;
 TEST_CASE("Cells and their lowest points are numbered both ways") {
   for (int c = 0; c < cell_mass::cells; ++c) {
     const int point = cell_mass::lowest_point(c);
-    CHECK(cell_mass::cell_at(point) == c);
+    CHECK(cell_at(point) == c);
     CHECK(point % lattice_points.side() < brick_cells);
   }
   CHECK(trilinear_on_lattice<Linear>);
