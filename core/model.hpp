@@ -50,6 +50,8 @@ struct Clock {
   double strain_lag = 0;         ///< USAVG: of strains and stresses behind `time`
   double heat_lead = 0;          ///< by which heat conduction is ahead of `time`
   double next_dt = 0;            ///< of implicit steps: length of the next one; 0: not known
+  std::int64_t scheme_since =
+      0;  ///< the step after which USAVG has replaced the scene's scheme; 0: it has not
 };
 
 /// Energy and mass added and removed since time zero. Exact sums: the same on any ranks.
@@ -75,6 +77,8 @@ struct Model {
   std::shared_ptr<const Scene> scene;
   std::vector<std::unique_ptr<ConstitutiveModel>> materials;
   UpdateOptions options;
+  /// Of explicit steps: the scene's, or what has replaced it (core/step/scheme_change.hpp).
+  Scheme scheme = Scheme::musl;
   std::vector<Body> bodies;
   std::vector<Reaction> reactions;  ///< of rigid bodies in contact and of prescribed motions, by body
   std::unique_ptr<BrickGrid> grid;

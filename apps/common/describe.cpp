@@ -11,6 +11,7 @@
 #include "core/particle_range.hpp"
 #include "core/setup/memory.hpp"
 #include "core/step/load_areas.hpp"
+#include "core/step/scheme_change.hpp"
 
 namespace mpm::apps {
 
@@ -132,6 +133,11 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Redu
   std::string phases;
   for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
   log.say("step       {}", phases);
+  if (core::may_change_scheme(*model.scene) && model.scheme == core::Scheme::musl)
+    log.say(
+        "scheme     MUSL, and USAVG from the step on at which the energy balance is off by more than {:.2g} "
+        "%",
+        100 * core::tolerated_drift);
   const double critical = model.clock.critical_dt;
   log.say("time step  critical {}, end time {:.6g}",
           std::isfinite(critical) ? fmt::format("{:.6g}", critical) : "without limit",

@@ -255,6 +255,7 @@ class Run {
       stepper_->step();
       if (const std::string words = stepper_->words_of_step(); !words.empty())
         log_->note("implicit   {}", words);
+      if (!stepper_->words_of_change().empty()) log_->say("scheme     {}", stepper_->words_of_change());
       particle_steps_ += static_cast<double>(model_.local_particles());
       watch_->after_step(model_, stepper_->incidents(), communication_, *log_);
       outputs_->after_step(model_, communication_);

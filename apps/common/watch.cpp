@@ -10,6 +10,7 @@
 #include "core/particle_range.hpp"
 #include "core/step/finite.hpp"
 #include "core/step/offending_particle.hpp"
+#include "core/step/scheme_change.hpp"
 
 namespace mpm::apps {
 namespace {
@@ -21,7 +22,7 @@ std::string remedies(const core::Scene& scene) {
   if (solution.integration == core::Integration::explicit_dynamics) {
     const bool to_sgmp = scene.grid.shape == core::ShapeFunction::linear && core::has_shape("SGMP");
     if (to_sgmp) words = "try Grid shape=\"SGMP\"";
-    if (solution.scheme != core::Scheme::usavg)
+    if (solution.scheme != core::Scheme::usavg && !core::may_change_scheme(scene))
       words += fmt::format("{} Solution algorithm=\"USAVG\"", to_sgmp ? ", or" : "try");
     if (!words.empty()) words += "; ";
   }

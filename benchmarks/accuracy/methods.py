@@ -35,7 +35,8 @@ def transfers():
 
 
 def schemes():
-    return choices("Solution", "algorithm")
+    """The schemes; auto is MUSL, then USAVG where the energy asks for it."""
+    return [word for word in choices("Solution", "algorithm") if word != "auto"]
 
 
 @dataclasses.dataclass(frozen=True, order=True)

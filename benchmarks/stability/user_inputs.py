@@ -35,7 +35,7 @@ ROWS = [("bounce", "linear", "MUSL", 1), ("histories", "linear", "MUSL", 1), ("s
         *(("dam_break", "linear", scheme, 1) for scheme in ("MUSL", "USAVG")),
         *(("dam_break", shape, "MUSL", 1) for shape in ("CPDI", "CPDI2")),
         *(("sphere_on_plate", "linear", scheme, 1) for scheme in ("MUSL", "USAVG", "USF", "USL")), ("sphere_on_plate", "SGMP", "MUSL", 1),
-        *(("rigid_ram", "linear", scheme, 1) for scheme in ("MUSL", "USAVG")),
+        *(("rigid_ram", "linear", scheme, 1) for scheme in ("auto", "MUSL", "USAVG")),
         *(("rigid_ram", shape, "MUSL", 1) for shape in ("SGMP", "QuadraticBSpline", "uGIMP", "CPDI"))]
 
 

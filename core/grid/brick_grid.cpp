@@ -92,6 +92,12 @@ void BrickGrid::reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> gho
   ++revision_;
 }
 
+void BrickGrid::set_arrays(NodeArraySet arrays) {
+  arrays_ = arrays;
+  allocate_nodes(field_count());
+  ++revision_;
+}
+
 void BrickGrid::allocate_nodes(std::size_t blocks) {
   for (NodeArray of : node_arrays) {
     if (arrays_.has(of)) array(of).resize(stride(of) * blocks);

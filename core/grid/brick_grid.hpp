@@ -83,6 +83,8 @@ class BrickGrid {
   void reset(std::vector<BrickCoord> owned, std::vector<BrickCoord> ghosts);
 
   const NodeArraySet& arrays() const { return arrays_; }
+  /// Replaces the set of node arrays; their contents become undefined.
+  void set_arrays(NodeArraySet arrays);
   /// Contributions of the slot's particles to its nodes: shape().nodes() records of record_doubles(of). `of`
   /// is one of arrays().
   double* contributions(NodeArray of, Slot s) {
@@ -164,7 +166,7 @@ class BrickGrid {
   /// cell (i, j, k) in bit i + 4 j + 16 k.
   std::optional<std::uint64_t>& own_cells(Slot s) { return own_cells_[static_cast<std::size_t>(s)]; }
 
-  /// Incremented whenever the set of bricks changes; communication plans are then rebuilt.
+  /// Incremented whenever the set of bricks or of node arrays changes; communication plans are then rebuilt.
   std::uint64_t revision() const { return revision_; }
 
  private:

@@ -125,7 +125,7 @@ void ImplicitPassesWith<S>::move_field(const BrickField& field, const AlignedDou
         for (int b = 0; b < batch.blocks; ++b)
           std::copy_n(batch.sound_speed + block_lanes * b, block_lanes, batch.column(Column::sound_speed, b));
       }
-      at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(*model_.scene), at.statistics.fastest);
+      at.statistics.fastest = fastest_particle(batch, 1 / wave_limit(model_), at.statistics.fastest);
       const auto c = static_cast<int>(&tile - model_.grid->brick(field.slot).tiles.data());
       for (int b = 0; b < batch.blocks; ++b) {
         const std::size_t at_block = first + static_cast<std::size_t>(b);

@@ -117,6 +117,7 @@ struct FemInput {
 
 struct SolutionInput {
   Scheme scheme = Scheme::musl;
+  bool automatic_scheme = true;  ///< MUSL may give way to USAVG (core/step/scheme_change.hpp)
   Transfer transfer = Transfer::flip;
   double flip_fraction = 1;  ///< 1 FLIP ... 0 PIC
   int xpic_order = 2;        ///< of XPIC and FMPM

@@ -93,8 +93,7 @@ MemoryNeed memory_need(const Model& model) {
   const BrickGrid& grid = *model.grid;
   constexpr double place = sizeof(Brick) + 64;  // and its entry in the table of coordinates
   const double arrays = array_doubles(grid);
-  const SolutionInput& solution = model.scene->solution;
-  const int kept = maps_back(solution.scheme) ? motion_width : 0;  // doubles of a node between passes
+  const int kept = maps_back(model.scheme) ? motion_width : 0;  // doubles of a node between passes
   const double motion = kept * grid.shape().nodes() + product_doubles_of(*model.scene);
   need.bricks = (place + sizeof(double) * (arrays + motion)) * grid.owned() +
                 (place + sizeof(double) * arrays) * grid.ghosts();

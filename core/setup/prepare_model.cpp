@@ -130,6 +130,7 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
   model.scene = scene;
   model.materials = std::move(materials);
   const SolutionInput& solution = scene->solution;
+  model.scheme = solution.scheme;
   model.options.volume_update = static_cast<int>(solution.volume.update);
   model.options.volume_min = solution.volume.min.value_or(0);
   model.options.volume_max = solution.volume.max.value_or(0);
@@ -138,14 +139,14 @@ Model prepare_model(std::shared_ptr<const Scene> scene,
     model.options.volume_update = static_cast<int>(VolumeUpdate::mid_point);
     model.options.artificial_viscosity = false;
   }
-  model.options.tension_weight = tension_weight(*scene);
+  model.options.tension_weight = tension_weight(*scene, model.scheme);
   model.options.viscosity_in_wave_speed = !solution.time_step.ignore_viscosity;
   model.options.keep_strain =
       solution.volume.update == VolumeUpdate::accumulated_strain || output_columns.has(Column::strain_xx);
   const bool conducts =
       std::ranges::any_of(model.materials, [](const auto& material) { return material->conductivity() > 0; });
   model.grid = std::make_unique<BrickGrid>(geometry_of(*scene), node_block_of(*scene),
-                                           node_arrays_of(*scene, conducts));
+                                           node_arrays_of(*scene, model.scheme, conducts));
   const bool lags = solution.integration == Integration::implicit &&
                     TimeRule::lags(solution.implicit.value_or(ImplicitInput{}));
   BlockPools pools;

@@ -97,7 +97,7 @@ void refuse_endless(const Model& model, const Fastest& mine, Reductions& ranks) 
 
 /// Initialises this rank's particles of the bodies that `wanted` marks; returns the fastest of them.
 Fastest initialise(Model& model, const std::vector<bool>& wanted) {
-  const double wave_weight = 1 / wave_limit(*model.scene);
+  const double wave_weight = 1 / wave_limit(model);
   Fastest fastest;
   const GridGeometry& geometry = model.grid->geometry();
   for (Brick& brick : model.grid->bricks()) {

@@ -162,7 +162,7 @@ CellsInUse::CellsInUse(Model& model, NodeHalo& halo, CellNeeds needs, std::vecto
       largest_weight_(largest_density(model.bodies) / 10),
       // USL's remedy for light nodes at free surfaces (core/step/node_update.hpp) is one for the lightest
       // material.
-      empty_density_(model.scene->solution.scheme == Scheme::usl ? least_density(model.bodies) : 0) {}
+      empty_density_(model.scheme == Scheme::usl ? least_density(model.bodies) : 0) {}
 
 NodeFields CellsInUse::exchanged() const {
   if (!needs_.lighter) return mapped::cells_in_use;

@@ -79,7 +79,7 @@ std::vector<Phase> ExplicitIntegrator::phases() {
     }
   }
 
-  switch (model_.scene->solution.scheme) {
+  switch (model_.scheme) {
     case Scheme::musl:
       then("particles to grid", [&] { pass.map_momentum_mass_force(); });
       then("exchange", [&] { pass.finish_exchange(); });
@@ -159,13 +159,13 @@ StepLength ExplicitIntegrator::set_length(double dt) {
   if (clock.step == 0) clock.first_lag = lag_before_ = 0.5 * dt;
   // USF strains with the velocities of the step before, over this one's length: it must advance them by it,
   // too.
-  if (model_.scene->solution.scheme == Scheme::usf) {
+  if (model_.scheme == Scheme::usf) {
     clock.lag = clock.first_lag = 0.5 * dt;
     return {.dt = dt, .velocity_dt = dt, .lag = clock.lag};
   }
   const bool last = clock.time + dt >= model_.scene->solution.end_time;
   StepLength length = step_length(dt, lag_before_, clock.first_lag, last);
-  const bool halves = model_.scene->solution.scheme == Scheme::usavg;
+  const bool halves = model_.scheme == Scheme::usavg;
   length.strain_lag = halves ? strain_lag_before_ : 0.0;
   clock.strain_lag = halves ? 0.5 * dt : 0.0;
   clock.lag = length.lag;

@@ -49,14 +49,14 @@ int product_doubles_of(const Scene& scene) {
   });
 }
 
-NodeArraySet node_arrays_of(const Scene& scene, bool conducts) {
+NodeArraySet node_arrays_of(const Scene& scene, Scheme scheme, bool conducts) {
   NodeArraySet arrays{NodeArray::first};
-  if (conducts || maps_back(scene.solution.scheme)) arrays.add(NodeArray::second);
+  if (conducts || maps_back(scheme)) arrays.add(NodeArray::second);
   if (orders_of(scene.solution) > 1 || scene.solution.mass == MassMatrix::consistent)
     arrays.add(NodeArray::third);
   if (scene.contact.enable) arrays.add(NodeArray::fourth);
   if (scene.contact.measures_gaps()) arrays.add(NodeArray::fifth);
-  if (strains_first(scene.solution.scheme)) {
+  if (strains_first(scheme)) {
     arrays.add(NodeArray::sixth);
     if (scene.grid.has_face(Boundary::rigid_wall)) arrays.add(NodeArray::seventh);
   }

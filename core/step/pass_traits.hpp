@@ -64,8 +64,7 @@ struct PassTraits {
     return moves_all_nodes(model) ? S::node_block : momentum_block<S>;
   }
   static bool moves_all_nodes(const Model& model) {
-    const SolutionInput& solution = model.scene->solution;
-    return corrects || solves || !maps_back(solution.scheme) || model.scene->contact.enable ||
+    return corrects || solves || !maps_back(model.scheme) || model.scene->contact.enable ||
            has_surface_loads(*model.scene) ||
            std::ranges::count(model.grid->geometry().boundary, Boundary::rigid_wall) > 0;
   }

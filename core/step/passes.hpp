@@ -96,8 +96,8 @@ bool consistent_mass_goes_with(ShapeFunction shape);
 /// How bricks take particles for the scene's shape functions, and the nodes that a brick keeps.
 Site site_of(const Scene& scene);
 NodeBlockShape node_block_of(const Scene& scene);
-/// The node arrays that the scene's scheme and its heat conduction use.
-NodeArraySet node_arrays_of(const Scene& scene, bool conducts);
+/// The node arrays that a scheme and the scene's heat conduction use.
+NodeArraySet node_arrays_of(const Scene& scene, Scheme scheme, bool conducts);
 
 /// Doubles that XPIC, FMPM and solutions with the consistent mass matrix keep for a brick; 0 without.
 int product_doubles_of(const Scene& scene);

@@ -449,14 +449,14 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
       loads_(model),
       failed_(model),
       transfer_(model.scene->solution),
-      scheme_(model.scene->solution.scheme),
+      scheme_(model.scheme),
       orders_(orders_of(model.scene->solution)),
       by_cells_(multiplies_by_cells<S>(model.scene->solution)),
       finds_ranges_(strain_may_jump(model) && !is_affine(model.scene->solution.transfer)) {
   const SolutionInput& solution = model.scene->solution;
   forces_.gravity = solution.gravity;
   forces_.damping = solution.damping;
-  if (solution.scheme == Scheme::usl) {
+  if (scheme_ == Scheme::usl) {
     // The lightest material's density: a floor above the mass of a light body's full nodes would freeze that
     // body beside a heavy one.
     double density = std::numeric_limits<double>::infinity();
@@ -465,8 +465,8 @@ PassesWith<S, T>::PassesWith(Model& model, NodeHalo& halo, RigidBodies* rigid)
   }
   velocity_limit_ = solution.limit_velocity.value_or(std::numeric_limits<double>::infinity());
   erosion_volume_ = solution.volume.erode.value_or(0);
+  wave_weight_ = 1 / wave_limit(model);
   if (model.scene->contact.enable) contact_ = std::make_unique<Contact>(model, rigid);
-  wave_weight_ = 1 / wave_limit(*model.scene);
 #pragma omp parallel
   flush_denormals_to_zero();
   scratch_.resize(static_cast<std::size_t>(omp_get_max_threads()));

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/step/finite.hpp"
+#include "core/step/scheme_change.hpp"
 
 namespace mpm::core {
 
@@ -37,13 +39,16 @@ std::vector<Phase> Stepper::make_phases() {
                     const bool implicit = model_.scene->solution.integration == Integration::implicit;
                     if (implicit || model_.clock.step % sorting_interval == 0) migration_.sort_and_prune();
                   }});
+  if (may_change_scheme(*model_.scene)) step.push_back({"energy balance", [this] { judge_scheme(); }});
   return step;
 }
 
 void Stepper::step() {
   using clock = std::chrono::steady_clock;
+  words_of_change_.clear();
   auto before = clock::now();
   for (Phase& phase : phases_) {
+    if (!phase.run) break;
     phase.run();
     const auto now = clock::now();
     phase.seconds += std::chrono::duration<double>(now - before).count();
@@ -51,6 +56,28 @@ void Stepper::step() {
   }
   if (!failure_.empty()) throw NumericalFailure(failure_);
   if (collapsed_) fail_collapsed();
+  if (drift_) go_on_with_usavg();
+}
+
+void Stepper::judge_scheme() { drift_ = drift_beyond_tolerance(model_, communication_.reductions); }
+
+void Stepper::go_on_with_usavg() {
+  const Clock& clock = model_.clock;
+  words_of_change_ = fmt::format(
+      "step {}, time {:.6g}: the energy balance is off by {:.2g} %, more than {:.2g} %: the run goes on with "
+      "USAVG, which keeps it and whose steps take up to 1.8 times as long; algorithm=\"MUSL\" prevents this",
+      clock.step, clock.time, 100 * *drift_, 100 * tolerated_drift);
+  drift_.reset();
+  change_scheme(model_, Scheme::usavg);
+  integrator_ = make_integrator(model_, communication_);
+  std::vector<Phase> before = std::exchange(phases_, make_phases());
+  for (Phase& phase : before) {
+    const auto same = std::ranges::find(phases_, phase.name, &Phase::name);
+    if (same != phases_.end())
+      same->seconds += phase.seconds;
+    else
+      phases_.push_back({phase.name, {}, phase.seconds});
+  }
 }
 
 void Stepper::fail_collapsed() {

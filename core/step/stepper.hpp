@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -34,10 +35,13 @@ class Stepper {
   /// Advances the model by one step. Throws NumericalFailure on every rank together. Collective.
   void step();
 
+  /// In order of execution. Phases of a scheme that the run has left come last and do nothing any more.
   const std::vector<Phase>& phases() const { return phases_; }
   /// What the integrator has to say of the last step, for the log; empty for explicit steps.
   std::string words_of_step() const { return integrator_->words_of_step(); }
   std::string words_of_run() const { return integrator_->words_of_run(); }
+  /// Where the scheme has changed after the last step: why, and what to do about it; else empty.
+  const std::string& words_of_change() const { return words_of_change_; }
   /// Of the phases.
   std::vector<PartOfPhase> parts() const { return integrator_->parts(); }
 
@@ -61,6 +65,8 @@ class Stepper {
  private:
   std::vector<Phase> make_phases();
   void choose_time_step();
+  void judge_scheme();
+  void go_on_with_usavg();
   void reduce_status();
   [[noreturn]] void fail_collapsed();
 
@@ -71,8 +77,10 @@ class Stepper {
   std::vector<Phase> phases_;
   Incidents incidents_;
   bool needs_bricks_ = false;
-  bool collapsed_ = false;  ///< the critical step, in this step
-  std::string failure_;     ///< agreed by all ranks; thrown after the migration is complete
+  bool collapsed_ = false;       ///< the critical step, in this step
+  std::optional<double> drift_;  ///< for which the scheme is to change after this step
+  std::string words_of_change_;
+  std::string failure_;  ///< agreed by all ranks; thrown after the migration is complete
   bool stop_requested_ = false;
   bool stopping_ = false;
 };

@@ -44,7 +44,7 @@ bool strain_may_jump(const Model& model) {
       }
       const Vec3<double> v = body.prescribed_velocity.value_or(body.initial_velocity);
       const double c = model.materials[body.material]->initial_sound_speed();
-      fastest = std::max(fastest, c / wave_limit(scene) + std::sqrt(dot(v, v)));
+      fastest = std::max(fastest, c / wave_limit(model) + std::sqrt(dot(v, v)));
       velocities.push_back(v);
     }
   }

@@ -59,15 +59,17 @@ double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer) {
   }
 }
 
-double wave_limit(const Scene& scene) {
+double wave_limit(const Scene& scene, Scheme scheme) {
   if (scene.solution.mass == MassMatrix::consistent) return consistent_wave_limit(scene.grid.shape);
-  return wave_limit(scene.grid.shape, scene.solution.scheme, scene.solution.transfer);
+  return wave_limit(scene.grid.shape, scheme, scene.solution.transfer);
 }
 
-double tension_weight(const Scene& scene) {
+double wave_limit(const Model& model) { return wave_limit(*model.scene, model.scheme); }
+
+double tension_weight(const Scene& scene, Scheme scheme) {
   const bool implicit = scene.solution.integration == Integration::implicit;
-  if (implicit || scene.solution.scheme == Scheme::usl) return 1;
-  if (scene.grid.shape == ShapeFunction::linear) return scene.solution.scheme == Scheme::musl ? 3 : 2.6;
+  if (implicit || scheme == Scheme::usl) return 1;
+  if (scene.grid.shape == ShapeFunction::linear) return scheme == Scheme::musl ? 3 : 2.6;
   return scene.grid.shape == ShapeFunction::uniform_gimp ? 1.6 : 1;
 }
 

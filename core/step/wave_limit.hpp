@@ -1,7 +1,7 @@
 // The largest stable time step of each method, in units of the time in which a wave crosses a cell.
 #pragma once
 
-#include "core/scene/scene.hpp"
+#include "core/model.hpp"
 
 namespace mpm::core {
 
@@ -36,12 +36,14 @@ namespace mpm::core {
 ///   quadratic     0.87 | 0.62         0.91 | 0.62         0.42 | none
 ///   cubic         1.1  | 0.77         1.1  | 0.77         0.44 | none
 double wave_limit(ShapeFunction shape, Scheme scheme, Transfer transfer);
-double wave_limit(const Scene& scene);
+double wave_limit(const Scene& scene, Scheme scheme);
+/// The same of the scheme in use.
+double wave_limit(const Model& model);
 
 /// Weight of a fluid's critical speed while it is in tension, which pulls particles together: functions with
 /// kinks then gain energy below the limits above. Of a dam break (12,800 particles, a fluid that bears
 /// tension) at a factor of 0.9 the energy grew by 24 % with linear functions and MUSL, 3.3 % with USF, 5.6 %
 /// with uGIMP; with these weights it stays within 1 %.
-double tension_weight(const Scene& scene);
+double tension_weight(const Scene& scene, Scheme scheme);
 
 }  // namespace mpm::core

@@ -201,6 +201,7 @@ core::SolutionInput build_solution(const Node& root, const BuildContext& context
   if (!node) return solution;
   solution.source = context.at(*node);
   solution.scheme = scheme(node->word("algorithm"));
+  solution.automatic_scheme = node->word("algorithm") == "auto";
   solution.near_boundary_stop = node->boolean("near_boundary_stop");
   if (node->word("Integration") == "impl") solution.integration = core::Integration::implicit;
   solution.transfer = transfer(node->word("transfer"));

@@ -206,7 +206,7 @@ void echo_grid(XmlWriter& w, const core::GridInput& grid) {
 
 void echo_solution(XmlWriter& w, const core::SolutionInput& solution) {
   const auto scope = w.element("Solution");
-  w.text("algorithm", word(solution.scheme));
+  w.text("algorithm", solution.automatic_scheme ? "auto" : word(solution.scheme));
   w.flag("near_boundary_stop", solution.near_boundary_stop);
   w.text("Integration", solution.integration == core::Integration::implicit ? "impl" : "expl");
   w.text("transfer", word(solution.transfer));

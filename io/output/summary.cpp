@@ -132,6 +132,8 @@ std::string summary_json(const core::Model& model, const core::Totals& totals, c
         {"length", scene.header.length_unit},
         {"mass", scene.header.mass_unit}}},
   };
+  if (model.clock.scheme_since > 0)
+    summary["scheme_change"] = {{"to", "USAVG"}, {"after_step", model.clock.scheme_since}};
   if (scene.contact.enable) summary["contact"] = contact_json(scene, totals, pairs);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

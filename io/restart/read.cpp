@@ -5,6 +5,7 @@
 
 #include "core/particles/tile_order.hpp"
 #include "core/step/migration.hpp"
+#include "core/step/scheme_change.hpp"
 #include "io/output/file.hpp"
 #include "io/restart/contents.hpp"
 #include "io/restart/fit.hpp"
@@ -241,6 +242,7 @@ RestartResult read_restart(const std::string& path, core::Model& model, core::Co
   const Fit fit = fit_to_model(contents, model, result.notices);
   result.new_bodies = fit.new_bodies;
   model.clock = contents.clock;
+  core::continue_scheme(model);
   model.initial_energy = contents.initial_energy;
   model.next_identity = contents.next_identity;
   restore_ledger(contents, fit, model, ranks);

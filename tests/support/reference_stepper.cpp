@@ -84,7 +84,7 @@ void ReferenceStepper::step_with() {
   find_supports<Support>();
   particles_to_grid<Support>();
   const bool averages = case_.scheme == ReferenceScheme::usavg;
-  if (strains_first() && !(averages && steps_ == 0)) {
+  if (strains_first() && !(averages && strain_lag_ == 0)) {
     const bool holds = case_.wall_reaction && std::ranges::count(case_.boundary, 4) > 0;
     if (holds) add_forces<Support>();
     initial_velocities(holds ? velocity_dt : 0);
@@ -94,7 +94,7 @@ void ReferenceStepper::step_with() {
       stop_at_walls(&Node::w);
       for (Node& node : grid_) node.u = node.w;
     }
-    update_stresses<Support>(averages ? 0.5 * last_dt_ : dt, true);
+    update_stresses<Support>(averages ? strain_lag_ : dt, true);
   }
   if (strains_first()) add_forces<Support>();
   integrate_momentum(velocity_dt);
@@ -117,6 +117,7 @@ void ReferenceStepper::step_with() {
     for (std::size_t n = 0; n < next_x_.size(); ++n) case_.particles[n].corner = next_corner_[n];
   time_ += dt;
   last_dt_ = dt;
+  strain_lag_ = averages ? 0.5 * dt : 0;
   impulse_time_ += velocity_dt;
   ++steps_;
 }

@@ -85,6 +85,8 @@ class ReferenceStepper {
   /// Throws std::runtime_error when a particle leaves the grid, a volume is not positive or dt is not a
   /// number.
   void step();
+  /// Of the steps from now on. Not away from USAVG, which leaves half a step of strain behind.
+  void set_scheme(ReferenceScheme scheme) { case_.scheme = scheme; }
 
   std::span<const ReferenceParticle> particles() const { return case_.particles; }
   double time() const { return time_; }
@@ -232,7 +234,8 @@ class ReferenceStepper {
   std::vector<Vector> next_x_;  ///< positions at the end of the step; shape functions stay those of its start
   std::vector<DomainCorners> next_corner_;  ///< for cpdi2
   double time_ = 0, last_dt_ = 0, impulse_time_ = 0;
-  int steps_ = 0;  ///< completed
+  double strain_lag_ = 0;  ///< of USAVG: what the first half of the last step has left
+  int steps_ = 0;          ///< completed
 };
 
 template <>

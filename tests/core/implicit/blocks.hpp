@@ -48,7 +48,8 @@ inline GridGeometry three_bricks() {
 inline void make_bodies(Model& model, const Scene& scene, GridGeometry g, SoloCommunication& solo) {
   model.scene = std::make_shared<Scene>(scene);
   g.site = site_of(scene);
-  model.grid = std::make_unique<BrickGrid>(g, node_block_of(scene), node_arrays_of(scene, false));
+  model.grid = std::make_unique<BrickGrid>(g, node_block_of(scene),
+                                           node_arrays_of(scene, scene.solution.scheme, false));
   std::vector<std::size_t> all;
   for (const BodyInput* input : active_bodies(scene)) {
     all.push_back(model.bodies.size());

@@ -244,6 +244,7 @@ struct SmallRun {
     scene->contact.failed_to_component = contact && fails;
     scene->components.resize(2);
     scene->solution.scheme = scheme_of(c.scheme);
+    scene->solution.automatic_scheme = false;
     scene->solution.transfer = transfer_of(c.transfer);
     if (c.consistent) scene->solution.mass = core::MassMatrix::consistent;
     scene->solution.xpic_order = c.order;
@@ -259,6 +260,7 @@ struct SmallRun {
       scene->grid.axes[i].upper = static_cast<core::Boundary>(c.boundary[2 * i + 1]);
     }
     model.scene = scene;
+    model.scheme = scene->solution.scheme;
     model.materials.push_back(std::make_unique<OracleLaw>(c.material, std::move(fails)));
     const bool has_light = c.light_from < c.particles.size();
     if (has_light) {
@@ -276,8 +278,8 @@ struct SmallRun {
     for (std::size_t f = 0; f < 6; ++f) g.boundary[f] = static_cast<core::Boundary>(c.boundary[f]);
     g.site = core::site_of(*scene);
     g.mass_cutoff = c.mass_cutoff * c.material.density * g.cell_volume();
-    model.grid = std::make_unique<core::BrickGrid>(g, core::node_block_of(*scene),
-                                                   core::node_arrays_of(*scene, false));
+    model.grid = std::make_unique<core::BrickGrid>(
+        g, core::node_block_of(*scene), core::node_arrays_of(*scene, scene->solution.scheme, false));
     core::ColumnSet columns = core::ColumnSet::mechanics();
     columns.add(model.materials[0]->columns({}));
     columns.add(core::shape_columns(*scene));
@@ -313,7 +315,7 @@ struct SmallRun {
       const core::BrickCoord to = g.brick_at({p.x[0], p.x[1], p.x[2]});
       moving.add(to, n < split ? 0 : 1, flat.data(), layout.columns());
       counts.push_back({to, 1});
-      fastest = std::max(fastest, p.c / core::wave_limit(*model.scene) +
+      fastest = std::max(fastest, p.c / core::wave_limit(*model.scene, model.scheme) +
                                       std::sqrt(p.v[0] * p.v[0] + p.v[1] * p.v[1] + p.v[2] * p.v[2]));
     }
     solo.bricks.partition(*model.grid, counts, {});

@@ -141,7 +141,7 @@ TEST_CASE("values") {
        {"line 25: <Solution near_boundary_stop=\"yes\">: expected 0 or 1"}},
       {"<Solution>",
        "<Solution algorithm=\"musl\">",
-       {"line 25: <Solution algorithm=\"musl\">: expected one of MUSL, USL, USF, USAVG; did you mean "
+       {"line 25: <Solution algorithm=\"musl\">: expected one of auto, MUSL, USL, USF, USAVG; did you mean "
         "'MUSL'?"}},
       {"<EndTime",
        "<TimeStep factor=\"1.1\"/><EndTime",

@@ -1,0 +1,45 @@
+// The scheme of an input that leaves it to the program (`algorithm="auto"`). Most runs need no more than
+// MUSL, the manual's scheme, which costs least. Where particles cross cells under load, where bodies of very
+// different stiffness push each other, or with one particle in a cell, MUSL gains or loses energy, and USAVG
+// does not (docs/stability.md). Which of them a run is, its energy balance tells: it begins with MUSL and
+// goes on with USAVG once the balance is off by more than `tolerated_drift`.
+//
+// The change comes between two steps. MUSL leaves the strains of whole steps behind, so that the first step
+// of USAVG has no second half to make up for; the discrete balance of both (particle_motion.hpp) is the same
+// quantity there. The decision depends on exact sums alone: it is the same on any ranks and threads, and a
+// restart file remembers it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/communication/reductions.hpp"
+#include "core/model.hpp"
+
+namespace mpm::core {
+
+/// Error of the energy balance, relative to the largest energy in it, that MUSL may have.
+inline constexpr double tolerated_drift = 0.005;
+/// A look at the balance costs a fifteenth of a step. It comes after each of the first steps, in which bodies
+/// meet and explosives begin to burn, and then after every tenth. A body that is set in motion at once has an
+/// error in the very first steps that goes again.
+inline constexpr std::int64_t first_look = 5, first_steps = 50, balance_interval = 10;
+/// A body that falls from rest for n steps has an error of up to 1/n: what has begun with less than half of
+/// its energy may err by twice as much, and is not judged in the first steps.
+inline constexpr double tolerated_steps_of_fall = 2;
+
+/// Whether the scheme of a scene may change: `auto`, in explicit steps with FLIP and lumped masses. Other
+/// transfers lose energy with any scheme, and contact but that of contact_type 0 gains it with USAVG.
+bool may_change_scheme(const Scene& scene);
+
+/// The relative error of the energy balance after this step if the scheme is to change now. The same on every
+/// rank. Collective.
+std::optional<double> drift_beyond_tolerance(const Model& model, Reductions& ranks);
+
+/// Between two steps: the next ones are those of `scheme`, and an integrator made before must be replaced.
+/// The critical step becomes one that is stable with it.
+void change_scheme(Model& model, Scheme scheme);
+/// Goes on with the scheme that `model.clock`, read from a file, says.
+void continue_scheme(Model& model);
+
+}  // namespace mpm::core
