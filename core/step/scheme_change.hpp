@@ -20,10 +20,10 @@ namespace mpm::core {
 
 /// Error of the energy balance, relative to the largest energy in it, that MUSL may have.
 inline constexpr double tolerated_drift = 0.005;
-/// A look at the balance costs a fifteenth of a step. It comes after each of the first steps, in which bodies
-/// meet and explosives begin to burn, and then after every tenth. A body that is set in motion at once has an
-/// error in the very first steps that goes again.
-inline constexpr std::int64_t first_look = 5, first_steps = 50, balance_interval = 10;
+/// A look at the balance costs a fifth of a step. It comes after each of the first steps, in which bodies
+/// meet and explosives begin to burn, and then after every twentieth. A body that is set in motion at once
+/// has an error in the very first steps that goes again.
+inline constexpr std::int64_t first_look = 5, first_steps = 50, balance_interval = 20;
 /// A body that falls from rest for n steps has an error of up to 1/n: what has begun with less than half of
 /// its energy may err by twice as much, and is not judged in the first steps.
 inline constexpr double tolerated_steps_of_fall = 2;

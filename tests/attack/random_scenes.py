@@ -53,6 +53,8 @@ def scene(number, seed):
         shape = "CubicBSpline" if "CPDI" in shape else shape
     if number % 4 == 3:
         scheme = "USAVG"
+    if number % 4 == 2 and scheme == "MUSL":
+        scheme = "auto"
     faces = "".join(rng.choice("01234") if rng.random() < 0.5 else rng.choice("02") for _ in range(6))
     more = "".join(text for text in ('<Gravity ax="0" ay="0" az="-9.81"/>', f'<Volume update_type="{rng.randrange(5)}"/>',
                                      '<LimitVelocity max="8000"/>') if rng.random() < 0.3)
