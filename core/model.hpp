@@ -38,6 +38,12 @@ struct Body {
   std::shared_ptr<BlockPool> pool;
 };
 
+/// What the looks at the energy balance keep (core/step/scheme_change.hpp).
+struct BalanceLooks {
+  double scale = 0;  ///< the largest energy of the balance so far
+  double last = 0;   ///< the error at the last look, relative to that
+};
+
 struct Clock {
   std::int64_t step = 0;  ///< steps completed
   double time = 0;        ///< of the particles' current state
@@ -50,8 +56,9 @@ struct Clock {
   double strain_lag = 0;         ///< USAVG: of strains and stresses behind `time`
   double heat_lead = 0;          ///< by which heat conduction is ahead of `time`
   double next_dt = 0;            ///< of implicit steps: length of the next one; 0: not known
-  std::int64_t scheme_since =
-      0;  ///< the step after which USAVG has replaced the scene's scheme; 0: it has not
+  /// The step after which USAVG has replaced the scene's scheme; 0: it has not.
+  std::int64_t scheme_since = 0;
+  BalanceLooks looks;
 };
 
 /// Energy and mass added and removed since time zero. Exact sums: the same on any ranks.

@@ -133,6 +133,7 @@ void describe(const core::Model& model, const core::Stepper& stepper, core::Redu
   std::string phases;
   for (const core::Phase& p : stepper.phases()) phases += (phases.empty() ? "" : " | ") + p.name;
   log.say("step       {}", phases);
+  if (model.clock.scheme_since > 0) log.say("scheme     USAVG since step {}", model.clock.scheme_since);
   if (core::may_change_scheme(*model.scene) && model.scheme == core::Scheme::musl)
     log.say(
         "scheme     MUSL, and USAVG from the step on at which the energy balance is off by more than {:.2g} "

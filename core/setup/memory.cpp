@@ -10,8 +10,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "core/step/conduction.hpp"
 #include "core/step/node_update.hpp"
 #include "core/step/passes.hpp"
+#include "core/step/scheme_change.hpp"
 
 namespace mpm::core {
 
@@ -74,11 +76,14 @@ double in_pages(double bytes) {
   return std::ceil(bytes / page) * page;
 }
 
-/// Of the node arrays of one brick.
-double array_doubles(const BrickGrid& grid) {
+/// Of the node arrays of one brick, also of those that a change of the scheme adds.
+double array_doubles(const Model& model) {
+  NodeArraySet arrays = model.grid->arrays();
+  if (may_change_scheme(*model.scene))
+    arrays = node_arrays_of(*model.scene, Scheme::usavg, conducts_heat(model));
   double width = 0;
-  for (const NodeArray of : node_arrays) width += grid.arrays().has(of) ? record_doubles(of) : 0;
-  return width * grid.shape().nodes();
+  for (const NodeArray of : node_arrays) width += arrays.has(of) ? record_doubles(of) : 0;
+  return width * model.grid->shape().nodes();
 }
 
 }  // namespace
@@ -92,7 +97,7 @@ MemoryNeed memory_need(const Model& model) {
   }
   const BrickGrid& grid = *model.grid;
   constexpr double place = sizeof(Brick) + 64;  // and its entry in the table of coordinates
-  const double arrays = array_doubles(grid);
+  const double arrays = array_doubles(model);
   const int kept = maps_back(model.scheme) ? motion_width : 0;  // doubles of a node between passes
   const double motion = kept * grid.shape().nodes() + product_doubles_of(*model.scene);
   need.bricks = (place + sizeof(double) * (arrays + motion)) * grid.owned() +

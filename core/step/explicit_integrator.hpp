@@ -1,4 +1,4 @@
-// The explicit schemes MUSL, USF and USL as lists of phases (explicit_integrator.cpp).
+// The explicit schemes MUSL, USAVG, USF and USL as lists of phases (explicit_integrator.cpp).
 #pragma once
 
 #include "core/contact/rigid_bodies.hpp"

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/contact/component_contact.hpp"
 #include "core/step/conduction.hpp"
 #include "core/step/passes.hpp"
 #include "core/step/totals.hpp"
@@ -18,31 +20,60 @@ void use_scheme(Model& model, Scheme scheme) {
   model.grid->set_arrays(node_arrays_of(*model.scene, scheme, conducts_heat(model)));
 }
 
+/// A bound: h / (c/k + |v|) falls by no more than the ratio of the limits k.
+double shortened_by(const Model& model, Scheme scheme) {
+  return std::min(1.0, wave_limit(*model.scene, scheme) / wave_limit(model));
+}
+
+bool has_free_rigid_bodies(const Scene& scene) {
+  bool found = false;
+  for_each_active_body(scene, [&](int, const BodyInput& body) {
+    found = found || (is_rigid(scene.materials[body.material]) && !is_driven(body));
+  });
+  return found;
+}
+
 }  // namespace
 
 bool may_change_scheme(const Scene& scene) {
   const SolutionInput& solution = scene.solution;
-  const bool gains_by_contact = scene.contact.enable && scene.contact.method != ContactInput::Method::pan;
-  return solution.automatic_scheme && solution.integration == Integration::explicit_dynamics &&
-         solution.transfer == Transfer::flip && solution.flip_fraction == 1 &&
-         solution.mass == MassMatrix::lumped && !gains_by_contact;
+  if (!solution.automatic_scheme || solution.integration != Integration::explicit_dynamics ||
+      solution.transfer != Transfer::flip || solution.flip_fraction != 1 ||
+      solution.mass != MassMatrix::lumped)
+    return false;
+  const bool gains_by_contact = scene.contact.enable && (scene.contact.method != ContactInput::Method::pan ||
+                                                         has_free_rigid_bodies(scene));
+  const bool is_booked =
+      !scene.grid.has_face(Boundary::nonreflecting) && !solution.volume.min && !solution.volume.max;
+  return !gains_by_contact && is_booked;
 }
 
-std::optional<double> drift_beyond_tolerance(const Model& model, Reductions& ranks) {
-  const std::int64_t step = model.clock.step;
-  const bool looks = step >= first_look && (step <= first_steps || step % balance_interval == 0);
-  if (model.scheme != Scheme::musl || !looks) return {};
+std::optional<double> drift_beyond_tolerance(Model& model, Reductions& ranks) {
+  Clock& clock = model.clock;
+  const std::int64_t step = clock.step;
+  const bool first = step <= first_steps;
+  if (model.scheme != Scheme::musl || step < first_look || (!first && step % balance_interval != 0))
+    return {};
   const EnergyBalance balance = energy_balance(compute_energy_totals(model, ranks), model.initial_energy);
-  const bool falls = balance.initial_share <= 0.5;
-  if (falls && step <= first_steps) return {};
-  const double of_fall = falls ? tolerated_steps_of_fall / static_cast<double>(step) : 0.0;
-  if (!(std::abs(balance.relative_drift) > std::max(tolerated_drift, of_fall))) return {};
-  return balance.relative_drift;
+  clock.looks.scale = std::max(clock.looks.scale, balance.scale);
+  if (!(clock.looks.scale > 0)) return {};
+  const double drift = balance.relative_drift * balance.scale / clock.looks.scale;
+  const double before = std::exchange(clock.looks.last, drift);
+  const bool falls = std::abs(model.initial_energy) <= 0.5 * clock.looks.scale;
+  if (falls && first) return {};
+  const double tolerance =
+      std::max(tolerated_drift, falls ? tolerated_steps_of_fall / static_cast<double>(step) : 0.0);
+  // In the first steps the look before has to say the same.
+  double certain = std::abs(drift);
+  if (first) certain = before * drift > 0 ? std::min(certain, std::abs(before)) : 0;
+  if (!(certain > tolerance)) return {};
+  if (model.scene->solution.time_step.specified > shortened_by(model, Scheme::usavg) * clock.critical_dt)
+    return {};
+  return drift;
 }
 
 void change_scheme(Model& model, Scheme scheme) {
-  // h / (c/k + |v|) falls by no more than the ratio of the limits k.
-  const double shorter = std::min(1.0, wave_limit(*model.scene, scheme) / wave_limit(model));
+  const double shorter = shortened_by(model, scheme);
   model.clock.critical_dt *= shorter;
   model.clock.first_critical_dt *= shorter;
   model.clock.scheme_since = model.clock.step;

@@ -18,23 +18,26 @@
 
 namespace mpm::core {
 
-/// Error of the energy balance, relative to the largest energy in it, that MUSL may have.
+/// Error of the energy balance, relative to the largest energy that has been in it, that MUSL may have.
 inline constexpr double tolerated_drift = 0.005;
 /// A look at the balance costs a fifth of a step. It comes after each of the first steps, in which bodies
 /// meet and explosives begin to burn, and then after every twentieth. A body that is set in motion at once
-/// has an error in the very first steps that goes again.
+/// has an error in the very first steps that goes again: up to `first_steps` two looks have to agree.
 inline constexpr std::int64_t first_look = 5, first_steps = 50, balance_interval = 20;
 /// A body that falls from rest for n steps has an error of up to 1/n: what has begun with less than half of
 /// its energy may err by twice as much, and is not judged in the first steps.
 inline constexpr double tolerated_steps_of_fall = 2;
 
 /// Whether the scheme of a scene may change: `auto`, in explicit steps with FLIP and lumped masses. Other
-/// transfers lose energy with any scheme, and contact but that of contact_type 0 gains it with USAVG.
+/// transfers lose energy with any scheme, and contact of types 1 and 2, which that with free rigid bodies
+/// always is, gains it with USAVG. What leaves through non-reflecting faces, and what limits of the volume
+/// take, is not in the balance.
 bool may_change_scheme(const Scene& scene);
 
-/// The relative error of the energy balance after this step if the scheme is to change now. The same on every
+/// The relative error of the energy balance after this step if the scheme is to change now; keeps what later
+/// looks need in the clock. A step that the input specifies must be stable with USAVG, too. The same on every
 /// rank. Collective.
-std::optional<double> drift_beyond_tolerance(const Model& model, Reductions& ranks);
+std::optional<double> drift_beyond_tolerance(Model& model, Reductions& ranks);
 
 /// Between two steps: the next ones are those of `scheme`, and an integrator made before must be replaced.
 /// The critical step becomes one that is stable with it.

@@ -56,7 +56,7 @@ void Stepper::step() {
   }
   if (!failure_.empty()) throw NumericalFailure(failure_);
   if (collapsed_) fail_collapsed();
-  if (drift_) go_on_with_usavg();
+  if (drift_ && model_.clock.time < model_.scene->solution.end_time) go_on_with_usavg();
 }
 
 void Stepper::judge_scheme() { drift_ = drift_beyond_tolerance(model_, communication_.reductions); }

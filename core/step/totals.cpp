@@ -322,6 +322,7 @@ EnergyBalance energy_balance(const Totals& totals, double initial_energy) {
   const double scale =
       std::max({std::abs(initial_energy), std::abs(totals.external_work), std::abs(accounted)});
   if (!(scale > 0)) return balance;
+  balance.scale = scale;
   balance.relative_drift = (accounted - totals.external_work - initial_energy) / scale;
   balance.initial_share = std::abs(initial_energy) / scale;
   return balance;

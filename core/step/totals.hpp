@@ -72,6 +72,7 @@ struct EnergyBalance {
   /// contact has dissipated, less external work and initial energy; relative to the largest of these.
   double relative_drift = 0;
   double initial_share = 0;  ///< initial energy, relative to the same
+  double scale = 0;          ///< that energy
 };
 EnergyBalance energy_balance(const Totals& totals, double initial_energy);
 

@@ -121,9 +121,9 @@ void note_single_particles(const core::Scene& scene, std::vector<core::Diagnosti
        "Body",
        {},
        {},
-       fmt::format("body '{}' has one particle in a cell: with these shape functions and MUSL its "
-                   "energy may grow where they cross cells (docs/stability.md). Use a dp of about "
-                   "half a cell, or algorithm=\"USAVG\"",
+       fmt::format("body '{}' has one particle in a cell: with these shape functions its energy may "
+                   "grow where they cross cells, with MUSL most (docs/stability.md). Use a dp of about "
+                   "half a cell, or other shape functions, or algorithm=\"USAVG\"",
                    first->name)});
 }
 
