@@ -58,7 +58,7 @@ struct Clock {
   double next_dt = 0;            ///< of implicit steps: length of the next one; 0: not known
   /// The step after which USAVG has replaced the scene's scheme; 0: it has not.
   std::int64_t scheme_since = 0;
-  BalanceLooks looks;
+  BalanceLooks looks{};
 };
 
 /// Energy and mass added and removed since time zero. Exact sums: the same on any ranks.
