@@ -7,12 +7,14 @@
 
 #include <fmt/format.h>
 
+#include "core/step/scheme_change.hpp"
 #include "io/input/build.hpp"
 #include "io/input/checker.hpp"
 #include "io/input/document.hpp"
 #include "io/input/file_access.hpp"
 #include "io/input/idle.hpp"
 #include "io/input/library.hpp"
+#include "io/input/shape_notes.hpp"
 #include "io/input/specification.hpp"
 #include "io/input/text.hpp"
 #include "io/input/user_specification.hpp"
@@ -125,6 +127,9 @@ core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& fil
                                 "rename the file, to at most {}",
                                 name.native().size(), most_bytes_of_job));
   diagnostics.raise_if_any();
+  // Which scheme a scene needs the run finds out; of these the input says it.
+  if (core::may_change_scheme(scene) && body_of_single_particles(scene) != nullptr)
+    scene.solution.scheme = core::Scheme::usavg;
   scene.provenance = {file.string(), name.string(), fnv1a_hex(bytes)};
   if (options.foreign) *options.foreign = foreign_names(Node(document, 0, root, {}), file.string());
   if (options.notes) *options.notes = idle_settings(Node(document, 0, root, {}), scene);

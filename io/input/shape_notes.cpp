@@ -100,11 +100,9 @@ void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>&
   });
 }
 
-void note_single_particles(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+const core::BodyInput* body_of_single_particles(const core::Scene& scene) {
   using enum core::ShapeFunction;
-  if (scene.solution.integration != core::Integration::explicit_dynamics ||
-      scene.solution.scheme != core::Scheme::musl || (scene.grid.shape != linear && scene.grid.shape != ddmp))
-    return;
+  if (scene.grid.shape != linear && scene.grid.shape != ddmp) return nullptr;
   const double cell = scene.grid.smallest_cell();
   constexpr double single = 0.95;  // cells
   const core::BodyInput* first = nullptr;
@@ -114,17 +112,28 @@ void note_single_particles(const core::Scene& scene, std::vector<core::Diagnosti
         !core::is_rigid(scene.materials[body.material]))
       first = &body;
   });
-  if (first == nullptr) return;
+  return first;
+}
+
+void note_single_particles(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+  const core::SolutionInput& solution = scene.solution;
+  const bool begins_with_usavg = solution.automatic_scheme && solution.scheme == core::Scheme::usavg;
+  if (solution.integration != core::Integration::explicit_dynamics ||
+      (solution.scheme != core::Scheme::musl && !begins_with_usavg))
+    return;
+  const core::BodyInput* body = body_of_single_particles(scene);
+  if (body == nullptr) return;
   notes.push_back(
-      {first->source.file,
-       first->source.line,
+      {body->source.file,
+       body->source.line,
        "Body",
        {},
        {},
        fmt::format("body '{}' has one particle in a cell: with these shape functions its energy may "
-                   "grow where they cross cells, with MUSL most (docs/stability.md). Use a dp of about "
-                   "half a cell, or other shape functions, or algorithm=\"USAVG\"",
-                   first->name)});
+                   "grow where they cross cells, with MUSL most (docs/stability.md). {}se a dp of "
+                   "about half a cell, or other shape functions{}",
+                   body->name, begins_with_usavg ? "The run begins with USAVG. U" : "U",
+                   begins_with_usavg ? "" : ", or algorithm=\"USAVG\"")});
 }
 
 void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {

@@ -13,6 +13,9 @@ void note_blocks(const core::Scene& scene, std::vector<core::Diagnostic>& notes)
 /// Bodies whose particles are farther apart than the smallest cell is long.
 void note_wide_spacings(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
+/// The first deformable body with one particle in a cell where the shape functions are those that do not go
+/// with it; null without.
+const core::BodyInput* body_of_single_particles(const core::Scene& scene);
 /// Deformable bodies with one particle in a cell, where the method gains energy from such.
 void note_single_particles(const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 

@@ -41,6 +41,13 @@ TEST_CASE("one particle in a cell") {
     });
   };
   CHECK(about_one(single) == 1);
+  CHECK(about_one(replaced(single, "<Solution>", "<Solution algorithm=\"MUSL\">")) == 1);
+  CHECK(test::parse(single).solution.scheme == core::Scheme::usavg);
+  CHECK(test::parse(bar).solution.scheme == core::Scheme::musl);
+  CHECK(test::parse(replaced(single, "<Solution>", "<Solution algorithm=\"MUSL\">")).solution.scheme ==
+        core::Scheme::musl);
+  CHECK(test::parse(replaced(single, "<Solution>", "<Solution transfer=\"PIC\">")).solution.scheme ==
+        core::Scheme::musl);
   CHECK(about_one(bar) == 0);
   CHECK(about_one(replaced(single, "<Solution>", "<Solution algorithm=\"USAVG\">")) == 0);
   if (core::has_shape("DDMP")) CHECK(about_one(replaced(single, "linear", "DDMP")) == 1);
