@@ -10,7 +10,6 @@
 #include "core/particle_range.hpp"
 #include "core/step/finite.hpp"
 #include "core/step/offending_particle.hpp"
-#include "core/step/scheme_change.hpp"
 
 namespace mpm::apps {
 namespace {

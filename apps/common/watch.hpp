@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/model.hpp"
+#include "core/step/scheme_change.hpp"
 #include "core/step/stepper.hpp"
 #include "core/step/totals.hpp"
 #include "io/output/log.hpp"
@@ -22,12 +23,12 @@ inline constexpr double notable_drift = 0.02;
 inline constexpr std::size_t judged_rows = 10;
 /// The first step of an explicit run that is checked: earlier the total energy may be so small (a body that
 /// starts to fall) that the error of one step is a notable fraction of it.
-inline constexpr std::int64_t first_judged_step = 50;
+inline constexpr std::int64_t first_judged_step = core::first_steps;
 /// An explicit run with fewer steps is judged by its last row: above notable_drift where it has begun with
 /// half of its energy or more, above these where it has not: a body that falls from rest for n steps has an
 /// error of up to 1/n.
 inline constexpr double notable_drift_of_short_run = 0.1;
-inline constexpr double notable_steps_of_drift = 2;
+inline constexpr double notable_steps_of_drift = core::tolerated_steps_of_fall;
 
 class Watch {
  public:

@@ -39,7 +39,9 @@ std::vector<Phase> Stepper::make_phases() {
                     const bool implicit = model_.scene->solution.integration == Integration::implicit;
                     if (implicit || model_.clock.step % sorting_interval == 0) migration_.sort_and_prune();
                   }});
-  if (may_change_scheme(*model_.scene)) step.push_back({"energy balance", [this] { judge_scheme(); }});
+  if (may_change_scheme(*model_.scene))
+    step.push_back(
+        {"energy balance", [this] { drift_ = drift_beyond_tolerance(model_, communication_.reductions); }});
   return step;
 }
 
@@ -58,8 +60,6 @@ void Stepper::step() {
   if (collapsed_) fail_collapsed();
   if (drift_ && model_.clock.time < model_.scene->solution.end_time) go_on_with_usavg();
 }
-
-void Stepper::judge_scheme() { drift_ = drift_beyond_tolerance(model_, communication_.reductions); }
 
 void Stepper::go_on_with_usavg() {
   const Clock& clock = model_.clock;

@@ -65,7 +65,6 @@ class Stepper {
  private:
   std::vector<Phase> make_phases();
   void choose_time_step();
-  void judge_scheme();
   void go_on_with_usavg();
   void reduce_status();
   [[noreturn]] void fail_collapsed();

@@ -127,7 +127,7 @@ core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& fil
                                 "rename the file, to at most {}",
                                 name.native().size(), most_bytes_of_job));
   diagnostics.raise_if_any();
-  // Which scheme a scene needs the run finds out; of these the input says it.
+  // A run finds out by itself whether it needs USAVG; of these bodies it is known before.
   if (core::may_change_scheme(scene) && body_of_single_particles(scene) != nullptr)
     scene.solution.scheme = core::Scheme::usavg;
   scene.provenance = {file.string(), name.string(), fnv1a_hex(bytes)};
