@@ -113,20 +113,19 @@ template <ShapePolicy S, TransferPolicy T>
   const ColumnLayout& layout = model_.bodies[static_cast<std::size_t>(body)].pool->layout();
   const BodyMotion& motion = loads_.motion(body);
   const Vec3<double> weight = forces_.gravity + loads_.acceleration(body);
-  const bool falls = weight != Vec3<double>{}, is_rigid = motion.kind == BodyMotion::Kind::rigid;
+  const bool falls = weight != Vec3<double>{}, is_free = motion.kind == BodyMotion::Kind::free;
   const bool damps = forces_.damping != 0;
-  if (falls || is_rigid || damps)
+  if (falls || !is_free || damps)
     std::copy_n(block + layout.offset(Column::velocity_x), 3 * block_lanes, at.old);
   const double damped = forces_.damping * velocity_dt;
   if (damps) scale_velocities(1 - damped, layout, block);
   take_velocities(frame, place, layout, block, at);
-  if (is_rigid) integrate_rigid_velocities(layout, weight, velocity_dt, block, used, at);
-  // Of a prescribed velocity the constraint supplies the change.
-  if (falls && motion.kind != BodyMotion::Kind::prescribed)
-    correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
+  if (motion.kind == BodyMotion::Kind::rigid)
+    integrate_rigid_velocities(layout, weight, velocity_dt, block, used, at);
   if (motion.kind == BodyMotion::Kind::prescribed) prescribe_velocities(layout, motion, block, used, at);
-  if (damps) add_work_of_damping(damped, motion.kind == BodyMotion::Kind::free, layout, block, used, at);
-  if (motion.kind == BodyMotion::Kind::free && velocity_limit_ < std::numeric_limits<double>::infinity())
+  if (falls) correct_work_of_weight(weight, dt, velocity_dt, layout, block, used, at);
+  if (damps) add_work_of_damping(damped, layout, block, used, at);
+  if (is_free && velocity_limit_ < std::numeric_limits<double>::infinity())
     limit_velocities(layout, velocity_limit_, block, used, at);
 }
 

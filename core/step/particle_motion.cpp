@@ -18,9 +18,9 @@ void prescribe_velocities(const ColumnLayout& layout, const BodyMotion& motion, 
     double* v[3];
     for (int a = 0; a < 3; ++a) v[a] = block + i + layout.offset(next(Column::velocity_x, a));
     const double m = block[layout.offset(Column::mass) + i];
-    at.work += m * ((p.x - *v[0]) * p.x + (p.y - *v[1]) * p.y + (p.z - *v[2]) * p.z);
     const Vec3<double> at_x{x[i], x[block_lanes + i], x[2 * block_lanes + i]},
         given = m * (p - Vec3<double>{*v[0], *v[1], *v[2]});
+    for (int a = 0; a < 3; ++a) at.work += 0.5 * given[a] * (at.old[block_lanes * a + i] + p[a]);
     mass += m;
     place = place + m * at_x;
     impulse = impulse + given;
@@ -61,7 +61,7 @@ void integrate_rigid_velocities(const ColumnLayout& layout, const Vec3<double>& 
     for (int a = 0; a < 3; ++a) {
       double& v = velocity[block_lanes * a + i];
       const double free = at.old[block_lanes * a + i] + dt * acceleration[a];
-      at.work += m * (free - v) * free;
+      at.work += 0.5 * m * (free - v) * (at.old[block_lanes * a + i] + free);
       v = free;
     }
   }
@@ -85,14 +85,14 @@ void correct_work_of_weight(const Vec3<double>& weight, double dt, double veloci
   }
 }
 
-void add_work_of_damping(double damped, bool is_free, const ColumnLayout& layout, const double* block,
-                         int used, ThreadScratch& at) {
+void add_work_of_damping(double damped, const ColumnLayout& layout, const double* block, int used,
+                         ThreadScratch& at) {
   const double* m = block + layout.offset(Column::mass);
   const double* v = block + layout.offset(Column::velocity_x);
   for (int i = 0; i < used; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double now = v[block_lanes * a + i], old = at.old[block_lanes * a + i];
-      at.work -= m[i] * damped * old * (is_free ? 0.5 * (old + now) : now);
+      at.work -= 0.5 * m[i] * damped * old * (old + now);
     }
   }
 }

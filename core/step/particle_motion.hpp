@@ -26,8 +26,8 @@ struct alignas(128) ThreadScratch {
   }
 };
 
-/// Sets velocities to the prescribed ones; the constraint supplies the momentum m (v_p - v) at velocity v_p,
-/// and at the particle's position, that of the start of the step.
+/// Sets velocities to the prescribed ones. The constraint supplies the momentum m (v_p - v), which works with
+/// the mean of v_p and the velocity before, in at.old, at the particle's position at the start of the step.
 void prescribe_velocities(const ColumnLayout& layout, const BodyMotion& motion, double* block, int used,
                           ThreadScratch& at);
 /// v *= factor.
@@ -35,7 +35,8 @@ void scale_velocities(double factor, const ColumnLayout& layout, double* block);
 /// Applies LimitVelocity.
 void limit_velocities(const ColumnLayout& layout, double limit, double* block, int used, ThreadScratch& at);
 /// Velocities of a free rigid body: those in at.old, accelerated by `acceleration`. The force that replaces
-/// the grid's velocities, which the block holds, by these does work.
+/// the grid's velocities, which the block holds, by these does work, with the mean of the old and the new
+/// ones.
 void integrate_rigid_velocities(const ColumnLayout& layout, const Vec3<double>& acceleration, double dt,
                                 double* block, int used, ThreadScratch& at);
 /// x += dt v with the particles' own velocities.
@@ -48,9 +49,9 @@ void correct_work_of_weight(const Vec3<double>& weight, double dt, double veloci
                             const ColumnLayout& layout, const double* block, int used, ThreadScratch& at);
 
 /// Work of the damping that has taken the part `damped` of the velocities in at.old: with the mean of these
-/// and the new ones, or, where a constraint gives the new ones, with them, as the constraint works.
-void add_work_of_damping(double damped, bool is_free, const ColumnLayout& layout, const double* block,
-                         int used, ThreadScratch& at);
+/// and the new ones.
+void add_work_of_damping(double damped, const ColumnLayout& layout, const double* block, int used,
+                         ThreadScratch& at);
 /// Work of weight over a block's displacement from the positions in at.old.
 void add_work_of_motion(const Vec3<double>& weight, const ColumnLayout& layout, const double* block, int used,
                         ThreadScratch& at);
