@@ -138,7 +138,7 @@ class Expressions(_mpm.Case):
 
     def test_energy_of_prescribed_motion(self):
         """The force of the constraint works with the mean of the velocities before and after a step, as weight and damping do. (With the
-        later one the books were off by 27 % here.)"""
+        later one the books are off by 40 % here.)"""
         for algorithm in SCHEMES:
             with self.subTest(algorithm=algorithm):
                 text = self.scene('<PrescribedVelocity vx="2*sin(6*t)" vy="0" vz="-1"/>', 1.0, algorithm, 0.0075,
