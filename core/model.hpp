@@ -42,6 +42,7 @@ struct Body {
 struct BalanceLooks {
   double scale = 0;  ///< the largest energy of the balance so far
   double last = 0;   ///< the error at the last look, relative to that
+  double early = 0;  ///< the error at the first look of a long run
 };
 
 struct Clock {

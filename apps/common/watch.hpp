@@ -28,7 +28,7 @@ inline constexpr std::int64_t first_judged_step = core::first_steps;
 /// half of its energy or more, above these where it has not: a body that falls from rest for n steps has an
 /// error of up to 1/n.
 inline constexpr double notable_drift_of_short_run = 0.1;
-inline constexpr double notable_steps_of_drift = core::tolerated_steps_of_fall;
+inline constexpr double notable_steps_of_drift = 2;
 
 class Watch {
  public:

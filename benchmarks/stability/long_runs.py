@@ -37,6 +37,7 @@ import numpy as np  # noqa: E402
 PAGE = results.ROOT / "docs/stability.md"
 TABLE = results.ROOT / "docs/stability/long_runs.csv"
 STEPS, FACTOR = 100000, 0.9
+SCHEMES = ("auto", *methods.schemes())
 YOUNG, POISSON = 1000.0, 0.3  # density 1, cells of 1
 WAVE = math.sqrt(YOUNG * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON)))
 # Speed of the block's ends over that of waves, and attributes of the material.
@@ -78,7 +79,7 @@ def measure(name, method, steps=STEPS, factor=FACTOR):
 def wanted(options):
     if options.transfer or options.shape or options.scheme:
         return methods.product(options.shape or methods.shapes(), options.transfer or ("FLIP",), options.scheme or ("MUSL",))
-    return list(dict.fromkeys([*methods.every_scheme(), *methods.every_transfer(("QuadraticBSpline",))]))
+    return list(dict.fromkeys([*methods.product(some_schemes=SCHEMES), *methods.every_transfer(("QuadraticBSpline",))]))
 
 
 def table(rows):
@@ -112,7 +113,7 @@ def on_file():
 def merged(old, new):
     """The rows on file with these in the place of the same ones, in the order of the program's lists and of the scenes."""
     rows = {tuple(row[key] for key in KEYS): row for row in [*old, *new]}
-    lists = methods.schemes(), methods.transfers(), methods.shapes(), list(SCENES)
+    lists = SCHEMES, methods.transfers(), methods.shapes(), list(SCENES)
     return [rows[key] for key in sorted(rows, key=lambda key: [names.index(word) for names, word in zip(lists, key)])]
 
 
@@ -125,7 +126,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES))
     parser.add_argument("--shape", nargs="+", choices=methods.shapes())
-    parser.add_argument("--scheme", nargs="+", choices=methods.schemes())
+    parser.add_argument("--scheme", nargs="+", choices=SCHEMES)
     # argparse breaks a usage line at the brackets of FMPM(5).
     parser.add_argument("--transfer", nargs="+", choices=methods.transfers(), metavar="TRANSFER", help=", ".join(methods.transfers()))
     parser.add_argument("--steps", type=int, default=STEPS)

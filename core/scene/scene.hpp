@@ -61,6 +61,9 @@ struct Scene {
   OutputInput output;
   DecompositionInput decomposition;
   Provenance provenance;
+  /// A deformable body has about one particle in a cell, with functions whose gradients jump at the faces of
+  /// cells: linear and DDMP.
+  bool has_single_particles = false;
 };
 
 /// Whether failed particles form a component of their own.

@@ -20,11 +20,6 @@ void use_scheme(Model& model, Scheme scheme) {
   model.grid->set_arrays(node_arrays_of(*model.scene, scheme, conducts_heat(model)));
 }
 
-/// A bound: h / (c/k + |v|) falls by no more than the ratio of the limits k.
-double shortened_by(const Model& model, Scheme scheme) {
-  return std::min(1.0, wave_limit(*model.scene, scheme) / wave_limit(model));
-}
-
 bool has_free_rigid_bodies(const Scene& scene) {
   bool found = false;
   for_each_active_body(scene, [&](int, const BodyInput& body) {
@@ -60,22 +55,17 @@ std::optional<double> drift_beyond_tolerance(Model& model, Reductions& ranks) {
   const double drift = balance.relative_drift * balance.scale / clock.looks.scale;
   const double before = std::exchange(clock.looks.last, drift);
   const bool falls = std::abs(model.initial_energy) <= 0.5 * clock.looks.scale;
-  if (falls && first) return {};
-  const double tolerance =
-      std::max(tolerated_drift, falls ? tolerated_steps_of_fall / static_cast<double>(step) : 0.0);
+  if (falls && step < first_look_of_fall) return {};
   // In the first steps the look before has to say the same.
   double certain = std::abs(drift);
   if (first) certain = before * drift > 0 ? std::min(certain, std::abs(before)) : 0;
-  if (!(certain > tolerance)) return {};
-  if (model.scene->solution.time_step.specified > shortened_by(model, Scheme::usavg) * clock.critical_dt)
-    return {};
+  if (step == long_run) clock.looks.early = drift;
+  const bool grows = step > long_run && std::abs(drift - clock.looks.early) > tolerated_growth;
+  if (!(certain > tolerated_drift || grows)) return {};
   return drift;
 }
 
 void change_scheme(Model& model, Scheme scheme) {
-  const double shorter = shortened_by(model, scheme);
-  model.clock.critical_dt *= shorter;
-  model.clock.first_critical_dt *= shorter;
   model.clock.scheme_since = model.clock.step;
   use_scheme(model, scheme);
 }

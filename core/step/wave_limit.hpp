@@ -12,9 +12,9 @@ namespace mpm::core {
 /// and shock); these are 2 to 5 % below, and linear functions with MUSL keep the thesis' 1. Over 100,000
 /// steps (long_runs.py: an elastic block with the default viscosity) USL and USF need shorter ones, as a
 /// particle that has crept to the edge of a cell is unstable there; their limits are the largest that held.
-/// With USAVG `linear` has the step at which one particle in a cell does not gain energy, either; CPDI2
-/// failed after 70,000 steps with 1.2, and not with 1. CPDI2 with FMPM and MUSL gains 19 % there at 0.9, and
-/// nothing at 0.72.
+/// With USAVG CPDI2 failed after 70,000 steps with 1.2, and not with 1. CPDI2 with FMPM and MUSL gains 19 %
+/// there at 0.9, and nothing at 0.72. Bodies with one particle in a cell have shorter steps with FLIP and
+/// functions whose gradients jump (wave_limit.cpp).
 ///
 ///                 MUSL            USAVG           USF             USL
 ///                 block fluid bar, each

@@ -127,8 +127,9 @@ core::Scene parse_scene(std::string_view bytes, const std::filesystem::path& fil
                                 "rename the file, to at most {}",
                                 name.native().size(), most_bytes_of_job));
   diagnostics.raise_if_any();
+  scene.has_single_particles = body_of_single_particles(scene) != nullptr;
   // A run finds out by itself whether it needs USAVG; of these bodies it is known before.
-  if (core::may_change_scheme(scene) && body_of_single_particles(scene) != nullptr)
+  if (core::may_change_scheme(scene) && scene.has_single_particles)
     scene.solution.scheme = core::Scheme::usavg;
   scene.provenance = {file.string(), name.string(), fnv1a_hex(bytes)};
   if (options.foreign) *options.foreign = foreign_names(Node(document, 0, root, {}), file.string());

@@ -130,8 +130,8 @@ void note_single_particles(const core::Scene& scene, std::vector<core::Diagnosti
        {},
        {},
        fmt::format("body '{}' has one particle in a cell: with these shape functions its energy may "
-                   "grow where they cross cells, with MUSL most (docs/stability.md). {}se a dp of "
-                   "about half a cell, or other shape functions{}",
+                   "grow where they cross cells, with MUSL most, and the steps of the run are shorter "
+                   "(docs/stability.md). {}se a dp of about half a cell, or other shape functions{}",
                    body->name, begins_with_usavg ? "The run begins with USAVG. U" : "U",
                    begins_with_usavg ? "" : ", or algorithm=\"USAVG\"")});
 }

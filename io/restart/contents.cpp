@@ -326,6 +326,7 @@ void write_run(hid_t file, const RestartContents& c) {
   hdf5::write_attribute(file, "scheme_since", c.clock.scheme_since);
   hdf5::write_attribute(file, "balance_scale", c.clock.looks.scale);
   hdf5::write_attribute(file, "balance_error", c.clock.looks.last);
+  hdf5::write_attribute(file, "balance_early_error", c.clock.looks.early);
   hdf5::write_attribute(file, "initial_energy", c.initial_energy);
   hdf5::write_attribute(file, "next_identity", static_cast<std::int64_t>(c.next_identity));
 }
@@ -345,7 +346,10 @@ void read_run(hid_t file, RestartContents& c) {
   c.clock.heat_lead = hdf5::has_attribute(file, "heat_lead") ? hdf5::read_double(file, "heat_lead") : 0.0;
   if (hdf5::has_attribute(file, "scheme_since")) {
     c.clock.scheme_since = hdf5::read_int64(file, "scheme_since");
-    c.clock.looks = {hdf5::read_double(file, "balance_scale"), hdf5::read_double(file, "balance_error")};
+    core::BalanceLooks& looks = c.clock.looks;
+    looks = {hdf5::read_double(file, "balance_scale"), hdf5::read_double(file, "balance_error"), 0};
+    if (hdf5::has_attribute(file, "balance_early_error"))
+      looks.early = hdf5::read_double(file, "balance_early_error");
   }
   c.initial_energy = hdf5::read_double(file, "initial_energy");
   c.next_identity = static_cast<std::uint64_t>(hdf5::read_int64(file, "next_identity"));

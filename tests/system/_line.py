@@ -12,7 +12,7 @@ import numpy as np
 # core/step/passes_with.hpp. A full node has the mass of a cell, on the wall half of it.
 USL_MASS_FLOOR = 0.2
 # wave_limit of core/step/wave_limit.hpp for linear functions.
-WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.24, "USAVG": 0.85}
+WAVE_LIMIT = {"MUSL": 1.0, "USF": 0.5, "USL": 0.24, "USAVG": 1.0}
 
 
 # shock_width of physics/material/viscosity_limiter.hpp, in cells.

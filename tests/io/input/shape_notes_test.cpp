@@ -42,6 +42,8 @@ TEST_CASE("one particle in a cell") {
   };
   CHECK(about_one(single) == 1);
   CHECK(about_one(replaced(single, "<Solution>", "<Solution algorithm=\"MUSL\">")) == 1);
+  CHECK(test::parse(single).has_single_particles);
+  CHECK_FALSE(test::parse(bar).has_single_particles);
   CHECK(test::parse(single).solution.scheme == core::Scheme::usavg);
   CHECK(test::parse(bar).solution.scheme == core::Scheme::musl);
   CHECK(test::parse(replaced(single, "<Solution>", "<Solution algorithm=\"MUSL\">")).solution.scheme ==
