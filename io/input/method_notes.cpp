@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -72,20 +73,49 @@ void note_linear_functions(const Node& root, const core::Scene& scene, std::vect
                    who)});
 }
 
-void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
+namespace {
+
+/// What is wrong with a scene's combination of scheme, transfer and shape functions; empty: nothing is known
+/// to be.
+std::string_view fault_of_combination(const core::Scene& scene) {
+  using core::Scheme;
+  using core::ShapeFunction;
+  using core::Transfer;
   const core::SolutionInput& solution = scene.solution;
+  const ShapeFunction shape = scene.grid.shape;
+  const bool contiguous = shape == ShapeFunction::contiguous_particle_gimp,
+             fmpm = solution.transfer == Transfer::fmpm;
+  if (solution.scheme == Scheme::usl && solution.transfer == Transfer::aflip && !contiguous)
+    return "with algorithm USL and transfer AFLIP the energy grows at steps of any length: choose MUSL, "
+           "USAVG "
+           "or USF";
+  if (fmpm && solution.xpic_order > 2 && shape == ShapeFunction::cpdi2)
+    return "with CPDI2 and FMPM of an order above 2 the energy may grow in runs of some thousand steps: "
+           "choose "
+           "xpic_order=\"2\", or CPDI";
+  const bool consistent = solution.mass == core::MassMatrix::consistent;
+  const bool grows = (contiguous && (consistent || solution.transfer == Transfer::aflip)) ||
+                     (shape == ShapeFunction::linear && consistent) ||
+                     (shape == ShapeFunction::cpdi && fmpm && solution.xpic_order > 3);
+  if (solution.scheme == Scheme::usf && grows)
+    return "with algorithm USF, these shape functions and this mapping of velocities the energy may grow in "
+           "runs of some ten thousand steps: choose USAVG";
+  return {};
+}
+
+}  // namespace
+
+void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
   const std::optional<Node> node = root.child("Solution");
-  if (!node || solution.integration != core::Integration::explicit_dynamics ||
-      solution.scheme != core::Scheme::usl || solution.transfer != core::Transfer::aflip ||
-      scene.grid.shape == core::ShapeFunction::contiguous_particle_gimp)
-    return;
+  if (!node || scene.solution.integration != core::Integration::explicit_dynamics) return;
+  const std::string_view fault = fault_of_combination(scene);
+  if (fault.empty()) return;
   notes.push_back({scene.provenance.path,
                    node->line(),
                    "Solution",
                    {},
                    {},
-                   "with algorithm USL and transfer AFLIP the energy grows at steps of any length: choose "
-                   "MUSL, USAVG or USF (docs/stability.md)"});
+                   fmt::format("{} (docs/stability.md)", fault)});
 }
 
 void note_soft_drivers(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {

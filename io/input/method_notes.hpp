@@ -13,7 +13,7 @@ namespace mpm::io {
 /// where the input does not choose the shape functions.
 void note_linear_functions(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
-/// USL with AFLIP, which has no stable step with it but for cpGIMP.
+/// Combinations of scheme, transfer and shape functions that have no stable step, or lose it in long runs.
 void note_scheme(const Node& root, const core::Scene& scene, std::vector<core::Diagnostic>& notes);
 
 /// Deformable bodies of prescribed velocity beside other bodies, in explicit steps.

@@ -52,6 +52,33 @@ TEST_CASE("USL with a transfer that has no stable step with it") {
   CHECK(notes_of(replaced(usl, "USL", "USAVG")).empty());
 }
 
+TEST_CASE("methods whose energy grows in long runs") {
+  const auto notes = [](const std::string& shape, const std::string& attributes) {
+    return notes_of(replaced(replaced(bar, "linear", shape), "<Solution>", "<Solution " + attributes + ">"));
+  };
+  const Notes usf{
+      "line 25: <Solution>: with algorithm USF, these shape functions and this mapping of velocities the "
+      "energy may grow in runs of some ten thousand steps: choose USAVG (docs/stability.md)"};
+  CHECK(notes("linear", "algorithm='USF' mass='consistent'") == usf);
+  CHECK(notes("linear", "algorithm='USAVG' mass='consistent'").empty());
+  CHECK(notes("linear", "algorithm='USF'").empty());
+  if (core::has_shape("cpGIMP")) {
+    CHECK(notes("cpGIMP", "algorithm='USF' mass='consistent'") == usf);
+    CHECK(notes("cpGIMP", "algorithm='USF' transfer='AFLIP'") == usf);
+    CHECK(notes("cpGIMP", "transfer='AFLIP'").empty());
+  }
+  if (core::has_shape("CPDI")) {
+    CHECK(notes("CPDI", "algorithm='USF' transfer='FMPM' xpic_order='5'") == usf);
+    CHECK(notes("CPDI", "algorithm='USF' transfer='FMPM' xpic_order='3'").empty());
+  }
+  if (core::has_shape("CPDI2")) {
+    CHECK(notes("CPDI2", "transfer='FMPM' xpic_order='3'") ==
+          Notes{"line 25: <Solution>: with CPDI2 and FMPM of an order above 2 the energy may grow in runs of "
+                "some thousand steps: choose xpic_order=\"2\", or CPDI (docs/stability.md)"});
+    CHECK(notes("CPDI2", "transfer='FMPM' xpic_order='2'").empty());
+  }
+}
+
 TEST_CASE("a deformable body of prescribed velocity beside another one") {
   const std::string second = replaced(
       bar, "</Component>",
