@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Energy of an elastic block after 100,000 steps, with every shape function and scheme, and every transfer with quadratic splines.
 
-  long_runs.py                     every scene with every method; half an hour on two cores, and several for every transfer
+  long_runs.py                     every scene with every method; half an hour on two cores; every transfer, named, takes hours
   long_runs.py --scene NAME ...    these scenes; --shape, --scheme, --transfer choose methods alike
   long_runs.py --docs              as above, and docs/stability/long_runs.csv and the table of docs/stability.md, where rows that
                                    were not measured stay
