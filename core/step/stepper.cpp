@@ -64,9 +64,11 @@ void Stepper::step() {
 void Stepper::go_on_with_usavg() {
   const Clock& clock = model_.clock;
   words_of_change_ = fmt::format(
-      "step {}, time {:.6g}: the energy balance is off by {:.2g} %, more than {:.2g} %: the run goes on with "
-      "USAVG, which keeps it and whose steps take up to 1.8 times as long; algorithm=\"MUSL\" prevents this",
-      clock.step, clock.time, 100 * *drift_, 100 * tolerated_drift);
+      "step {}, time {:.6g}: the energy balance is off by {:.2g} %{}: the run goes on with USAVG, which "
+      "keeps it and whose steps take up to 1.8 times as long; algorithm=\"MUSL\" prevents this",
+      clock.step, clock.time, 100 * *drift_,
+      clock.step > long_run ? fmt::format(", after {:.2g} % at step {}", 100 * clock.looks.early, long_run)
+                            : "");
   drift_.reset();
   change_scheme(model_, Scheme::usavg);
   integrator_ = make_integrator(model_, communication_);

@@ -157,7 +157,8 @@ inline void fill(core::Model& model, core::Communication& exchange, const SmallS
                  .lag = 0.5e-3,
                  .first_lag = 0.625e-3,
                  .critical_dt = 1.25e-3,
-                 .first_critical_dt = 1.5e-3};
+                 .first_critical_dt = 1.5e-3,
+                 .looks = {.scale = 2e6, .last = 1e-3, .early = -2e-3}};
   model.initial_energy = 1e6;
   model.next_identity = identity;
   // Every rank has something in its ledger; their sum is the same on any number of ranks.

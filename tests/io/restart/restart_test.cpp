@@ -67,6 +67,9 @@ TEST_CASE("A restart file gives back the state to the last bit") {
   CHECK(copy.clock.first_lag == 0.625e-3);
   CHECK(copy.clock.critical_dt == 1.25e-3);
   CHECK(copy.clock.first_critical_dt == 1.5e-3);
+  CHECK(copy.clock.looks.scale == 2e6);
+  CHECK(copy.clock.looks.last == 1e-3);
+  CHECK(copy.clock.looks.early == -2e-3);
   CHECK(copy.initial_energy == 1e6);
   CHECK(copy.next_identity == 601);
   CHECK(copy.ledger.external_work.value() == 1e20);
