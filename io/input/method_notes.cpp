@@ -87,12 +87,10 @@ std::string_view fault_of_combination(const core::Scene& scene) {
              fmpm = solution.transfer == Transfer::fmpm;
   if (solution.scheme == Scheme::usl && solution.transfer == Transfer::aflip && !contiguous)
     return "with algorithm USL and transfer AFLIP the energy grows at steps of any length: choose MUSL, "
-           "USAVG "
-           "or USF";
+           "USAVG or USF";
   if (fmpm && solution.xpic_order > 2 && shape == ShapeFunction::cpdi2)
     return "with CPDI2 and FMPM of an order above 2 the energy may grow in runs of some thousand steps: "
-           "choose "
-           "xpic_order=\"2\", or CPDI";
+           "choose xpic_order=\"2\", or CPDI";
   const bool consistent = solution.mass == core::MassMatrix::consistent;
   const bool grows = (contiguous && (consistent || solution.transfer == Transfer::aflip)) ||
                      (shape == ShapeFunction::linear && consistent) ||

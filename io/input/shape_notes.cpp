@@ -129,11 +129,13 @@ void note_single_particles(const core::Scene& scene, std::vector<core::Diagnosti
        "Body",
        {},
        {},
-       fmt::format("body '{}' has one particle in a cell: with these shape functions its energy may "
-                   "grow where they cross cells, with MUSL most, and the steps of the run are shorter "
-                   "(docs/stability.md). {}se a dp of about half a cell, or other shape functions{}",
-                   body->name, begins_with_usavg ? "The run begins with USAVG. U" : "U",
-                   begins_with_usavg ? "" : ", or algorithm=\"USAVG\"")});
+       fmt::format(
+           "body '{}' has one particle in a cell: with these shape functions its energy may "
+           "grow where they cross cells, with MUSL most{} (docs/stability.md). {}se a dp of about half "
+           "a cell, or other shape functions{}",
+           body->name, solution.transfer == core::Transfer::flip ? ", and FLIP takes shorter steps" : "",
+           begins_with_usavg ? "The run begins with USAVG. U" : "U",
+           begins_with_usavg ? "" : ", or algorithm=\"USAVG\"")});
 }
 
 void note_no_bodies(const core::Scene& scene, std::vector<core::Diagnostic>& notes) {
