@@ -37,7 +37,7 @@ import numpy as np  # noqa: E402
 PAGE = results.ROOT / "docs/stability.md"
 TABLE = results.ROOT / "docs/stability/long_runs.csv"
 STEPS, FACTOR = 100000, 0.9
-SCHEMES = ("auto", *methods.schemes())
+SCHEMES = methods.choices("Solution", "algorithm")
 YOUNG, POISSON = 1000.0, 0.3  # density 1, cells of 1
 WAVE = math.sqrt(YOUNG * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON)))
 # Speed of the block's ends over that of waves, and attributes of the material.

@@ -33,7 +33,7 @@ import numpy as np  # noqa: E402
 PAGE, TABLE = results.ROOT / "docs/stability.md", results.ROOT / "docs/stability/verdicts.csv"
 COURSE_TABLE = results.ROOT / "docs/stability/course.csv"
 AVERAGING = ("none", "cell")
-SCHEMES = ("auto", *methods.schemes())
+SCHEMES = methods.choices("Solution", "algorithm")
 WITHIN = 0.01  # of the energy
 JWL = '<EquationOfState type="JWL" A="371.2e3" B="3.23e3" R1="4.15" R2="0.95" w="0.3" E0="7e3"/>'
 COPPER = _mpm.material("copper", 8.93e-3, 'type="IsoHarden" Young="117e3" Poisson="0.35" Yield0="157" TangMod="423"',

@@ -341,15 +341,16 @@ void read_run(hid_t file, RestartContents& c) {
   c.clock.first_lag = lags ? hdf5::read_double(file, "first_lag") : c.clock.lag;
   c.clock.critical_dt = hdf5::read_double(file, "critical_dt");
   c.clock.first_critical_dt = hdf5::read_double(file, "first_critical_dt");
-  c.clock.next_dt = hdf5::has_attribute(file, "next_dt") ? hdf5::read_double(file, "next_dt") : 0.0;
-  c.clock.strain_lag = hdf5::has_attribute(file, "strain_lag") ? hdf5::read_double(file, "strain_lag") : 0.0;
-  c.clock.heat_lead = hdf5::has_attribute(file, "heat_lead") ? hdf5::read_double(file, "heat_lead") : 0.0;
+  const auto or_zero = [file](const char* name) {
+    return hdf5::has_attribute(file, name) ? hdf5::read_double(file, name) : 0.0;
+  };
+  c.clock.next_dt = or_zero("next_dt");
+  c.clock.strain_lag = or_zero("strain_lag");
+  c.clock.heat_lead = or_zero("heat_lead");
   if (hdf5::has_attribute(file, "scheme_since")) {
     c.clock.scheme_since = hdf5::read_int64(file, "scheme_since");
-    core::BalanceLooks& looks = c.clock.looks;
-    looks = {hdf5::read_double(file, "balance_scale"), hdf5::read_double(file, "balance_error"), 0};
-    if (hdf5::has_attribute(file, "balance_early_error"))
-      looks.early = hdf5::read_double(file, "balance_early_error");
+    c.clock.looks = {hdf5::read_double(file, "balance_scale"), hdf5::read_double(file, "balance_error"),
+                     or_zero("balance_early_error")};
   }
   c.initial_energy = hdf5::read_double(file, "initial_energy");
   c.next_identity = static_cast<std::uint64_t>(hdf5::read_int64(file, "next_identity"));
